@@ -499,6 +499,18 @@ def test_our_slider_beside_engines_goes_to_finer_steps_the_more_links_there_are(
     assert own[-1].size == pytest.approx(finest * period, rel=0.01)
 
 
+@pytest.mark.parametrize(("count", "rungs"), [(49, 8), (99, 8), (199, 9), (399, 10)])
+def test_so_does_an_engine_whose_steps_no_limit_shortens(monkeypatch, count, rungs):
+    """An implicit one came to 1.06e-5 of a chain of 399 links. The explicit limit falls as the links' length squared."""
+    monkeypatch.setitem(sys.modules, "ghost_engine", ModuleType("ghost_engine"))
+    scene = strip()
+    links = peer_case.case_of(scene.beam, count, scene.forces, scene.drive.frequency_hz)
+    for implicit, told in ((True, rungs), (False, 7)):
+        with PEERS.registered(msgspec.structs.replace(GHOST, implicit=implicit)):
+            sizes = [entry.size for entry in peer_set.ladder("Ghost", Ghost(), links, None, 5e-3)]
+        assert sizes[0] / sizes[-1] == pytest.approx(2.0 ** (told - 1), rel=1e-9)
+
+
 @pytest.mark.parametrize(("dense", "growth"), [(False, 2.0), (True, 3.7)])
 def test_steps_of_full_matrices_alone_are_thought_to_take_time_by_links_squared(monkeypatch, dense, growth):
     """Of 400 links beside 200: an engine in O(N) was left out of a bench for hours that it takes minutes for."""

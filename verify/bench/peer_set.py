@@ -6,7 +6,7 @@ run in steps that are halved from its own longest on; what it takes at an error 
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from math import ceil, isnan
+from math import ceil, isnan, log2
 from typing import TYPE_CHECKING
 
 from verify.bench.kind import Entry, Line, Run, Told
@@ -27,6 +27,8 @@ FIRST_STEP, FIRST_IMPLICIT, BELOW_LIMIT = 1.0 / 12.0, 1.0 / 100.0, 0.99
 """Of the drive's period, the longest step, and of one without a limit, which order 2 makes long soon; of that limit."""
 RUNGS, MORE = 7, 1
 """Steps of an engine, each half of the one before; and so many more at order 2."""
+ENOUGH = 100.0
+"""Links up to which so many come to the least error that is asked for."""
 STEP_LINK_S, STEP_LINKS_S, START_S = 6e-6, 1e-7, 0.1
 """From above: of a step by links, and by links squared where matrices are full; of a model made."""
 START_LINKS_S, MODES_S = 6e-6, 6e-8
@@ -86,6 +88,11 @@ def first_steps(period: float, end: float, limit: float, *, implicit: bool = Fal
     return max(ceil(end / first * (1.0 - 1e-9)), LEAST_SAMPLES)
 
 
+def further(count: int) -> int:
+    """Steps more at the fine end where no limit shortens them: more links, higher modes that a load rings."""
+    return max(0, ceil(log2(count / ENOUGH)))
+
+
 def ladder(name: str, engine: PeerAdapter, links: Links, sled: Sled | None, end: float) -> Iterator[Entry]:
     """One engine over its steps; what it gives as (times, deflection), with a slider as (times, distance, speed)."""
     implicit, dense = PEERS[name].implicit, PEERS[name].dense
@@ -93,7 +100,7 @@ def ladder(name: str, engine: PeerAdapter, links: Links, sled: Sled | None, end:
     least = first_steps(1.0 / links.frequency, end, explicit_limit(links), implicit=implicit)
     set_up = START_S + START_LINKS_S * links.n**2
     each = STEP_LINK_S * links.n + dense * STEP_LINKS_S * links.n**2
-    for steps in (least * 2**k for k in range(RUNGS + MORE * implicit)):
+    for steps in (least * 2**k for k in range(RUNGS + (MORE + further(links.n)) * implicit)):
         run = partial(_run, name, engine, links, sled, end, steps)
         part = max(round(PART_S / each), 1)
         yield Entry(

@@ -7,7 +7,7 @@ of engines on the exact linear chain where the forces are small enough.
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
-from math import ceil, inf, log2
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
@@ -15,7 +15,7 @@ from msgspec.structs import replace
 from verify.bench.chain_set import FIRST_STEP, WANTED, chain_of
 from verify.bench.field_set import forces_of, relative_rms
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
-from verify.bench.peer_set import RUNGS, START_S, engines, first_steps, ladder
+from verify.bench.peer_set import RUNGS, START_S, engines, first_steps, further, ladder
 from verify.bench.study import Settled
 from verify.chain.splitting import linear_deflection, modal_basis, simulate_modal
 from verify.errors import InputError
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 OURS = "segments, modal steps"
 SMALL = 3e-6
 """Departure of the nonlinear chain from the linear one up to which that is what engines are held against."""
-ENOUGH = 100.0
-"""Links up to which our ladder, as long as another engine's, comes to the least error that is asked for."""
 OWN_STEP_S = 1e-5
 """Of our own slider, from above."""
 RIDE_S = 6e-5
@@ -103,7 +101,7 @@ def _own(scene: "Scene", its: Settled, slider: "Slider", count: int) -> Iterator
     assert scene.drive is not None
     least = first_steps(1.0 / scene.drive.frequency_hz, its.duration, inf)
     line = Line(name=OURS, model="segment", orders=(1.0, 4.0), refined="step")
-    for steps in (least * 2**k for k in range(_rungs(count))):
+    for steps in (least * 2**k for k in range(RUNGS + further(count))):
         yield Entry(
             line=line,
             size=its.duration / steps,
@@ -113,11 +111,6 @@ def _own(scene: "Scene", its: Settled, slider: "Slider", count: int) -> Iterator
             afresh=True,
             settings={"step": its.duration / steps},
         )
-
-
-def _rungs(count: int) -> int:
-    """Steps of our own ladder: the more links, the higher the modes that a step load rings, and the finer its end."""
-    return RUNGS + max(0, ceil(log2(count / ENOUGH)))
 
 
 def _ride(scene: "Scene", its: Settled, slider: "Slider", count: int, steps: int, kept: int) -> Told:
@@ -179,7 +172,7 @@ def _exact(ride: Callable[..., references.Ride], departure: float) -> Known:
 def _finer(scene: "Scene", its: Settled, slider: "Slider", count: int, longest: float) -> Known:
     """Ours in steps of a half and a quarter of its shortest."""
     least = round(its.duration / longest)
-    steps = [least * 2 ** (_rungs(count) + k) for k in range(2)]
+    steps = [least * 2 ** (RUNGS + further(count) + k) for k in range(2)]
     coarse, fine = (_ride(scene, its, slider, count, n, least).answer for n in steps)
     between = _between(fine)
     return between, Reference(f"its own run in {steps[1]} steps", _apart(coarse, between)), 0.0
