@@ -74,6 +74,15 @@ def test_what_all_runs_took_is_told_of_the_last():
     assert found.statistics.loop_s > 1.3 * alone.statistics.loop_s
 
 
+def test_what_is_waited_for_is_all_of_them(monkeypatch):
+    """Of runs in 1, 2, 4 and 8 steps the last two are begun for 7 and 15: each by itself was thought to be short."""
+    asked = []
+    monkeypatch.setattr(judged_step, "waited_for", lambda seconds: asked.append(seconds) or True)
+    ridden(count=37, normal="massless")
+    assert len(asked) >= 2
+    assert asked[1] / asked[0] == pytest.approx(15.0 / 7.0, rel=0.02)
+
+
 def test_an_interrupt_ends_all_of_it():
     def stop(part):
         raise KeyboardInterrupt

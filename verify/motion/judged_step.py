@@ -54,12 +54,13 @@ def until_it_stands(
     """The first run in steps as those of `stages`, or in a half, a quarter, ... of them, that confirms the one before.
 
     The first of all takes steps twice as long, to be compared with, or where samples stand too close for that, no
-    other. Where none confirms, or the next would take longer than is waited for (so many steps take `seconds`), the
-    last that was run, or broken off. What the runs before took is added to its cost; a note says how far it stands.
+    other. Where none confirms, or all with the next would take longer than is waited for (so many steps take
+    `seconds`), the last that was run, or broken off. What the runs before took is added to its cost; a note says how
+    far it stands.
     """
     closer = ceil(LOOKS / sum(stage.n_steps // stage.every for stage in stages))
     left, ran, layouts = 1.0, list[Ran](), list(_layouts(stages, closer))
-    while len(ran) < len(layouts) and (len(ran) < 2 or waited_for(seconds(steps_in(layouts[len(ran)])))):
+    while len(ran) < len(layouts) and (len(ran) < 2 or waited_for(seconds(_steps_of_all(layouts[: len(ran) + 1])))):
         ran.append(run(layouts[len(ran)], _part_of(progress, 1.0 - left, SHARE * left)))
         left *= 1.0 - SHARE
         if ran[-1].motion.statistics.interrupted or _stands(ran):
@@ -89,6 +90,10 @@ def _layouts(stages: list[Stage], closer: int) -> Iterator[list[Stage]]:
 def steps_in(stages: Sequence[Stage]) -> int:
     """Of all stages."""
     return sum(stage.n_steps for stage in stages)
+
+
+def _steps_of_all(layouts: Sequence[list[Stage]]) -> int:
+    return sum(map(steps_in, layouts))
 
 
 def moved(coarse: Motion, fine: Motion) -> float:
