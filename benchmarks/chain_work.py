@@ -22,8 +22,9 @@ from numba import njit
 from verify.bench.chain_set import SAMPLES, Chain, chain_cases, chain_of
 from verify.bench.kind import Entry, Line, Told
 from verify.bench.measuring import measured
+from verify.bench.request import Bench
 from verify.bench.sentences import sentences_of
-from verify.bench.study import Bench, settled
+from verify.bench.sets import settled
 from verify.chain.splitting import ModalBasis, modal_basis
 from verify.models.arrays import Array
 from verify.scenes.scene import load_scene

@@ -7,7 +7,8 @@ import os
 import sys
 from contextlib import suppress
 
-from verify.bench.study import Bench, settled
+from verify.bench.request import Bench
+from verify.bench.sets import settled
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.scenes.scene import load_scene, packaged_scenes

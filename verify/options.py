@@ -81,7 +81,6 @@ DriveKind = Literal["force", "displacement"]
 """What a drive imposes. force: newtons. displacement: metres, by the forces that it takes."""
 
 BenchSet = Literal["modes", "harmonic", "transient", "slider", "chain"]
-BENCH_SETS: tuple[str, ...] = get_args(BenchSet)
 """What a bench compares methods in. modes: natural frequencies. harmonic: the steady field under the drive. transient:
 the linear beam in time. slider: its displacement on that beam. chain: the nonlinear chain from rest."""
 

@@ -13,8 +13,10 @@ import pytest
 from verify.bench import measuring, peer_set, ride_set, running
 from verify.bench.against import moved
 from verify.bench.keeping import page
-from verify.bench.running import all_cases, benched
-from verify.bench.study import Bench, BenchStudy, settled
+from verify.bench.request import Bench
+from verify.bench.running import benched
+from verify.bench.sets import all_cases, settled
+from verify.bench.study import BenchStudy
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.judge.workbench import Workbench

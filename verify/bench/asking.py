@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from verify.bench.study import Bench, BenchStudy
+from verify.bench.request import Bench
+from verify.bench.study import BenchStudy
 from verify.judge.workbench import Workbench
 from verify.scenes.checked import checked
 from verify.scenes.given import whole_numbers

@@ -12,7 +12,7 @@ import numpy as np
 
 from verify.bench.field_set import forces_of, relative_rms
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
-from verify.bench.study import Settled
+from verify.bench.request import Settled
 from verify.chain.confirmed import check_moved
 from verify.chain.dynamics import at_rest
 from verify.chain.splitting import linear_deflection, modal_basis, simulate_modal

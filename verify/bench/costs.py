@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from verify.bench.request import Bench
 from verify.bench.rows import ChildCost
+from verify.bench.sets import SETS, all_cases
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,22 +25,16 @@ if TYPE_CHECKING:
 ROUNDS = 3
 SPENT = "import sys, time; sys.stdout.write(str(time.process_time()))"
 """What a process says at its end: seconds of the processor since it began."""
-COMPILED = ("slider", "chain")
-"""Sets whose methods are compiled."""
-LIBRARIES = {
-    "numpy": (),
-    "scipy.sparse.linalg": (),
-    "verify.elements.element": ("modes", "harmonic", "transient", "slider"),
-}
-"""What is imported, the elements with scikit-fem behind them, and the sets that need it where not all do."""
+LIBRARIES, ELEMENTS, COMPILER = ("numpy", "scipy.sparse.linalg"), "verify.elements.element", "numba"
+"""What all sets import; what is imported, scikit-fem with it, for finite elements; and where loops are compiled."""
 PATIENCE_S = 600.0
 """Of one process."""
 
 
 def import_costs(sets: tuple[str, ...]) -> list[ChildCost]:
     """Seconds of a bare interpreter, and of each library in one, medians of interleaved rounds. Raises InputError."""
-    wanted = [name for name, needed in LIBRARIES.items() if not needed or set(needed) & set(sets)]
-    wanted += ["numba"] * bool(set(COMPILED) & set(sets))
+    wanted = [*LIBRARIES, *[ELEMENTS] * any(SETS[name].elements for name in sets)]
+    wanted += [COMPILER] * any(SETS[name].compiled for name in sets)
     jobs = {"a bare interpreter": "pass", "import verify.cli": "import verify.cli"}
     jobs |= {f"import {name}": f"import {name}" for name in wanted}
     rounds: dict[str, list[float]] = {name: [] for name in jobs}
@@ -52,7 +48,7 @@ def compile_costs(scene: "Scene", sets: tuple[str, ...]) -> dict[tuple[str, str]
     """Seconds of compiling by set and method, in the order in which they are called. Raises InputError."""
     found: dict[tuple[str, str], float] = {}
     text = msgspec.json.encode(scene).decode()
-    for name in (one for one in sets if one in COMPILED):
+    for name in (one for one in sets if SETS[one].compiled):
         with TemporaryDirectory() as empty:
             out = _child(f"from verify.bench.costs import tell\ntell({name!r})", {"NUMBA_CACHE_DIR": empty}, text)
         found |= {(name, method): seconds for method, seconds in json.loads(out).items()}
@@ -79,8 +75,6 @@ def _child(code: str, environment: dict[str, str], given: str = "") -> str:
 
 def tell(name: str) -> None:
     """In such a process: first less second run of each method's coarsest entry, as JSON on standard output."""
-    from verify.bench.running import all_cases
-    from verify.bench.study import Bench
     from verify.judge.workbench import Workbench
     from verify.scenes.checked import checked
     from verify.scenes.scene import scene_type

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_of_fields
-from verify.bench.study import Settled
+from verify.bench.request import Settled
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS, discrete

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_due
-from verify.bench.study import Settled
+from verify.bench.request import Settled
 from verify.errors import InputError
 from verify.judge.compare import EIGENVALUE_FLOOR, ORDER_FLOOR, relative_error
 from verify.judge.variants import Variant, every_rule

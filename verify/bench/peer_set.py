@@ -10,7 +10,7 @@ from math import ceil, isnan, log2
 from typing import TYPE_CHECKING
 
 from verify.bench.kind import Entry, Line, Run, Told
-from verify.bench.study import Settled
+from verify.bench.request import Settled
 from verify.errors import InputError
 from verify.judge.workbench import no_such_mode
 from verify.peers.breaking import Break, pushed

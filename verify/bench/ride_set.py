@@ -16,7 +16,7 @@ from verify.bench.chain_set import FIRST_STEP, WANTED, chain_of
 from verify.bench.field_set import forces_of, relative_rms
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
 from verify.bench.peer_set import RUNGS, START_S, engines, first_steps, further, ladder
-from verify.bench.study import Settled
+from verify.bench.request import Settled
 from verify.chain.splitting import linear_deflection, modal_basis, simulate_modal
 from verify.errors import InputError
 from verify.models.arrays import Array

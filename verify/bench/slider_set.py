@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
-from verify.bench.study import Settled
+from verify.bench.request import Settled
 from verify.errors import InputError
 from verify.exact.in_time import check_beam
 from verify.judge.compare import check_reference, relative_error

@@ -7,7 +7,7 @@ import numpy as np
 
 from verify.bench.field_set import forces_of, relative_rms
 from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_at_once, orders_due
-from verify.bench.study import Settled
+from verify.bench.request import Settled
 from verify.errors import InputError
 from verify.exact.in_time import check_beam
 from verify.judge.compare import EIGENVALUE_FLOOR

@@ -24,6 +24,7 @@ Inertia = Annotated[Literal["full", "transverse"], Meta(description="of the link
 class Chained(Arguments, frozen=True, kw_only=True):
     """A chain of so many links."""
 
+    chained: ClassVar[bool] = True
     segments: Links
 
     @property
@@ -134,6 +135,7 @@ class Ridden(Arguments, frozen=True, kw_only=True):
 
     places: ClassVar[tuple[str, ...]] = ("slider_position",)
     slides: ClassVar[bool] = True
+    chained: ClassVar[bool] = True
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
     time: Annotated[float, Meta(gt=0, description="s; default: the scene's motion.duration")] | None = None

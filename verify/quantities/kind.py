@@ -71,6 +71,8 @@ class Arguments(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
     slides: ClassVar[bool] = False
     """Whether they are about the scene's slider."""
+    chained: ClassVar[bool] = False
+    """Whether they are about the nonlinear chain."""
     reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
     """Tables of a scene on which the figure depends; a gate is about another scene where one of these is."""
     places: ClassVar[tuple[str, ...]] = ()

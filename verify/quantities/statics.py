@@ -36,6 +36,7 @@ class BentFar(Arguments, frozen=True, kw_only=True):
     """The scene's cantilever as links under a dead load and a moment at its tip."""
 
     reads: ClassVar[tuple[str, ...]] = ("beam",)
+    chained: ClassVar[bool] = True
     count: Annotated[int, Meta(ge=2, description="links of the chain")]
     across: Annotated[float, Meta(description="of the load, newton across the straight beam")] = 0.0
     along: Annotated[float, Meta(description="of the load, newton along the straight beam, away from the wall")] = 0.0
