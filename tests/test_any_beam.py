@@ -16,7 +16,7 @@ from verify.exact.buckling import buckling_load
 from verify.options import SUPPORTS
 from verify.section import Section
 from verify.segments import linear as segments
-from verify.segments.links import build_chain
+from verify.segments.assembly import build_chain
 
 L, EI, RHO_A, GA, RHO_I = 0.73, 3.7, 0.31, 3.1e4, 2.3e-5
 THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")

@@ -28,7 +28,8 @@ from verify.chain.statics import solve_static
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
 from verify.segments import linear as segment_model
-from verify.segments.links import build_chain, chain_pencil, mass_matrix
+from verify.segments.assembly import build_chain, chain_pencil
+from verify.segments.links import mass_matrix
 
 
 def beam(left="pinned", right="pinned", **more):

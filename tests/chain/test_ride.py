@@ -24,7 +24,7 @@ from verify.errors import InputError
 from verify.models.eigen import lowest
 from verify.motion.contact import coupling_of, surface_speed
 from verify.motion.simulate import simulate
-from verify.segments.links import chain_pencil
+from verify.segments.assembly import chain_pencil
 from verify.slider import Slider
 
 STEP = 4e-6

@@ -12,7 +12,7 @@ from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.run.runner import workbench_for
-from verify.segments.links import build_chain, chain_pencil
+from verify.segments.assembly import build_chain, chain_pencil
 from verify.waves.absorber import ending, reflection
 
 DOCS = Path(__file__).parents[2] / "docs"

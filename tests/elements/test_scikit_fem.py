@@ -8,6 +8,7 @@ from verify.beam import Beam, PointForce
 from verify.elements import curvatures, linear, mesh, pencil
 from verify.elements.in_time import time_basis
 from verify.elements.stock import stock_frequency_hz
+from verify.elements.weighing import KEPT
 from verify.errors import InputError
 from verify.judge.extended_precision import eigenvalue_error
 from verify.scenes.scene import load_scene
@@ -319,7 +320,7 @@ def test_unknowns_counted_without_scikit_fem_are_those_it_leaves(left, right):
 
 
 def test_small_bases_are_kept_for_who_asks_next_and_large_ones_are_not():
-    few, many = np.linspace(0.0, 0.43, 17), np.linspace(0.0, 0.43, mesh.KEPT + 1)
+    few, many = np.linspace(0.0, 0.43, 17), np.linspace(0.0, 0.43, KEPT + 1)
     assert mesh.basis_between(few) is mesh.basis_between(few.copy())
     assert mesh.basis_between(few) is not mesh.basis_between(few, shear=True)
     assert mesh.basis_between(many) is not mesh.basis_between(many)

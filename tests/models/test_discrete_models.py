@@ -276,7 +276,7 @@ def test_a_band_answers_as_sparse_factors_do(titanium_strip, n):
     from verify.attached import PointMass, PointSpring
     from verify.models.pencil import swing
     from verify.models.response import _by_sparse_factors, forced_response
-    from verify.segments.links import build_chain, chain_pencil
+    from verify.segments.assembly import build_chain, chain_pencil
 
     bodies = {"mass": (PointMass(position=0.21, mass=0.02),), "spring": (PointSpring(position=0.5, stiffness=400.0),)}
     loaded = replace(titanium_strip, supports=("clamped", "free"), tension=3.0, **(bodies if n > 5 else {}))

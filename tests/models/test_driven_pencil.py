@@ -20,7 +20,7 @@ from verify.models.response import distance_answered, forced_response, resonance
 from verify.section import Section
 from verify.segments import linear as segment_model
 from verify.segments import sweeps as segment_sweeps
-from verify.segments.links import build_chain, chain_pencil
+from verify.segments.assembly import build_chain, chain_pencil
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 CLAMPED = replace(STRIP, supports=("clamped", "free"))

@@ -10,7 +10,7 @@ from verify import Beam, PointForce, PointMass, PointSpring, Section, analytic_m
 from verify.errors import InputError
 from verify.models import polishing, response
 from verify.models.eigen import lowest
-from verify.segments.links import build_chain, chain_pencil
+from verify.segments.assembly import build_chain, chain_pencil
 
 LENGTH, STIFFNESS, RHO_A = 1.3, 7.0, 0.2
 FACES = pytest.mark.parametrize("face", [fem_beam, segment_model], ids=["elements", "segments"])

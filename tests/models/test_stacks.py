@@ -20,7 +20,7 @@ from verify.models.isolated import isolated
 from verify.models.stacks import judged, lowest_of_each
 from verify.options import SUPPORTS
 from verify.segments import stacks as of_segments
-from verify.segments.links import build_chain, chain_pencil
+from verify.segments.assembly import build_chain, chain_pencil
 
 L, EI, LINE = 0.73, 3.7, 0.31
 MODELS = {"segment": segment_model, "fem": fem_beam}

@@ -24,7 +24,7 @@ from verify.motion.surface import Growth, Steps, basis_of, stages_from_rest, ste
 from verify.section import Section
 from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
-from verify.segments.links import build_chain
+from verify.segments.assembly import build_chain
 
 HELD = [("pinned", "pinned"), ("clamped", "free"), ("clamped", "clamped"), ("guided", "pinned"), ("pinned", "clamped")]
 

@@ -17,7 +17,7 @@ from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of, cut
 from verify.motor.run import run_motor
 from verify.segment_model import solve_harmonic
-from verify.segments.links import build_chain
+from verify.segments.assembly import build_chain
 from verify.segments.loads import joint_weights
 from verify.slider import Contact, Slider
 

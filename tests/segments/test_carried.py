@@ -14,10 +14,10 @@ from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.section import Section
 from verify.segments import carried, loaded
+from verify.segments.assembly import build_chain, chain_pencil
 from verify.segments.attached import felt_at
 from verify.segments.buckling import buckling_load
 from verify.segments.linear import n_elastic, solve_modes, unknowns
-from verify.segments.links import build_chain, chain_pencil
 
 L, EI, RHO_A = 0.73, 3.7, 0.31
 M = RHO_A * L

@@ -8,10 +8,10 @@ from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.exact import modes as exact_modes
 from verify.segments import crowded, stacks
+from verify.segments.assembly import build_chain
 from verify.segments.attached import felt_at
 from verify.segments.crowded import felt_together
 from verify.segments.linear import solve_modes
-from verify.segments.links import build_chain
 from verify.segments.sweeps import sweep_modes
 
 STRIP = Beam(length=1.2, width=0.03, thickness=0.003, youngs_modulus=200e9, density=7800.0)

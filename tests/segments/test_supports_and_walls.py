@@ -238,7 +238,7 @@ def test_settings_that_do_not_exist_are_refused(titanium_strip):
 )
 def test_a_welded_half_lies_at_its_clamped_wall(titanium_strip, supports, halves):
     """Nine links and half a link at each clamped end fill the beam; a wall's first joint is half a link off it."""
-    from verify.segments.links import build_chain
+    from verify.segments.assembly import build_chain
 
     beam = replace(titanium_strip, supports=supports)
     nodes, link = build_chain(beam, 9, wall="welded").nodes, 0.73 / (9 + 0.5 * sum(halves))

@@ -17,7 +17,7 @@ from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
 from verify.models.fields import phasor, wavenumber
 from verify.options import SUPPORTS
 from verify.segments import linear as segment_model
-from verify.segments.links import build_chain
+from verify.segments.assembly import build_chain
 from verify.segments.loads import four_weights, joint_weights
 from verify.waves.imposed import driven_field, held_units
 

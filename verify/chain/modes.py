@@ -6,7 +6,8 @@ from verify.chain.system import ChainSystem, straight_chain
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.eigen import lowest
-from verify.segments.links import chain_pencil, joint_masses, with_ends
+from verify.segments.assembly import chain_pencil
+from verify.segments.links import joint_masses, with_ends
 
 
 def lowest_modes(system: ChainSystem, n_modes: int) -> tuple[Array, Array, Array, float]:

@@ -36,7 +36,8 @@ from verify.motion.request import check_seen
 from verify.motion.result import END, Ride, Statistics
 from verify.motion.stepping import contact_space, fresh_motion
 from verify.options import Links
-from verify.segments.links import Chain, chain_pencil, free_joints, with_ends
+from verify.segments.assembly import chain_pencil
+from verify.segments.links import Chain, free_joints, with_ends
 from verify.segments.loads import joint_weights
 from verify.segments.reading import contact_line, contact_piece
 from verify.slider import Slider

@@ -16,7 +16,8 @@ from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import divide
 from verify.options import TIPS, Joints, Load, Tip, Wall
-from verify.segments.links import Chain, build_chain
+from verify.segments.assembly import build_chain
+from verify.segments.links import Chain
 from verify.segments.loads import joint_weights
 
 MAX_ACTUATORS = 4

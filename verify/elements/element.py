@@ -17,7 +17,7 @@ from skfem.mesh import MeshLine1
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
-from verify.elements.mesh import KEPT, weighed
+from verify.elements.weighing import KEPT, weighed
 from verify.models.arrays import Array, Indices
 
 _RULES = {

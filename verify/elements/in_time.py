@@ -9,8 +9,9 @@ import numpy as np
 from verify.beam import Beam
 from verify.elements.curvatures import curvature_weights
 from verify.elements.linear import check, leading_sign
-from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, stiffness_matrix, weighed
+from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, stiffness_matrix
 from verify.elements.pencil import element_pencil
+from verify.elements.weighing import weighed
 from verify.models.arrays import Array, Indices
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.checks import MOST_PARTS, check_number, check_whole, check_word
 from verify.elements.cuts import check_cuts
-from verify.elements.mesh import KEPT, Elements, build_elements, interpolate, point_loads
+from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import (
     check_unbuckled,
     damped_stiffness,
@@ -18,6 +18,7 @@ from verify.elements.pencil import (
     mesh_buckling_load,
     uneven,
 )
+from verify.elements.weighing import KEPT
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance

@@ -5,7 +5,6 @@ those of the beam; the nodes are real coordinates in that unit, so that those of
 exact at any size.
 """
 
-from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
@@ -14,13 +13,11 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.elements.cuts import cut
+from verify.elements.weighing import KEPT
 from verify.models.arrays import Array, Indices
 from verify.models.division import Parts
 from verify.models.theory import check_theory
 from verify.options import Theory
-
-KEPT = 4000
-"""Nodes up to which a basis is kept for who asks next: about a kilobyte each."""
 
 _HELD = {"pinned": ("u",), "clamped": ("u", "u_x"), "guided": ("u_x",), "free": ()}
 """What a support holds, in scikit-fem's names of the degrees of freedom."""
@@ -157,15 +154,3 @@ def point_loads(basis: Any, x: Array) -> Array:
 def interpolate(basis: Any, nodal: Any, x: Array, derivative: int = 0) -> Any:
     """The elements' cubics or a derivative at x (in units from the left end), (k, len(x)); nodal is (k, 2N + 2)."""
     return basis.read(nodal, x, derivative)
-
-
-def weighed(values: Iterable[Any], weights: Iterable[Array]) -> Any:
-    """The sum of values, each an array written over, times their weights, one after another."""
-    total = None
-    for value, weight in zip(values, weights, strict=True):
-        np.multiply(value, weight, out=value)
-        if total is None:
-            total = value
-        else:
-            total += value
-    return total

@@ -17,7 +17,7 @@ from skfem.element.element import Element
 from skfem.refdom import RefLine
 
 from verify.elements.element import _MIDDLE, Line, LineBasis, cubics
-from verify.elements.mesh import weighed
+from verify.elements.weighing import weighed
 from verify.models.arrays import Array, Indices
 
 

@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.models.compression import buckling_ratio
 from verify.models.places import as_typed
 from verify.options import Attachment, Joints, Wall
-from verify.segments.links import build_chain, chain_pencil, check_set_up
+from verify.segments.assembly import build_chain, chain_pencil, check_set_up
 
 _PASSES = 60
 _SETTLED = 1e-13

@@ -15,8 +15,9 @@ from verify.models.eigen import modal_basis
 from verify.models.places import as_typed
 from verify.models.time_basis import TimeBasis, check_held
 from verify.options import LINES, LOADS, Attachment, Joints, Line, Load, Wall
+from verify.segments.assembly import build_chain, chain_pencil
 from verify.segments.linear import check, leading_sign
-from verify.segments.links import Chain, build_chain, chain_pencil
+from verify.segments.links import Chain
 from verify.segments.loads import joint_weights
 from verify.segments.reading import body_turns, corrected_reading, joint_positions, spline_at
 

@@ -22,7 +22,8 @@ from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.response import forced_response
 from verify.models.theory import check_theory
 from verify.options import ATTACHMENTS, LOADS, READINGS, THEORIES, Attachment, Joints, Load, Reading, Theory, Wall
-from verify.segments.links import FIELD, Chain, build_chain, chain_pencil, check_set_up, elastic_ends, free_joints
+from verify.segments.assembly import build_chain, chain_pencil, check_set_up
+from verify.segments.links import FIELD, Chain, elastic_ends, free_joints
 from verify.segments.loads import joint_weights
 from verify.segments.reading import (
     joint_curvatures,

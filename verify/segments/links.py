@@ -13,13 +13,10 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.checks import MOST_PARTS, check_whole, check_word
 from verify.models.arrays import Array
-from verify.models.division import Parts, divide
+from verify.models.division import Parts
 from verify.models.inverse import first_bending
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
-from verify.options import ATTACHMENTS, JOINTS, WALLS, Attachment, Joints, Theory, Wall
-from verify.segments.walls import wall_factors, welded_halves
+from verify.models.pencil import on_diagonals
 
 FIELD = "n_segments"
 
@@ -165,50 +162,6 @@ def link_inertia(mass: Any, length: Any) -> Any:
     return mass * length**2 / 12.0
 
 
-def check_set_up(n_segments: int, wall: str, joints: str, attachment: str) -> None:
-    """Raise InputError for a number of links that is none, a single link, which does not bend, or an unknown word."""
-    words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
-    for field, word, known in words:
-        check_word(field, word, known)
-    check_whole(FIELD, n_segments, 2, MOST_PARTS)
-
-
-def build_chain(
-    beam: Beam,
-    n_segments: int,
-    *,
-    wall: Wall = "gregory",
-    joints: Joints = "series",
-    grading: float = 1.0,
-    theory: Theory = "euler-bernoulli",
-    attachment: Attachment = "reciprocal",
-) -> Chain:
-    """The chain of a beam: links of its sections, joints between and at the walls (see `segment_model`).
-
-    Raises InputError where a tensioned joint would have no stiffness left.
-    """
-    parts = divide(beam, n_segments, grading)
-    masses = parts.lengths * parts.masses_per_length
-    factors = wall_factors(beam.supports, n_segments, wall, elastic_ends(beam, attachment))
-    halves = welded_halves(beam.supports) if wall == "welded" else (0, 0)
-    chain = Chain(
-        supports=beam.supports,
-        rigid_motions=beam.rigid_motions,
-        unit=beam.length / (n_segments + 0.5 * sum(halves)),
-        start=0.5 * halves[0],
-        lengths=parts.lengths,
-        compliances=series_compliances(parts, parts.stiffnesses, joints) * factors,
-        masses=masses,
-        inertias=link_inertia(masses, parts.lengths),
-        stiffnesses=parts.stiffnesses,
-    )
-    if theory == "euler-bernoulli" and beam.added in ((), ("section",)):
-        return chain
-    from verify.segments.carried import carried
-
-    return carried(beam, chain, parts, factors, wall=wall, joints=joints, theory=theory, attachment=attachment)
-
-
 def series_compliances(parts: Parts, stiffness: Array, joints: str) -> Array:
     """1/k of joints 0..N, (N + 1,), an end joint as if the end link went on beyond it."""
     lengths = parts.lengths
@@ -228,27 +181,6 @@ def elastic_ends(beam: Beam, attachment: str) -> tuple[bool, bool]:
     return (0.0 in turned, beam.length in turned)
 
 
-def chain_pencil(chain: Chain) -> FactoredPencil:
-    """K = B^T diag(k) B over the joint angles, and M."""
-    if not chain.plain:
-        from verify.segments.loaded import loaded_pencil
-
-        return loaded_pencil(chain)
-    left, right = chain.walls
-    has_joint = np.concatenate([[left], np.ones(chain.n_segments - 1, dtype=bool), [right]])
-    n = chain.n_segments + 1 - sum(chain.held)
-    mass = mass_matrix(chain) if n > DENSE_UNKNOWNS else mass_matrix(chain, dense=True)
-    return FactoredPencil(
-        n=n,
-        rigid=rigid_shapes(chain),
-        strain=lambda free: joint_angles(chain, free),
-        stiffness=1.0 / chain.compliances[has_joint],
-        strain_matrix=lambda: _strain_matrix(chain),
-        mass_matrix=lambda: mass,
-        bending=chain.first_bending,
-    )
-
-
 def rigid_shapes(chain: Chain) -> Array:
     """The motions without strain that the supports leave, over the free joint positions, (n, 0 to 2)."""
     x = np.concatenate([[0.0], np.cumsum(chain.lengths)])
@@ -265,7 +197,7 @@ def joint_angles(chain: Chain, free: Array) -> Array:
     return np.diff(_between_zeros(slopes, *chain.walls), axis=0)
 
 
-def _strain_matrix(chain: Chain) -> Any:
+def strain_matrix(chain: Chain) -> Any:
     """B of `joint_angles` as a sparse array (m, n)."""
     n = chain.n_segments
     slopes = on_diagonals({0: -1.0 / chain.lengths, 1: 1.0 / chain.lengths}, (n, n + 1))

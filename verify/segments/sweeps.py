@@ -21,6 +21,7 @@ from verify.models.sweeps import (
     swept_response,
 )
 from verify.options import Attachment, Joints, Load, Reading, Theory, Wall
+from verify.segments.assembly import build_chain, chain_pencil, check_set_up
 from verify.segments.linear import (
     check,
     check_settings,
@@ -32,7 +33,7 @@ from verify.segments.linear import (
     swept_shapes,
     swept_turns,
 )
-from verify.segments.links import Chain, build_chain, chain_pencil, check_set_up
+from verify.segments.links import Chain
 from verify.segments.stacks import chain_stack, layout
 
 

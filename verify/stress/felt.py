@@ -32,8 +32,8 @@ def bodies_error(share: float) -> float:
 
     Places are a share of a link from both ends, and inside; powers are told from the nearer end.
     """
+    from verify.segments.assembly import build_chain
     from verify.segments.attached import felt_at
-    from verify.segments.links import build_chain
 
     worst, j = 0.0, np.arange(LINKS + 1.0)
     apart = abs(np.subtract.outer(j, j))
@@ -63,8 +63,8 @@ def bodies_error(share: float) -> float:
 
 def unlike_error(share: float) -> float:
     """Of a parabola and its slope read off links that are not alike, and off a joint by the lever rule."""
+    from verify.segments.assembly import build_chain
     from verify.segments.attached import felt_at
-    from verify.segments.links import build_chain
 
     beam = held("clamped", "free")
     chain = build_chain(beam, LINKS, grading=6.0)
@@ -99,7 +99,7 @@ LOADED: tuple[tuple[Beam, dict[str, Any]], ...] = (
 
 def matrices_error(number: float) -> float:
     """Of the large sparse matrices of a loaded chain, against what its strains and masses say of one motion."""
-    from verify.segments.links import build_chain, chain_pencil
+    from verify.segments.assembly import build_chain, chain_pencil
 
     beam, settings = LOADED[int(number)]
     pencil = chain_pencil(build_chain(beam, 260, **settings))

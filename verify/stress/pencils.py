@@ -216,7 +216,7 @@ CROWDS: tuple[tuple[tuple[str, str], tuple[float, ...]], ...] = (
 def moments_error(number: float) -> float:
     """Of weights of bodies that stand near each other, had back from the moments in the joints that they make."""
     from verify.segments import crowded
-    from verify.segments.links import build_chain
+    from verify.segments.assembly import build_chain
 
     ends, places = CROWDS[int(number)]
     beam, n = held(*ends), 24

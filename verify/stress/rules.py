@@ -89,8 +89,8 @@ def crowd_error(links: float) -> float:
     x^2 (3 y - x) / 6 of forces, x (2 y - x) / 2 or x^2 / 2 of a force and a couple, x of couples, for x < y; and the
     same from the other end.
     """
+    from verify.segments.assembly import build_chain
     from verify.segments.crowded import felt_together
-    from verify.segments.links import build_chain
 
     n, worst = int(links), 0.0
     joints = np.arange(n + 1)

@@ -20,7 +20,7 @@ elements.sweeps:sweep_modes grading=1.0
 segments.linear:solve_modes grading=1.0
 segments.linear:solve_harmonic modal_damping=0.0 joint_dashpot=0.0 grading=1.0
 segments.buckling:buckling_load grading=1.0
-segments.links:build_chain grading=1.0
+segments.assembly:build_chain grading=1.0
 segments.orders:order_of grading=1.0
 segments.sweeps:sweep_harmonic modal_damping=0.0 joint_dashpot=0.0 grading=1.0
 segments.sweeps:sweep_modes grading=1.0
