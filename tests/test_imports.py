@@ -116,6 +116,19 @@ def test_a_model_knows_no_other_model_and_no_judge(model):
         assert {room_of(name) for name in imports_of(path, typing_too=True)} <= {"values", "models", model}, path.name
 
 
+NAMES_OTHERS = {("models.kind", "models.catalogue")}
+"""(who, whom): a model without a verb asks who else has it, to say so."""
+
+
+def test_no_modules_stand_in_a_circle():
+    """Wherever they import each other, at their top or in a function, but for typing alone."""
+    left = {name: imports_of(path) for name, path in modules()}
+    left = {name: {one for one in its if (name, one) not in NAMES_OTHERS} for name, its in left.items()}
+    while ground := {name for name, its in left.items() if not its & set(left)}:
+        left = {name: its for name, its in left.items() if name not in ground}
+    assert not left, f"these import each other in circles, or stand on such: {sorted(left)}"
+
+
 def test_nothing_inside_stands_on_a_face():
     for name, path in modules():
         assert name in FACES or not {room_of(one) for one in imports_of(path)} & {"faces"}, name

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, load, print_json, progress
+from verify.commands.shared import GATE_FAILED, json_alone, load, print_json, progress
 from verify.errors import InputError, printable
 
 if TYPE_CHECKING:

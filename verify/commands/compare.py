@@ -5,8 +5,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, load_first, overridden, print_json, scene_first, whole_number
+from verify.commands.shared import (
+    GATE_FAILED,
+    json_alone,
+    load_first,
+    overridden,
+    print_json,
+    scene_first,
+    whole_number,
+)
 
 if TYPE_CHECKING:
     from verify.identify.told import Compared

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.run import GATE_FAILED
 from verify.commands.shared import (
     DEFAULT,
+    GATE_FAILED,
     is_scene,
     json_alone,
     load_first,

@@ -2,8 +2,8 @@
 
 import click
 
-from verify.commands.run import GATE_FAILED
 from verify.commands.shared import (
+    GATE_FAILED,
     json_alone,
     load,
     overridden,

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands.shared import (
+    GATE_FAILED,
     command_line,
     json_alone,
     load,
@@ -12,8 +13,6 @@ from verify.commands.shared import (
     print_json,
     progress,
 )
-
-GATE_FAILED = 1
 
 
 @click.command()

@@ -13,6 +13,8 @@ from verify.errors import InputError, NoTomlError, raise_all
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
+GATE_FAILED = 1
+"""The exit status where one did."""
 PERCENT = 100
 DEFAULT = "paper"
 """The scene of a command that is told none."""

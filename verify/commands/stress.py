@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, print_json, progress
+from verify.commands.shared import GATE_FAILED, json_alone, print_json, progress
 from verify.errors import InputError
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import msgspec
 
-from verify.commands.run import GATE_FAILED
-from verify.commands.shared import command_line, load, print_json, progress
+from verify.commands.shared import GATE_FAILED, command_line, load, print_json, progress
 from verify.errors import InputError, one_line, raise_all
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from verify.models.compiling import Call
 if TYPE_CHECKING:
     from verify.quantities.chain_arguments import Departing, FromRest, Ridden
     from verify.quantities.motion_arguments import SliderInTime
-    from verify.quantities.motor import Motor
+    from verify.quantities.motor_arguments import Motor
     from verify.scenes.scene import Scene
 
 Calls = Callable[[Any, "Scene"], Iterator[Call]]
@@ -58,7 +58,7 @@ def ridden(a: "Ridden", scene: "Scene") -> Iterator[Call]:
 def motor(a: "Motor", scene: "Scene") -> Iterator[Call]:
     """The scene's slider on feet on a steady beam. Raises InputError where there is none."""
     from verify.motor import warm
-    from verify.quantities.motor import slider_on_feet
+    from verify.quantities.motor_arguments import slider_on_feet
 
     return warm.on_beam(slider_on_feet(a, scene))
 

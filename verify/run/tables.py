@@ -84,7 +84,8 @@ def convergence(scene: Scene, modes: str | None, counts: str | None, rules: Mapp
 
 def motor(scene: Scene, counts: str | None) -> Job:
     """SWR, axis ratio and crest speed over sizes, at the drive's frequency and at each model's best."""
-    from verify.studies.wave import Wave, WaveStudy
+    from verify.studies.wave import WaveStudy
+    from verify.studies.wave_request import Wave
 
     given = _listed(counts, "counts") if counts is not None else (WaveStudy().asked(scene) or Wave()).counts
     sizes = checked(list(given), Counts, "counts")
@@ -101,7 +102,7 @@ def motor(scene: Scene, counts: str | None) -> Job:
 
 def slider(scene: Scene, counts: str | None) -> Job:
     """The slider's displacement, its error and its run time over sizes, all models. Raises InputError."""
-    from verify.studies.slider import ROUNDS
+    from verify.studies.slider_request import ROUNDS
 
     if scene.slider is None or scene.motion is None:
         raise InputError("--slider takes a scene with [slider] and [motion], for instance paper-slider")

@@ -31,7 +31,7 @@ from verify.models.catalogue import MODELS
 from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size, field_size
 from verify.patience import check_work
-from verify.studies.axial_inertia import LINK_STEP_S, STEPPED, AxialInertia, n_stepped, steps_of
+from verify.studies.axial_request import LINK_STEP_S, STEPPED, AxialInertia, n_stepped, steps_of
 from verify.studies.chart import Chart
 from verify.studies.kind import Progress
 from verify.studies.told import Found, Table

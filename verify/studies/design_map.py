@@ -23,7 +23,7 @@ from verify.quantities.kind import Quantity
 from verify.quantities.wave_arguments import Driven, InWindow
 from verify.studies.kind import Progress
 from verify.studies.told import Column, Found, Table
-from verify.studies.wave import around
+from verify.studies.wave_request import around
 from verify.waves.measures import middle_half
 from verify.waves.unit_waves import Gaps, UnitDrive, superposed
 

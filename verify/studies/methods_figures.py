@@ -1,6 +1,5 @@
 """Both ways of driving for a table and a report: over frequency, load and detuning, along the beam, under a slider."""
 
-from collections.abc import Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +11,11 @@ from verify.beam import Beam
 from verify.device import Device
 from verify.errors import ResonanceError
 from verify.exact.closed_forms import frequency_hz
-from verify.models.catalogue import MODELS, discrete
+from verify.models.catalogue import discrete
 from verify.motion.validity import nearest_mode
 from verify.studies.chart import Chart
 from verify.studies.kind import Progress
-from verify.studies.methods_seen import WAYS, Seen, Setting, Way, seen_of, setting_of
+from verify.studies.methods_seen import WAYS, Row, Setting, Way, seen_of, setting_of
 from verify.studies.told import Found, Table
 from verify.units import in_words, time_in_words, unit_of
 from verify.waves.driven import driven, measures
@@ -35,16 +34,6 @@ ALONG = 401
 """Places at which the local standing-wave ratio is read along the beam."""
 TAIL = 0.5
 """Of a slider's run, its end, over which its speed is averaged: the start is over by then."""
-
-
-class Row(msgspec.Struct, frozen=True, kw_only=True):
-    """One condition, both ways; None where the way knows no such condition, or the beam is in resonance."""
-
-    what: str
-    value: float
-    """Hertz off, factor, kilograms or N s/m."""
-    device: Seen | None
-    forces: Seen | None
 
 
 class Ride(msgspec.Struct, frozen=True, kw_only=True):
@@ -367,14 +356,3 @@ def _ridden(slider: "Slider", field: "HarmonicField", periods: int) -> "Motion |
         samples=samples,
         ledger=False,
     )
-
-
-def worst(rows: Sequence[Row], way: Way) -> float | None:
-    """The largest reflection over conditions; None where one is not known."""
-    found = [getattr(row, way) for row in rows]
-    return max(one.reflection for one in found) if all(found) else None
-
-
-def model_title(model: str, count: int | None) -> str:
-    """'49 segments', 'exact beam'."""
-    return f"{count} {MODELS[model].parts}" if count else MODELS[model].title

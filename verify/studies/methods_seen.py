@@ -1,5 +1,6 @@
 """One way of driving in one condition: what is driven, and what is seen of its exact field."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import msgspec
@@ -9,6 +10,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.device import Device
 from verify.errors import ResonanceError
+from verify.models.catalogue import MODELS
 from verify.waves.case import DrivenCase
 from verify.waves.devices import powers
 from verify.waves.driven import driven
@@ -99,3 +101,24 @@ def seen_of(setting: Setting, case: DrivenCase, bench: "Workbench") -> Seen | No
         given=powers(field, case.forces),
         absorbed=taken[0] if setting.device in case.devices else 0.0,
     )
+
+
+class Row(msgspec.Struct, frozen=True, kw_only=True):
+    """One condition, both ways; None where the way knows no such condition, or the beam is in resonance."""
+
+    what: str
+    value: float
+    """Hertz off, factor, kilograms or N s/m."""
+    device: Seen | None
+    forces: Seen | None
+
+
+def worst(rows: Sequence[Row], way: Way) -> float | None:
+    """The largest reflection over conditions; None where one is not known."""
+    found = [getattr(row, way) for row in rows]
+    return max(one.reflection for one in found) if all(found) else None
+
+
+def model_title(model: str, count: int | None) -> str:
+    """'49 segments', 'exact beam'."""
+    return f"{count} {MODELS[model].parts}" if count else MODELS[model].title

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from verify.studies.methods_figures import model_title, worst
-from verify.studies.methods_seen import WAYS, WORDS
+from verify.studies.methods_seen import WAYS, WORDS, model_title, worst
 from verify.studies.told import Column, Table
 from verify.units import in_words, unit_of
 

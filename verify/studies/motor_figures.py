@@ -33,7 +33,7 @@ from verify.patience import check_work
 from verify.studies.chart import Chart
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
-from verify.studies.motor import FREE_RUNS, case_of
+from verify.studies.motor_request import FREE_RUNS, case_of
 from verify.studies.motor_rest import FromRest, rest_runs
 from verify.studies.motor_words import doubts, facts_of, in_short_of
 from verify.studies.told import Found, Table
@@ -41,7 +41,7 @@ from verify.studies.told import Found, Table
 if TYPE_CHECKING:
     from verify.motion.contact import Coupling
     from verify.scenes.scene import Scene
-    from verify.studies.motor import Motor
+    from verify.studies.motor_request import Motor
 
 HELD_PERIODS = 11_520
 """At most, at each held speed, until its means settle."""

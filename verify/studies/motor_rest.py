@@ -24,13 +24,13 @@ from verify.motor.result import uninterrupted
 from verify.options import Links
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
-from verify.studies.motor import HELD, RUNS, case_of, places_from_rest
+from verify.studies.motor_request import HELD, RUNS, case_of, places_from_rest
 from verify.units import in_words, time_in_words, unit_over
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun
     from verify.scenes.scene import Scene
-    from verify.studies.motor import Motor
+    from verify.studies.motor_request import Motor
 
 SURE = 2.0
 """Standard errors from which on a mean is told."""

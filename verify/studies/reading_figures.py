@@ -15,7 +15,7 @@ from verify.studies.chain_rides import Chains
 from verify.studies.chart import Chart
 from verify.studies.conditions import condition_of
 from verify.studies.kind import Progress
-from verify.studies.readings import ReadingsAsk
+from verify.studies.readings_request import NAMES, ReadingsAsk
 from verify.studies.slider_figures import every_step, figures_of, reversed_scene
 from verify.studies.told import Found, Table
 from verify.studies.work_precision import run_once
@@ -27,15 +27,6 @@ LISTS = ("kinematics", "normal", "soft_start_periods", "positions", "forces", "m
 """What is varied, the slowest first."""
 GROUPED_BY = LISTS[:4]
 """A row of the table is one of each of these."""
-NAMES = {
-    "kinematics": "kinematics",
-    "normal": "normal",
-    "soft_start_periods": "start",
-    "positions": "place",
-    "forces": "force",
-    "mu": "mu",
-    "slope": "slope K",
-}
 
 
 class Reading(msgspec.Struct, frozen=True, kw_only=True):

@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING
 
-from verify.studies.reading_figures import NAMES, Reading, ReadingsFound
+from verify.studies.readings_request import NAMES
 from verify.units import time_in_words
 
 if TYPE_CHECKING:
-    from verify.studies.reading_figures import Bound, Group
+    from verify.studies.reading_figures import Bound, Group, Reading, ReadingsFound
 
 UNITS = {"soft_start_periods": " periods", "positions": " m", "forces": " N", "slope": " s/m"}
 

@@ -6,6 +6,7 @@ from verify.models.catalogue import discrete
 from verify.scenes.claims import asks_for_turned
 from verify.scenes.scene import MotionAsk
 from verify.studies.kind import Progress, Study
+from verify.studies.slider_request import DRIFTS, EXACT, ROUNDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
     from verify.studies.slider_figures import SliderFound
     from verify.studies.told import Found
 
-ROUNDS = 7
-"""In which models and sizes take turns for their run times."""
-DRIFTS, EXACT = 2, 2
-"""Runs on the steady wave, both ways; and of the exact beam that errors are relative to, at the step and at half."""
 
 MEASURED = (
     "leave [motion] out, whose runs are measured against that beam, and ask for slider.displacement with model = 'fem' "

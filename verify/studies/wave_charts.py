@@ -8,6 +8,7 @@ from msgspec.structs import replace
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Chart, Line, Map, Marker
 from verify.studies.charting import BROAD, in_units, model_line, numbers, plain_line, sizes_axis
+from verify.studies.wave_movie import magnification, wave_movie
 from verify.units import Unit, unit_of, unit_over
 from verify.waves.operating_point import OFF
 
@@ -29,16 +30,8 @@ MOSTLY = 0.1
 
 def wave_charts(study: "WaveFound") -> tuple[Chart, ...]:
     """Envelopes, ellipses, the wave as it runs, map, figures over sizes."""
-    from verify.studies.wave_movie import wave_movie
-
     moving = wave_movie(study.snapshots, study.ellipses, study.count)
     return _envelopes(study), _ellipses(study), moving, _map(study), _sizes(study)
-
-
-def magnification(ellipses: "tuple[Ellipse, ...]") -> float:
-    """By how much motion along the beam is drawn larger, so that neighbours leave each other room."""
-    across = max(max(map(abs, e.across)) for e in ellipses)
-    return 0.42 * (ellipses[1].x - ellipses[0].x) / across
 
 
 def _damping(study: "WaveFound") -> str:
@@ -186,8 +179,6 @@ def _sizes(study: "WaveFound") -> Chart:
 
 def _best_told(study: "WaveFound") -> str:
     """How far models lie off at the drive and each at its best frequency; what that says of the cause, if it does."""
-    from verify.studies.wave_figures import OffSearch
-
     exact, sized = study.rows[0], [row for row in study.rows if row.count]
     drives = _largest([_apart(row.drive, exact.drive) for row in sized])
     bests = _largest([_apart(row.known_best, exact.known_best) for row in sized])
@@ -195,7 +186,7 @@ def _best_told(study: "WaveFound") -> str:
     told += [] if bests is None else [f"up to {bests:.1e} each at its own best"]
     cause = drives is not None and bests is not None and bests < MOSTLY * drives
     words = ", ".join(told) + (": at the drive it is errors of frequency that spoil the wave." if cause else ".")
-    off = sum(isinstance(row.best, OffSearch) for row in study.rows)
+    off = sum(row.off_search for row in study.rows)
     if not off:
         return words
     return f"{words} Of {off} of {len(study.rows)} models no best frequency is known: the reflection falls {OFF}."

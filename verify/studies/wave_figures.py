@@ -16,7 +16,7 @@ from verify.studies.chart import Chart
 from verify.studies.design_map import Axis, DesignMap, design_map
 from verify.studies.kind import Progress
 from verify.studies.told import Column, Found, Table
-from verify.studies.wave import MAP_STEPS, around
+from verify.studies.wave_request import MAP_STEPS, around
 from verify.waves.case import DrivenCase
 from verify.waves.driven import (
     SEARCH_SPAN,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
     from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
-    from verify.studies.wave import Wave
+    from verify.studies.wave_request import Wave
 
 
 class OffSearch(msgspec.Struct, frozen=True):
@@ -60,6 +60,11 @@ class MotorRow(msgspec.Struct, frozen=True, kw_only=True):
     def known_best(self) -> Operation | None:
         """At the best frequency, where there is one."""
         return self.best if isinstance(self.best, Operation) else None
+
+    @property
+    def off_search(self) -> bool:
+        """Whether it lies beyond the frequencies that were searched."""
+        return isinstance(self.best, OffSearch)
 
 
 SMOOTH = 160

@@ -61,8 +61,6 @@ def _beam(name: str, shot: "Snapshot") -> Line:
 
 def _surface(ellipses: "tuple[Ellipse, ...]") -> Line:
     """Points of the surface on their ellipses."""
-    from verify.studies.wave_charts import magnification
-
     magnified, n = magnification(ellipses), len(ellipses[0].across) - 1
     at = [round(k * n / FRAMES) % n for k in range(1, FRAMES + 1)]
     shifts = tuple(numbers(e.x + magnified * e.across[k] for e in ellipses) for k in at)
@@ -78,3 +76,9 @@ def _surface(ellipses: "tuple[Ellipse, ...]") -> Line:
         size=6.0,
         joined=False,
     )
+
+
+def magnification(ellipses: "tuple[Ellipse, ...]") -> float:
+    """By how much motion along the beam is drawn larger, so that neighbours leave each other room."""
+    across = max(max(map(abs, e.across)) for e in ellipses)
+    return 0.42 * (ellipses[1].x - ellipses[0].x) / across

@@ -18,7 +18,7 @@ from verify.patience import check_work
 from verify.quantities.motion_arguments import SliderInTime
 from verify.quantities.simulated import MODES, motion_case, slider_of
 from verify.studies.kind import Progress
-from verify.studies.slider import EXACT, ROUNDS
+from verify.studies.slider_request import EXACT, ROUNDS
 from verify.studies.told import Found, Table
 from verify.timing import forget, spread
 from verify.units import time_in_words
