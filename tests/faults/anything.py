@@ -18,7 +18,8 @@ from verify.models.catalogue import MODELS
 from verify.models.fields import HarmonicField
 from verify.motion import free_vibration, simulate, step_size
 from verify.segments import turned
-from verify.stress import anything, refused_runs
+from verify.stress.modes import any_beam as anything
+from verify.stress.refused import runs as refused_runs
 from verify.waves import driven, imposed, lumped, operating_point
 from verify.waves.found import TwoWaves
 from verify.waves.medium import Medium

@@ -13,7 +13,7 @@ from verify.models.catalogue import MODELS
 from verify.motion import carried, friction_kernels, kernels
 from verify.motion.stepping import Sliding
 from verify.segments import linear as segment_linear
-from verify.stress import sliders
+from verify.stress.motion import sliders
 
 
 def _anew(patch):

@@ -89,7 +89,7 @@ from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
 from verify.segments import sweeps as segment_sweeps
-from verify.stress import turns
+from verify.stress.chain import turned as turns
 from verify.waves import measures, poles, series, unit_waves, window
 
 

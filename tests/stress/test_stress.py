@@ -18,12 +18,12 @@ from verify.models import driven_pencil, eigen
 from verify.run.runner import run_scene
 from verify.scenes.scene import load_scene
 from verify.segments import linear as segment_linear
-from verify.stress.catalogue import row, rows
+from verify.stress.catalogue import FAMILIES, row, rows
 from verify.stress.charts import takes_over
-from verify.stress.decimals import PI, asinh, cantilever_root, cos, exp, sin, sinh
-from verify.stress.extended import Divided, hermite, links, relative_error
 from verify.stress.figures import StressFound, told
 from verify.stress.kind import Floor, Growth, Refusal, exponent
+from verify.stress.references.decimals import PI, asinh, cantilever_root, cos, exp, sin, sinh
+from verify.stress.references.extended import Divided, hermite, links, relative_error
 from verify.stress.refusals import Case, refusals
 from verify.words import work_in_words
 
@@ -31,17 +31,10 @@ KEYS = {"id", "promise", "measured", "held"}
 
 
 def light():
-    families = (
-        *("sizes", "scales", "standing", "drive", "many", "laws", "books", "anything", "written", "moving"),
-        *("moved", "tableaux", "waves", "resonances", "sheared", "choices", "rules", "felt", "stacked"),
-        *("coiled", "bent", "walls", "let_go", "feet", "thrown", "said", "verdicts", "readings", "sliders"),
-        *("slips", "stretched", "every", "best", "listed", "carried", "ridden", "mixed", "sought", "edges"),
-        *("shown", "verges", "allowed", "verbs", "ways", "damped", "means", "searches", "layouts", "heard"),
-        *("shaped", "worded", "signed", "solved", "folds", "clasped", "pencils", "enough", "yielded", "tried"),
-        *("answered", "before"),
-    )
-    families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
+    """Quick rows but for those of a few seconds, which their gates run."""
+    heavy = {"modes.nearly_floating", "motion.long_runs", "motion.friction", "chain.turned", "limits.growth"}
     slow = {"segments-parts", "elements-parts"}
+    families = (name for name in FAMILIES if name not in heavy)
     every = [one for name in families for one in import_module(f"verify.stress.{name}").ROWS]
     return [one.id for one in every if one.quick and one.id not in slow]
 
@@ -283,7 +276,7 @@ def test_json_has_rows_with_their_keys_and_the_status_is_that_of_the_rows(capsys
     assert all(
         set(one) >= KEYS | {"margin", "value", "seconds", "beside", "kind", "unit", "title"} for one in data["rows"]
     )
-    monkeypatch.setattr("verify.stress.standing.frequency", lambda *words: 3.0)
+    monkeypatch.setattr("verify.stress.modes.attached.frequency", lambda *words: 3.0)
     assert status_of(words) == 1
     taut = json.loads(capsys.readouterr().out)["rows"][0]
     assert not taut["held"]

@@ -6,31 +6,25 @@ from importlib import import_module
 from verify.errors import InputError, near_name
 from verify.stress.kind import Row
 
-FAMILIES = (
-    *(
-        "sizes",
-        "scales",
-        "standing",
-        "floating",
-        "drive",
-        "friction",
-        "turns",
-        "runs",
-        "growth",
-        "many",
-        "laws",
-        "books",
+GROUPS = {
+    "modes": (
+        *("sizes", "scales", "attached", "nearly_floating", "many_at_once", "laws", "all_supports"),
+        *("any_beam", "written_out", "stacks", "mixed_stacks", "pencils", "felt", "small_systems", "searches", "rules"),
     ),
-    *("anything", "written", "moving", "moved", "tableaux", "waves", "sheared", "resonances"),
-    *("choices", "rules", "felt", "stacked", "coiled", "bent", "walls", "let_go", "feet", "thrown"),
-    *("said", "verdicts", "readings", "sliders", "slips", "stretched", "every", "best", "listed"),
-    *("carried", "ridden", "mixed", "sought", "edges", "shown"),
-    *("verges", "allowed", "verbs", "ways", "damped", "means", "searches"),
-    *("layouts", "heard", "shaped", "worded", "signed", "solved"),
-    *("folds", "clasped", "pencils", "enough", "yielded", "tried", "answered", "before"),
-    *("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs"),
-)
-"""Modules of this room with `ROWS`, in the order of the table."""
+    "waves": ("drives", "closed_forms", "resonances", "shear", "best_drives", "two_waves", "readings"),
+    "motion": (
+        *("long_runs", "in_time", "let_go", "damped_books", "phasors", "told_of_runs"),
+        *("friction", "friction_branches", "sliders", "braked", "tableaux"),
+    ),
+    "chain": ("turned", "books", "written_out", "coils", "beyond_buckling", "folds", "stretching", "riders"),
+    "motor": ("feet", "hard_points", "means", "two_beams"),
+    "judge": ("sizes_chosen", "sizes_enough", "side_by_side", "error_laws", "sought", "words", "defaults"),
+    "limits": ("as_written", "judgements", "edges", "ways", "growth"),
+    "lists": ("members", "layouts", "shapes", "clamps", "sizes_in_turn", "tables", "answers", "beforehand"),
+    "refused": ("verbs", "modes", "waves", "motion", "chain", "runs"),
+}
+"""Folders of this room and their modules with `ROWS`, in the order of the table."""
+FAMILIES = tuple(f"{group}.{module}" for group, modules in GROUPS.items() for module in modules)
 
 
 @cache

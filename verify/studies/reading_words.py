@@ -37,7 +37,7 @@ def start_words(periods: float) -> str:
     return f"soft, {periods:g}" if periods else "at once"
 
 
-def searched_words(study: ReadingsFound) -> str:
+def searched_words(study: "ReadingsFound") -> str:
     """What was searched: all lists, how many readings and runs, on what."""
     lists = "; ".join(
         f"{NAMES[name]} {', '.join(v if isinstance(v, str) else f'{v:g}' for v in values)}{UNITS.get(name, '')}"
@@ -69,12 +69,12 @@ def bound_words(bound: "Bound") -> str:
     )
 
 
-def legend(study: ReadingsFound) -> str:
+def legend(study: "ReadingsFound") -> str:
     """'A to-the-left, B mean-speed': which claim a letter is."""
     return ", ".join(f"{letter(i)} {claim.id}" for i, claim in enumerate(study.claims))
 
 
-def turn_words(study: ReadingsFound) -> list[tuple[str, str]]:
+def turn_words(study: "ReadingsFound") -> list[tuple[str, str]]:
     """(letter and id of a claim, what its verdict turns with)."""
     lines = []
     for i, claim in enumerate(study.claims):

@@ -1,0 +1,1 @@
+"""Rows of what is said of models: sizes, brackets, error laws, words."""

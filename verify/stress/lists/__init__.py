@@ -1,0 +1,1 @@
+"""Rows of `compare`: lists of frequencies and shapes of somebody else's."""

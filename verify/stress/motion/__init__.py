@@ -1,0 +1,1 @@
+"""Rows of linear beams in time, friction and sliders."""

@@ -1,0 +1,1 @@
+"""Rows of sliders that may leave their beam."""

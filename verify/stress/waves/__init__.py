@@ -1,0 +1,1 @@
+"""Rows of driven fields and of what is measured in them."""
