@@ -15,7 +15,7 @@ from verify.cores import jobs, start
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-Say = Callable[[str], None]
+Words = TypeVar("Words")
 
 
 class Died(msgspec.Struct, frozen=True):
@@ -31,7 +31,7 @@ class _Running(msgspec.Struct, frozen=True):
 
 
 def each_apart(
-    work: Callable[[Item, Say], Result], items: Sequence[Item], hear: Callable[[int, str], None]
+    work: Callable[[Item, Callable[[Words], None]], Result], items: Sequence[Item], hear: Callable[[int, Words], None]
 ) -> list[Result | Died]:
     """`work` of every item, begun in their order; what it says on the way reaches `hear` with the item's number.
 
@@ -54,7 +54,9 @@ def each_apart(
     return [found[index] for index in range(len(items))]
 
 
-def _begin(work: Callable[[Item, Say], Result], index: int, item: Item, running: dict[Connection, _Running]) -> None:
+def _begin(
+    work: Callable[[Item, Callable[[Words], None]], Result], index: int, item: Item, running: dict[Connection, _Running]
+) -> None:
     """A process that does one item, among those that run by the pipe on which it speaks."""
     from multiprocessing import Pipe
 
@@ -70,7 +72,7 @@ def _begin(work: Callable[[Item, Say], Result], index: int, item: Item, running:
     writing.close()
 
 
-def _work(work: Callable[[Item, Say], Result], item: Item, writing: Connection) -> NoReturn:
+def _work(work: Callable[[Item, Callable[[Words], None]], Result], item: Item, writing: Connection) -> NoReturn:
     """In the child: nothing of the parent's is flushed, closed or told at its end."""
     status = 1
     try:
@@ -82,7 +84,7 @@ def _work(work: Callable[[Item, Say], Result], item: Item, writing: Connection) 
 
 
 def _hear(
-    running: dict[Connection, _Running], found: dict[int, Result | Died], hear: Callable[[int, str], None]
+    running: dict[Connection, _Running], found: dict[int, Result | Died], hear: Callable[[int, Words], None]
 ) -> None:
     """Take what is said until a process is done or has died."""
     from multiprocessing.connection import wait

@@ -36,9 +36,14 @@ class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def __post_init__(self) -> None:
         settle(self)
-        for name in ("stiffness", "tangential_stiffness", "layer_stiffness", "layer_tangential_stiffness"):
+        of_foot, of_layer = "N/m", "N/m for each metre of foot"
+        for name, unit in (
+            ("stiffness", of_foot),
+            ("tangential_stiffness", of_foot),
+            ("layer_stiffness", of_layer),
+            ("layer_tangential_stiffness", of_layer),
+        ):
             if (value := getattr(self, name)) is not None:
-                unit = "N/m for each metre of foot" if name.startswith("layer") else "N/m"
                 check_number(f"slider.contact.{name}", value, unit, above=0)
         check_number("slider.contact.damping", self.damping, "N s/m", at_least=0)
         check_number("slider.contact.restitution", self.restitution, "speed after over speed before", at_least=0)

@@ -71,7 +71,7 @@ def run_several(
     _bring_in(draws=folder is not None)
     with progress(sum(one.steps for one in asked), quiet=as_json) as step:
         hears = tuple(hearers)
-        ended = each_apart(_run, asked, lambda index, words: _tell(step, hears, asked[index].name, words))
+        ended = each_apart(_run, asked, lambda index, said: _tell(step, hears, asked[index].name, said))
     done = {one.given: _ended(one, end) for one, end in zip(asked, ended, strict=True)}
     runs = [done.get(name) or found[name] for name in found]
     every = tuple(run for run in runs if isinstance(run, Ran))
@@ -115,17 +115,20 @@ def _sentences(run: Ran) -> tuple[str, ...]:
     )
 
 
-COMPILES = "kernels: "
-"""Before what is said of compiling, which is no step."""
+class Said(msgspec.Struct, frozen=True):
+    """What a scene says on its way: the step that it takes, or that it compiles, which is none."""
+
+    words: str
+    compiles: bool = False
 
 
-def _tell(step: Callable[[str], None], hears: tuple[Callable[[str], None], ...], name: str, words: str) -> None:
-    """Hand on what a scene says: a step, or that it compiles."""
-    if not words.startswith(COMPILES):
-        step(f"{name}: {words}")
+def _tell(step: Callable[[str], None], hears: tuple[Callable[[str], None], ...], name: str, said: Said) -> None:
+    """Hand it on."""
+    if not said.compiles:
+        step(f"{name}: {said.words}")
         return
     for hear in hears:
-        hear(words.removeprefix(COMPILES))
+        hear(said.words)
 
 
 def _loaded(
@@ -194,14 +197,14 @@ def _point(line: Any) -> Any:
     return line(name="", x=(0.0, 1.0), y=(0.0, 1.0), colour="#000000")
 
 
-def _run(asked: Asked, say: Callable[[str], None]) -> Ran:
+def _run(asked: Asked, say: Callable[[Said], None]) -> Ran:
     """One scene, its report written. Raises nothing but what ends a process."""
     from verify.models.compiling import hearers, told
 
     before = tuple(hearers)
-    hearers[:] = [lambda words: say(COMPILES + (words and f"{asked.name}: {words}"))]  # the bar is the parent's
+    hearers[:] = [lambda words: say(Said(words and f"{asked.name}: {words}", compiles=True))]  # the bar is the parent's
     try:
-        ran = _ran(asked, say)
+        ran = _ran(asked, lambda words: say(Said(words)))
     except InputError as error:
         return _refused(asked.name, error.sentences)
     except BrokenPipeError:

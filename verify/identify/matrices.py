@@ -218,6 +218,8 @@ def rod(beam: Beam, count: int, n_modes: int, *, wall: str) -> Array:
 NODE_INERTIAS = {"lumped": 0.0, "lumped-rotary": 1.0 / 24.0, "hrz": 1.0 / 78.0}
 """Rotary inertia of half an element at its node over rho A l^3: none, the half element's own, and that of Hinton, Rock
 and Zienkiewicz, Earthquake Eng. Struct. Dyn. 4 (1976)."""
+LINEAR = ("linear", "linear-lumped")
+"""Masses of elements whose deflection and turn are linear: consistent, and in the nodes."""
 
 
 def elements(beam: Beam, count: int, n_modes: int, *, mass: str, theory: str) -> Array:
@@ -238,8 +240,8 @@ def elements(beam: Beam, count: int, n_modes: int, *, mass: str, theory: str) ->
     difference = diags_array([-np.ones(n), np.ones(n)], offsets=[0, 1], shape=(n, n + 1)).tocsr()
     mean = diags_array([np.full(n, 0.5), np.full(n, 0.5)], offsets=[0, 1], shape=(n, n + 1)).tocsr()
     strain = block_array([[None, difference[:, turns]], [slopes[:, free], -mean[:, turns]]]).tocsr()
-    bending, linear = line.stiffnesses / line.lengths, mass.startswith("linear")
-    cubic = np.zeros(n) if linear else line.lengths / (12.0 * line.stiffnesses)
+    bending = line.stiffnesses / line.lengths
+    cubic = np.zeros(n) if mass in LINEAR else line.lengths / (12.0 * line.stiffnesses)
     stiffness = np.append(bending, 1.0 / (cubic + 1.0 / (line.shear * line.lengths)))
     pencil = _pencil(strain, stiffness, _node_mass(line, mass, free, turns), _rigid(line, free, turns))
     return frequencies_hz(pencil, beam, line, n_modes)

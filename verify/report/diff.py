@@ -32,6 +32,11 @@ class GateChange(msgspec.Struct, frozen=True, kw_only=True):
         return bool(self.before and self.after and self.before.passed is True and self.after.passed is False)
 
     @property
+    def fails_now(self) -> bool:
+        """Whether it fails and did not, held before or not judged."""
+        return bool(self.after and self.after.passed is False and not self.same_verdict)
+
+    @property
     def unjudged(self) -> bool:
         """Whether it was held, and is gone or does not apply."""
         return bool(self.before and self.before.passed and (self.after is None or self.after.passed is None))

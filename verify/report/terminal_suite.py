@@ -11,7 +11,7 @@ from verify.report.terminal import Hyphenated, Terminal
 from verify.words import seconds_in_words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Container, Iterable
 
     from verify.report.diff import Differences
     from verify.report.suite import Card, Refused, Suite
@@ -56,7 +56,8 @@ def print_differences(found: "Differences", page: Path | None) -> None:
         if one.gates:
             heads = ("gate", "verdict", "measured", "expected", "of band")
             rows = ((gate.id, gate.verdict, gate.measured, gate.expected, gate.share) for gate in one.gates)
-            console.print(_table(heads, rows))
+            failed = {i for i, gate in enumerate(one.gates) if gate.fails_now}
+            console.print(_table(heads, rows, failed))
         for title, changes in (("answers and facts", one.said), ("versions", one.versions), ("inputs", one.inputs)):
             if changes:
                 told = ((change.what, change.before or "–", change.after or "–") for change in changes)
@@ -69,11 +70,12 @@ def print_differences(found: "Differences", page: Path | None) -> None:
         console.print(f"report: {page}", soft_wrap=True, markup=False)
 
 
-def _table(heads: tuple[str, ...], rows: "Iterable[tuple[str, ...]]") -> Table:
+def _table(heads: tuple[str, ...], rows: "Iterable[tuple[str, ...]]", failed: "Container[int]" = ()) -> Table:
+    """Rows under heads; those whose numbers are `failed` stand out."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for head in heads:
         table.add_column(head, overflow="fold")
-    for name, *cells in rows:
-        style = "bold red" if cells[0].endswith("to FAIL") else ""
+    for i, (name, *cells) in enumerate(rows):
+        style = "bold red" if i in failed else ""
         table.add_row(Hyphenated(name), *(Text(cell, style=style) for cell in cells))
     return table

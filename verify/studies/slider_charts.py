@@ -123,14 +123,13 @@ def _books(study: "SliderFound") -> tuple[Chart, ...]:
         "turning and gravity on the slider": ledger.turned,
         "friction on the beam": ledger.contact_on_beam,
         "normal reaction on the beam": ledger.normal_on_beam,
-        "missed by the books": ledger.residual,
     }
-    told = [(name, value) for name, value in entries.items() if value or name.startswith("missed")][::-1]
+    told = [("missed by the books", ledger.residual), *[one for one in entries.items() if one[1]][::-1]]
     unit = unit_over((value for _, value in told), "J")
     bars = Bars(
         names=tuple(name for name, _ in told),
         values=tuple(unit.factor * value for _, value in told),
-        colours=tuple(GREY if name.startswith("missed") else SLIDER for name, _ in told),
+        colours=(GREY, *[SLIDER] * (len(told) - 1)),
         words=tuple(f"{unit.factor * value:.3g}" for _, value in told),
     )
     return (
