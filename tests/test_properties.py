@@ -277,7 +277,7 @@ def test_any_sensible_wave_is_a_figure_or_a_sentence(asked, ends):
 def test_any_sweep_gives_a_map_or_a_sentence(asked, ends, sweeps):
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import Drive, Scene, SceneForce
-    from verify.studies.design_map import design_map, parse_axis
+    from verify.studies.wave.design_map import design_map, parse_axis
 
     beam = replace(BASE, supports=ends)
     far = SceneForce(position=0.03, measured_from="right", phase_deg=90.0)

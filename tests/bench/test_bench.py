@@ -124,7 +124,7 @@ def test_integrators_of_the_chain_have_their_orders(moving):
 
 def test_the_slider_is_that_of_the_work_against_error(moving):
     """The same runs as `verify table --slider`, and the same reference."""
-    from verify.studies.work_precision import work_of
+    from verify.studies.slider.work_precision import work_of
 
     work = work_of(strip(), (30, 60))
     for one in work.rows:
@@ -264,7 +264,7 @@ def test_a_slider_under_a_step_load_is_asked_for_no_order(soft, due):
 
 @pytest.mark.parametrize(("added", "due"), [({}, 4), ({"section": [{"length": 0.15}, {"length": 0.26}]}, 2)])
 def test_run_times_over_the_error_of_a_slider_know_the_order_that_is_due(added, due):
-    from verify.studies.work_precision import work_of
+    from verify.studies.slider.work_precision import work_of
 
     scene = strip(beam=STRIP["beam"] | added, motion={"duration": 3e-4, "soft_start_periods": 0.2})
     assert work_of(scene, (30,)).orders == {"segment": due, "fem": 4}

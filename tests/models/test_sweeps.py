@@ -23,7 +23,7 @@ from verify.models import driven_pencil
 from verify.models.catalogue import MODELS
 from verify.models.fields import phasor
 from verify.scenes.scene import load_scene
-from verify.studies.wave_figures import case_on
+from verify.studies.wave.figures import case_on
 from verify.waves.driven import quietest_drive
 
 BEAM = Beam(length=0.47, width=0.017, thickness=0.0012, youngs_modulus=71e9, density=2710.0)

@@ -14,7 +14,7 @@ from verify.motor.figures import at_speed, no_load
 from verify.motor.gripping import dragged_at
 from verify.motor.withheld import not_settled
 from verify.slider import Contact, Foot, Slider
-from verify.studies.motor_words import unsettled
+from verify.studies.motor.words import unsettled
 
 MASS, MU, PRELOAD, WAVE = 0.015, 0.23, 0.31, 2.6e-7
 STIFF, DASHPOT, GRIP = 6.1e4, 8.0, 3.3e5

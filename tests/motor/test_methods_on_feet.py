@@ -6,7 +6,7 @@ from msgspec.structs import replace
 from verify.judge.workbench import Workbench
 from verify.scenes.scene import load_scene
 from verify.slider import Slider
-from verify.studies.methods_figures import methods_study
+from verify.studies.methods.figures import methods_study
 
 
 def rides_of(scene):

@@ -199,7 +199,7 @@ def test_the_report_of_a_wave_shows_envelopes_ellipses_map_and_the_motor_over_si
 
 def wave_map(study):
     """The map's chart: (caption, axis of phases, the map, its points)."""
-    from verify.studies.wave_charts import wave_charts
+    from verify.studies.wave.charts import wave_charts
 
     found = next(chart for chart in wave_charts(study) if chart.id == "wave-map")
     return found.caption, found.y, found.map, found.lines
@@ -208,7 +208,7 @@ def wave_map(study):
 def small_study(*overrides):
     from verify import load_scene
     from verify.judge.workbench import Workbench
-    from verify.studies.wave_figures import wave_study
+    from verify.studies.wave.figures import wave_study
 
     quick = ("wave.counts=[49]", "wave.frequency_hz=4200,4300,11", "wave.phase_deg=0,180,13")
     scene = load_scene("paper-wave", last_of_each(*quick, *overrides))
@@ -338,9 +338,9 @@ def test_a_real_browser_puts_its_layer_on_every_chart(request, tmp_path, name, c
 
 def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(titanium_strip):
     from verify.judge.workbench import Workbench
-    from verify.studies.convergence import Convergence
-    from verify.studies.convergence_figures import convergence
-    from verify.studies.mode_charts import mean_in_words
+    from verify.studies.modes.charts import mean_in_words
+    from verify.studies.modes.convergence import Convergence
+    from verify.studies.modes.convergence_figures import convergence
 
     bench = Workbench(titanium_strip)
     low = convergence(bench, Convergence(modes=(3, 7), counts=(12, 24)))
@@ -353,9 +353,9 @@ def test_the_mean_of_a_chain_at_the_literatures_wall_has_the_walls_order():
     """Segments of order 2 and elements of order 4: the mean halves the former's error and cancels nothing."""
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import load_scene
-    from verify.studies.convergence import Convergence
-    from verify.studies.convergence_figures import convergence
-    from verify.studies.mode_charts import mean_in_words
+    from verify.studies.modes.charts import mean_in_words
+    from verify.studies.modes.convergence import Convergence
+    from verify.studies.modes.convergence_figures import convergence
 
     bench = Workbench(load_scene("steel-cantilever").beam)
     found = convergence(bench, Convergence(modes=(3,), counts=(30, 60), wall="half"))
@@ -438,7 +438,7 @@ def test_shapes_are_those_of_the_scenes_theory():
     from verify import load_scene
     from verify.judge.variants import Variant
     from verify.judge.workbench import Workbench
-    from verify.studies.shape_charts import shapes_chart
+    from verify.studies.modes.shape_charts import shapes_chart
 
     bench = Workbench(load_scene("thick-bar").beam)
     variants = (Variant("fem", (("theory", "timoshenko"),)),)

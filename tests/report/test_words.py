@@ -27,7 +27,7 @@ EXAMPLES = ("plain.py", "design_map.py")
 def words_of_the_report():
     """(where, text) of every sentence that is printed: constants of the code, docstrings apart, and the template."""
     package = Path(verify.__file__).parent
-    shown = [*(package / "report").glob("*.py"), *(package / "studies").glob("*.py"), package / "words.py"]
+    shown = [*(package / "report").glob("*.py"), *(package / "studies").rglob("*.py"), package / "words.py"]
     for path in (path for path in shown if path.name not in EXAMPLES):
         specs = {
             id(part)

@@ -18,7 +18,7 @@ from verify.run.runner import n_steps, run_scene, workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import load_scene, packaged_scenes, scene_type
 from verify.studies.catalogue import STUDIES, asked_of
-from verify.studies.slider import SliderStudy
+from verify.studies.slider.study import SliderStudy
 
 
 @pytest.mark.parametrize("scene", packaged_scenes())

@@ -17,7 +17,7 @@ from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.report.plain import run_as_plain
 from verify.run.plan import plan_scene
 from verify.run.runner import n_steps, workbench_for
-from verify.studies import axial_figures
+from verify.studies.axial_inertia import figures as axial_figures
 from verify.words import work_in_words
 
 SMALL = (

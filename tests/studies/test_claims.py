@@ -17,7 +17,7 @@ from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
 from verify.section import Section
 from verify.studies.claims import found_words
-from verify.studies.work_precision import (
+from verify.studies.slider.work_precision import (
     Comparison,
     NotCompared,
     Work,
@@ -330,7 +330,7 @@ def test_the_time_of_a_run_is_the_processors_and_nothing_is_kept_from_the_one_be
     from time import sleep
 
     from verify.motion import kernels
-    from verify.studies import work_precision
+    from verify.studies.slider import work_precision
 
     slide, forget, told = kernels.slide, work_precision.forget, []
 
@@ -369,8 +369,8 @@ def test_the_time_of_a_run_is_the_processors_and_nothing_is_kept_from_the_one_be
 )
 def test_a_table_of_one_way_runs_says_where_the_scene_s_slider_is_felt_and_compares_nothing(slider, begins):
     """Of 20 g on the paper's beam `verify plan` says two-way: its errors are not those of one that is not felt."""
-    from verify.studies import work_precision
-    from verify.studies.slider_tables import work_table
+    from verify.studies.slider import work_precision
+    from verify.studies.slider.tables import work_table
 
     scene = load_scene("paper-slider")
     scene = replace(scene, readings=None, slider=replace(scene.slider, **slider))
@@ -389,8 +389,9 @@ def test_a_table_of_one_way_runs_says_where_the_scene_s_slider_is_felt_and_compa
 
 def test_a_slider_that_leaves_is_said_to_have_left_and_its_times_are_not_compared(monkeypatch):
     """Errors were said to jump between 0 and 0, or the slider not to move, where it was gone before a sample."""
-    from verify.studies import slider_figures, work_precision
     from verify.studies.conditions import condition_of
+    from verify.studies.slider import figures as slider_figures
+    from verify.studies.slider import work_precision
 
     scene = load_scene("paper-slider")
     slider = replace(scene.slider, position=scene.beam.length - 4e-4, speed=0.9)
@@ -493,7 +494,7 @@ read = "stated"
 
 
 def test_friction_that_sticks_allows_what_mu_static_does(tmp_path):
-    from verify.studies.slider_figures import slider_study
+    from verify.studies.slider.figures import slider_study
 
     path = stranger(tmp_path)
     path.write_text(path.read_text("utf-8").replace("slope = 300", 'law = "coulomb"\nmu_static = 0.9'), "utf-8")
@@ -503,7 +504,7 @@ def test_friction_that_sticks_allows_what_mu_static_does(tmp_path):
 
 
 def test_a_slider_that_leaves_the_steady_wave_has_no_mean_speed_there(tmp_path):
-    from verify.studies.slider_figures import slider_study
+    from verify.studies.slider.figures import slider_study
 
     path = stranger(tmp_path)
     path.write_text(path.read_text("utf-8").replace("slope = 300", "slope = 300\nspeed = 3.0"), "utf-8")

@@ -27,7 +27,7 @@ def test_a_map_spans_a_tenth_below_and_above_the_scenes_own_drive():
 
 
 def test_an_axis_alone_spans_the_drive_too():
-    from verify.studies.design_map import parse_axis
+    from verify.studies.wave.design_map import parse_axis
 
     axis = parse_axis("frequency_hz", 1730.0)
     assert (axis.values[0], axis.values[-1], len(axis.values)) == (pytest.approx(1557.0), pytest.approx(1903.0), 241)

@@ -11,8 +11,8 @@ from verify.run.plan import plan_scene
 from verify.run.runner import run_scene
 from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
-from verify.studies.methods import Methods, MethodsStudy
-from verify.studies.methods_figures import methods_study, slider_speed
+from verify.studies.methods.figures import methods_study, slider_speed
+from verify.studies.methods.study import Methods, MethodsStudy
 from verify.units import unit_of
 from verify.waves.absorber import matched_device
 from verify.waves.devices import field_with_devices

@@ -27,10 +27,10 @@ from verify.studies.charting import (
     TIMOSHENKO,
     other_line,
 )
-from verify.studies.convergence import Convergence
-from verify.studies.convergence_figures import Cell, ConvergenceFound, Row, _local_order, convergence
-from verify.studies.spectrum import Spectrum
-from verify.studies.spectrum_figures import spectrum
+from verify.studies.modes.convergence import Convergence
+from verify.studies.modes.convergence_figures import Cell, ConvergenceFound, Row, _local_order, convergence
+from verify.studies.modes.spectrum import Spectrum
+from verify.studies.modes.spectrum_figures import spectrum
 
 THICK = Workbench(load_scene("thick-bar").beam)
 

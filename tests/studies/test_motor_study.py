@@ -16,12 +16,12 @@ from verify.report.beam_drawing import beam_drawing
 from verify.report.plain import run_as_plain
 from verify.run.plan import plan_scene
 from verify.run.runner import n_steps
-from verify.studies import motor_figures
-from verify.studies.motor_figures import motor_study
-from verify.studies.motor_request import case_of
-from verify.studies.motor_rest import FromRest, RestField, RestHeld, what_stands
-from verify.studies.motor_tables import at_speed_as_plain
-from verify.studies.motor_words import doubts, in_short_of
+from verify.studies.motor import figures as motor_figures
+from verify.studies.motor.figures import motor_study
+from verify.studies.motor.from_rest import FromRest, RestField, RestHeld, what_stands
+from verify.studies.motor.request import case_of
+from verify.studies.motor.tables import at_speed_as_plain
+from verify.studies.motor.words import doubts, in_short_of
 
 SMALL = (
     'motor.models=["segment"]',

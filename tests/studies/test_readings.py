@@ -11,8 +11,8 @@ from verify.chain.stretching import simulate_elastic
 from verify.chain.system import build_system
 from verify.errors import InputError
 from verify.motion.figures import mean
-from verify.studies.chain_rides import Chains
-from verify.studies.reading_figures import chain_reading, reading, readings_study
+from verify.studies.readings.chain_rides import Chains
+from verify.studies.readings.figures import chain_reading, reading, readings_study
 
 SCENE = load_scene("paper-slider")
 LENGTH, PLACES = 0.5, (0.0116, 0.5 - 0.0116)
@@ -160,8 +160,8 @@ def test_a_chain_under_small_forces_reads_as_the_linear_one():
 def test_means_are_the_balances_of_the_run():
     """Mean friction is m dv / t in the tangential kinematics, the slope at the end the mean of the surface's speed."""
     from verify.motion.figures import RUN_FIGURES
-    from verify.studies.slider_figures import every_step
-    from verify.studies.work_precision import run_once
+    from verify.studies.slider.figures import every_step
+    from verify.studies.slider.work_precision import run_once
 
     scene = as_read(slope=70.0, mu=0.3, place=0.231, soft=2.0)
     run = run_once(scene, "analytic", None, samples=every_step(scene))
@@ -247,7 +247,7 @@ def test_a_slider_that_leaves_the_beam_is_no_reading_of_anything():
 
 
 def test_readings_without_claims_are_figures_without_verdicts():
-    from verify.studies.reading_words import met_words, searched_words, turn_words
+    from verify.studies.readings.words import met_words, searched_words, turn_words
 
     found = studied(replace(small(positions=(), shown=0), claim=()))
     assert found.n_runs == len(found.readings) == 8
@@ -292,8 +292,8 @@ def test_too_many_readings_are_counted_before_they_are_refused():
 
 
 def test_a_steady_beam_has_no_start_among_what_is_searched():
-    from verify.studies.reading_figures import searched_of
-    from verify.studies.reading_words import searched_words
+    from verify.studies.readings.figures import searched_of
+    from verify.studies.readings.words import searched_words
 
     scene = small(positions=(), mu=(), kinematics=(), soft_start_periods=(), forces=(), chain=False, shown=0)
     steady = replace(scene, motion=replace(scene.motion, start="steady", soft_start_periods=0.0))

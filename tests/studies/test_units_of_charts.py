@@ -14,7 +14,7 @@ from verify.run.runner import workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
 from verify.scenes.sections import SECTIONS
-from verify.studies.axial_figures import axial_study
+from verify.studies.axial_inertia.figures import axial_study
 from verify.studies.told import Column, Table
 from verify.units import Unit, in_words, time_in_words, unit_of, unit_over
 

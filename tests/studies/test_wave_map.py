@@ -7,8 +7,8 @@ from verify import load_scene
 from verify.judge.workbench import Workbench
 from verify.report.plots import _map_words
 from verify.studies.chart import Map
-from verify.studies.wave_charts import CLIPPED, wave_charts
-from verify.studies.wave_figures import wave_study
+from verify.studies.wave.charts import CLIPPED, wave_charts
+from verify.studies.wave.figures import wave_study
 
 FIRST = 17.0
 

@@ -16,14 +16,14 @@ from verify.run.runner import run_scene, workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
 from verify.slider import changed
-from verify.studies.axial_figures import axial_study
-from verify.studies.sensitivity import Sensitivity
-from verify.studies.sensitivity_figures import sensitivity
-from verify.studies.slider_figures import places_of, slider_study
-from verify.studies.slider_movie import slider_movie
-from verify.studies.wave_charts import wave_charts
-from verify.studies.wave_figures import MotorRow, OffSearch, motor_rows_table, wave_study
-from verify.studies.work_precision import run_once
+from verify.studies.axial_inertia.figures import axial_study
+from verify.studies.modes.sensitivity import Sensitivity
+from verify.studies.modes.sensitivity_figures import sensitivity
+from verify.studies.slider.figures import places_of, slider_study
+from verify.studies.slider.movie import slider_movie
+from verify.studies.slider.work_precision import run_once
+from verify.studies.wave.charts import wave_charts
+from verify.studies.wave.figures import MotorRow, OffSearch, motor_rows_table, wave_study
 from verify.waves.driven import Operation
 from verify.words import work_in_words
 

@@ -22,8 +22,8 @@ from verify.quantities.cases import driven_case
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.quantities.wave_arguments import Sensitivity
 from verify.segments import linear as segment_model
-from verify.studies.design_map import Axis, design_map, parse_axis
-from verify.studies.wave_figures import motor_row
+from verify.studies.wave.design_map import Axis, design_map, parse_axis
+from verify.studies.wave.figures import motor_row
 from verify.waves import measures as travelling_wave
 from verify.waves.driven import own_wavenumber
 from verify.waves.imposed import driven_field

@@ -13,7 +13,7 @@ from verify.models.eigen import solve_seconds
 from verify.models.kind import Model
 from verify.motion.starting import grown_in_words
 from verify.motion.stepping import slider_seconds
-from verify.studies.work_precision import exact_way, run_once
+from verify.studies.slider.work_precision import exact_way, run_once
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene

@@ -14,8 +14,8 @@ from verify.scenes.given import whole_numbers
 from verify.scenes.scene import Scene
 from verify.scenes.toml import given_arguments, literal
 from verify.studies.catalogue import STUDIES, asked_of
-from verify.studies.convergence import Convergence, ConvergenceStudy, Counts
 from verify.studies.kind import Progress
+from verify.studies.modes.convergence import Convergence, ConvergenceStudy, Counts
 from verify.studies.told import Found
 
 
@@ -84,8 +84,8 @@ def convergence(scene: Scene, modes: str | None, counts: str | None, rules: Mapp
 
 def motor(scene: Scene, counts: str | None) -> Job:
     """SWR, axis ratio and crest speed over sizes, at the drive's frequency and at each model's best."""
-    from verify.studies.wave import WaveStudy
-    from verify.studies.wave_request import Wave
+    from verify.studies.wave.request import Wave
+    from verify.studies.wave.study import WaveStudy
 
     given = _listed(counts, "counts") if counts is not None else (WaveStudy().asked(scene) or Wave()).counts
     sizes = checked(list(given), Counts, "counts")
@@ -93,7 +93,7 @@ def motor(scene: Scene, counts: str | None) -> Job:
         raise InputError("--wave takes a scene with two forces: add them to its [drive]")
 
     def run(step: Progress) -> Found:
-        from verify.studies.wave_figures import MotorFound, motor_table
+        from verify.studies.wave.figures import MotorFound, motor_table
 
         return MotorFound(rows=motor_table(scene, Workbench(scene.beam), tuple(sizes), step))
 
@@ -102,14 +102,14 @@ def motor(scene: Scene, counts: str | None) -> Job:
 
 def slider(scene: Scene, counts: str | None) -> Job:
     """The slider's displacement, its error and its run time over sizes, all models. Raises InputError."""
-    from verify.studies.slider_request import ROUNDS
+    from verify.studies.slider.request import ROUNDS
 
     if scene.slider is None or scene.motion is None:
         raise InputError("--slider takes a scene with [slider] and [motion], for instance paper-slider")
     sizes = checked(list(_listed(counts, "counts") if counts is not None else scene.motion.counts), Counts, "counts")
 
     def run(step: Progress) -> Found:
-        from verify.studies.work_precision import WorkFound, work_of
+        from verify.studies.slider.work_precision import WorkFound, work_of
 
         return WorkFound(work=work_of(scene, tuple(sizes), step))
 
@@ -118,7 +118,7 @@ def slider(scene: Scene, counts: str | None) -> Job:
 
 def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple[str, ...]) -> Job:
     """A wave quantity over one or two axes. Raises InputError."""
-    from verify.studies.design_map import design_map, parse_axis
+    from verify.studies.wave.design_map import design_map, parse_axis
 
     axes = tuple(parse_axis(text, scene.drive.frequency_hz if scene.drive else None) for text in sweeps)
     given = given_arguments(arguments)

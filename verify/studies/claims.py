@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
     from verify.models.compiling import Call
     from verify.scenes.scene import Scene
-    from verify.studies.slider_figures import SliderFound
+    from verify.studies.slider.figures import SliderFound
 
 LEAST_SHOWN = 1e-4
 
@@ -201,7 +201,7 @@ class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
 
 
 def _slider_of(done: Mapping[str, Found]) -> "SliderFound | None":
-    from verify.studies.slider_figures import SliderFound
+    from verify.studies.slider.figures import SliderFound
 
     return next((found for found in done.values() if isinstance(found, SliderFound)), None)
 

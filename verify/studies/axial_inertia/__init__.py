@@ -1,0 +1,1 @@
+"""How linear a chain of rigid links is."""

@@ -1,0 +1,1 @@
+"""Both ways of driving a travelling wave, side by side."""

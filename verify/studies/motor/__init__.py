@@ -1,0 +1,1 @@
+"""A slider that may leave the beam: held, free, from rest, on every field."""

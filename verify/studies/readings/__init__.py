@@ -1,0 +1,1 @@
+"""What a source leaves open about its slider, gone through."""

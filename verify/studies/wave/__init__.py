@@ -1,0 +1,1 @@
+"""The driven beam: figures over sizes, envelopes, ellipses, maps."""
