@@ -1,12 +1,13 @@
 """Faults that rows of beams with anything on them, written-out parts, moved chains and driven waves have to find."""
 
 from dataclasses import replace as changed
+from types import SimpleNamespace
 
 from faults.driven import rotary_inertia_of_no_share
 from faults.stress import unchecked
 from msgspec.structs import replace
 
-from verify.chain import dynamics, statics, stepping
+from verify.chain import dynamics, held_kernels, statics, stepping
 from verify.chain.small_motion import Linearisation
 from verify.contact import foot
 from verify.device import Device
@@ -242,6 +243,10 @@ def pivots_of_a_fifth(patch):
     patch.setattr(dynamics, "PIVOT_LOSS", 0.2)
 
 
+def loops_that_keep_their_pivots(patch):
+    patch.setattr(held_kernels, "repivot", SimpleNamespace(py_func=lambda *given: False))
+
+
 def feet_a_little_high(patch):
     for name in ("height_swing", "standing_height"):
         true = getattr(foot, name)
@@ -299,6 +304,7 @@ FAULTS = {
         cut_off_under_forces_in_phase: {"modes-cut-off"},
         steps_that_miss_a_little_more: {"speed-that-steps-miss"},
         pivots_of_a_fifth: {"pivots-kept"},
+        loops_that_keep_their_pivots: {"pivots-kept"},
         feet_a_little_high: {"short-feet", "long-feet"},
         a_judge_of_heavier_matrices: {"judge-of-eigenvalues"},
         unchecked(imposed, "check_held"): {"refused-once-solved"},

@@ -1,6 +1,8 @@
 """Rules that are followed without a word: steps, pivots, feet that rise and fall, the judge of eigenvalues."""
 
 from math import pi, sqrt
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +32,24 @@ def pivots_error(points: float) -> float:
         rows = np.hstack([np.eye(n), 3.0 * share ** (1.0 / n) * np.eye(n), 3.0 * np.eye(n)])
         pivots = np.arange(n) + n
         wrong += np.array_equal(keep_pivots(rows, pivots), pivots) is not kept
+        wrong += 0 if n > 1 else sum(_kept_in_steps(share, link) is not kept for link in (0, 2))
     return float(wrong)
+
+
+def _kept_in_steps(share: float, furthest: int) -> bool:
+    """Whether a loop over steps keeps the angle of the second of three links, whose lever arm at a roller is a share.
+
+    Of the longest, which is that of the first, or of the third, at whose end the roller is.
+    """
+    from verify.chain.held_kernels import repivot
+
+    arms = np.array([0.3, share * 0.7, 0.4, 0.0])
+    arms[furthest] = -0.7
+    work, pivots = np.zeros((4, 14)), np.array([1])
+    work[:, 13] = 1.1 - arms
+    python: Any = repivot
+    left = python.py_func(SimpleNamespace(held=np.array([[0.0, 0.0, 0.0, 0.0, 2.0]])), pivots, work, 0.1)
+    return bool(not left and pivots[0] == 1)
 
 
 def short_foot_error(span: float) -> float:
@@ -141,8 +160,8 @@ ROWS: tuple[Row, ...] = (
     ),
     Floor(
         id="pivots-kept",
-        title="Pivots left too early or kept too long",
-        why="chain/dynamics.py: kept while a tenth for each held point is left of the best determinant.",
+        title="Pivots left too early or kept too long, between steps and in their loop",
+        why="chain/dynamics.py, held_kernels.py: while a tenth for each held point is left of the best determinant.",
         along="points",
         at=(1, 2, 3),
         promise=0.5,
