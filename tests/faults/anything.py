@@ -258,6 +258,15 @@ def a_judge_of_heavier_matrices(patch):
     patch.setattr(extended_precision, "count_below", lambda stiffness, mass, value: true(stiffness, mass, value * 2))
 
 
+def a_judge_whose_guided_links_turn_at_the_wall(patch):
+    true = extended_precision._weight
+
+    def weight(supports, n, joint):
+        return true(("pinned", supports[1]) if supports[0] == "guided" else supports, n, joint)
+
+    patch.setattr(extended_precision, "_weight", weight)
+
+
 FAULTS = {
     "driven-cantilever": {waves_a_little_long: {"quarter-wavelength"}},
     "stress": {
@@ -307,6 +316,7 @@ FAULTS = {
         loops_that_keep_their_pivots: {"pivots-kept"},
         feet_a_little_high: {"short-feet", "long-feet"},
         a_judge_of_heavier_matrices: {"judge-of-eigenvalues"},
+        a_judge_whose_guided_links_turn_at_the_wall: {"judge-of-eigenvalues"},
         unchecked(imposed, "check_held"): {"refused-once-solved"},
         unchecked(refused_runs, "check_count"): {"refused-sizes-and-chains"},
     },
