@@ -41,6 +41,14 @@ def by_hand(force):
     return found.y[:LINKS].T
 
 
+def test_no_link_starts_upright_or_steeper():
+    """Two links of 0.4 m meet 0.4 m above their ends where both stand upright."""
+    system = build_system(STRIP, 2)
+    assert first_shape(system, 0.39).angles == pytest.approx([np.arcsin(0.39 / 0.4), -2.0 * np.arcsin(0.39 / 0.4)])
+    with pytest.raises(InputError, match="amplitude: a link would rise by 1 of its own length"):
+        first_shape(system, 0.4)
+
+
 @pytest.mark.parametrize("force", [60.0, 200.0])
 def test_kicks_follow_links_that_turn_far_with_order_two(force):
     exact = by_hand(force)

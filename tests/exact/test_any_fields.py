@@ -57,6 +57,18 @@ def test_fields_of_everything_together_are_those_of_the_transfer(theory, hertz):
         assert abs(found - expected).max() < 1e-13 * abs(expected).max()
 
 
+@pytest.mark.parametrize("hertz", [830.0, 9100.0])
+@pytest.mark.parametrize("theory", THEORIES)
+def test_so_are_those_of_a_leaf_in_a_thick_bar_which_bends_in_shorter_waves(theory, hertz):
+    """A thousandth of the stiffness over the middle: waves a third as long as beside it."""
+    pieces = (Section(length=0.2), Section(length=0.17, thickness=0.0031), Section(length=0.24))
+    beam = replace(BAR, section=pieces, mass=BAR.mass[1:], foundation=0.0)
+    field = analytic_modes.solve_harmonic(beam, FORCES, hertz, theory)
+    with mpmath.workdps(90):
+        expected = driven(beam, theory, phasors(FORCES), 2 * mpmath.pi * mpmath.mpf(hertz), PLACES)
+    assert abs(field.deflection(np.array(PLACES)) - expected).max() < 1e-12 * abs(expected).max()
+
+
 def test_a_slow_cantilever_with_a_shear_spring_and_an_elastic_clamp_is_static():
     """F (L^3 / 3EI + L / kappa G A + L^2 / k_r + 1 / k)."""
     k, turning = 3e5, 8e3

@@ -1,12 +1,13 @@
 """Faults that rows of beams with anything on them, written-out parts, moved chains and driven waves have to find."""
 
 from dataclasses import replace as changed
+from types import SimpleNamespace
 
 from faults.driven import rotary_inertia_of_no_share
 from faults.stress import unchecked
 from msgspec.structs import replace
 
-from verify.chain import dynamics, statics, stepping
+from verify.chain import dynamics, held_kernels, statics, stepping
 from verify.chain.small_motion import Linearisation
 from verify.contact import foot
 from verify.device import Device
@@ -243,6 +244,10 @@ def pivots_of_a_fifth(patch):
     patch.setattr(dynamics, "PIVOT_LOSS", 0.2)
 
 
+def loops_that_keep_their_pivots(patch):
+    patch.setattr(held_kernels, "repivot", SimpleNamespace(py_func=lambda *given: False))
+
+
 def feet_a_little_high(patch):
     for name in ("height_swing", "standing_height"):
         true = getattr(foot, name)
@@ -252,6 +257,15 @@ def feet_a_little_high(patch):
 def a_judge_of_heavier_matrices(patch):
     true = extended_precision.count_below
     patch.setattr(extended_precision, "count_below", lambda stiffness, mass, value: true(stiffness, mass, value * 2))
+
+
+def a_judge_whose_guided_links_turn_at_the_wall(patch):
+    true = extended_precision._weight
+
+    def weight(supports, n, joint):
+        return true(("pinned", supports[1]) if supports[0] == "guided" else supports, n, joint)
+
+    patch.setattr(extended_precision, "_weight", weight)
 
 
 FAULTS = {
@@ -300,8 +314,10 @@ FAULTS = {
         cut_off_under_forces_in_phase: {"modes-cut-off"},
         steps_that_miss_a_little_more: {"speed-that-steps-miss"},
         pivots_of_a_fifth: {"pivots-kept"},
+        loops_that_keep_their_pivots: {"pivots-kept"},
         feet_a_little_high: {"short-feet", "long-feet"},
         a_judge_of_heavier_matrices: {"judge-of-eigenvalues"},
+        a_judge_whose_guided_links_turn_at_the_wall: {"judge-of-eigenvalues"},
         unchecked(imposed, "check_held"): {"refused-once-solved"},
         unchecked(refused_runs, "check_count"): {"refused-sizes-and-chains"},
     },

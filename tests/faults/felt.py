@@ -80,6 +80,10 @@ def waves_a_little_short(patch):
     patch.setattr(fields, "wavenumber", lambda *given: (1.0 + 1e-9) * true(*given))
 
 
+def waves_that_travel_on_any_ground(patch):
+    patch.setattr(fields, "travelling_wavenumber", lambda *given: fields.lossless_wavenumber(*given).real)
+
+
 def forces_felt_a_little_more(patch):
     true = surface._stage
 
@@ -315,6 +319,7 @@ FAULTS = {
         flutter_unseen: {"flutter-where-it-is"},
         resonances_of_the_mode_before: {"resonances-by-name"},
         waves_a_little_short: {"wavenumbers-by-states"},
+        waves_that_travel_on_any_ground: {"wavenumbers-by-states"},
         forces_felt_a_little_more: {"felt-as-read"},
         stacks_a_little_heavy: {"carrying-beams-at-once-elements", "carrying-beams-at-once-segments"},
         duals_a_little_long: {"modes-of-long-chains"},

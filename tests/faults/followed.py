@@ -172,7 +172,7 @@ FAULTS = {
         sticks_a_little_less: {"changes-written-out"},
         steps_a_little_long: {"friction-branch-by-branch", "friction-at-its-edge"},
         springs_a_little_stiff: {"springs-on-belts", "springs-on-rough-belts"},
-        surfaces_a_little_fast: {"surfaces-given", "surfaces-that-carry"},
+        surfaces_a_little_fast: {"surfaces-given", "surfaces-that-carry", "surfaces-that-grip"},
         rods_without_dashpots: {"stretching-written-out"},
         links_a_little_quick: {"joints-at-any-angle"},
         shapes_a_little_high: {"shapes-of-all-supports"},

@@ -465,6 +465,11 @@ def maps_of_reflections_alone(patch):
     patch.setitem(unit_waves.FIGURES, "standing_wave_ratio", unit_waves._reflection)
 
 
+def curvatures_of_the_piece_before(patch):
+    true = bending._stiffness_at
+    patch.setattr(bending, "_stiffness_at", lambda beam, x: true(beam, x * (1.0 - 1e-9)))
+
+
 def links_bent_by_a_millionth_more(patch):
     true = bending.led_to
     patch.setattr(bending, "led_to", lambda *given: (1.0 + 1e-6) * true(*given))
@@ -864,6 +869,7 @@ FAULTS = {
         joints_at_walls_a_little_soft: {"members-written-out"},
         stiffness_left_of_a_step: {"moments-of-links"},
         links_bent_by_a_millionth_more: {"bent-beyond-buckling"},
+        curvatures_of_the_piece_before: {"bent-beyond-buckling"},
         loads_that_buckle_a_little_larger: {"pushed-along-alone"},
         limitless(departure, "TENTHS", 9): {"departure-along-the-chain"},
         gregory_without_his_last_weight: {"sums-at-a-wall", "expected-errors"},

@@ -9,7 +9,7 @@ from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.judge.sizing import choose_of_all
-from verify.judge.variants import Rules, Variant, beside, every_rule
+from verify.judge.variants import Rules, Variant, beside, every_rule, falls_within
 from verify.judge.workbench import Workbench
 from verify.scenes.scene import load_scene
 from verify.section import Section
@@ -55,6 +55,16 @@ def test_beside_the_default_stands_the_literatures_wall_and_the_joint_that_axial
     assert labels(beside(CANTILEVER)) == ["segment wall=half"]
     assert labels(beside(load_scene("taut-strip").beam)) == ["segment joints=tensioned"]
     assert beside(load_scene("free-free-bar").beam) == ()
+
+
+def test_errors_go_up_and_down_with_their_number_of_parts_where_something_may_fall_within_one_and_at_no_end():
+    ends = (PointMass(position=0.0, mass=0.3), PointMass(position=CANTILEVER.length, mass=0.2))
+    springs = (PointSpring(position=0.0, rotational=3.0), PointSpring(position=CANTILEVER.length, stiffness=40.0))
+    bar = replace(CANTILEVER, supports=("free", "free"))
+    assert not falls_within(replace(bar, mass=ends, spring=springs))
+    assert falls_within(replace(bar, mass=(*ends, PointMass(position=0.17, mass=1e-3))))
+    assert falls_within(replace(bar, spring=(*springs, PointSpring(position=0.17, stiffness=2.0))))
+    assert falls_within(replace(CANTILEVER, section=(Section(length=0.17), Section(length=CANTILEVER.length - 0.17))))
 
 
 def test_a_choice_shows_69_links_of_the_literature_beside_19():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
-from scipy.sparse import diags_array
+from scipy.sparse import csc_array, diags_array
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
@@ -15,7 +15,7 @@ from verify.elements.pencil import damped_stiffness, element_pencil
 from verify.errors import InputError
 from verify.exact.modes import solve_modes as exact_modes
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, probed, refuse_near_resonance
-from verify.models.pencil import on_diagonals
+from verify.models.pencil import bordered, on_diagonals, soft_scales
 from verify.models.response import distance_answered, forced_response, resonance_distance
 from verify.section import Section
 from verify.segments import linear as segment_model
@@ -24,6 +24,18 @@ from verify.segments.assembly import build_chain, chain_pencil
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 CLAMPED = replace(STRIP, supports=("clamped", "free"))
+
+
+def test_a_mixed_matrix_is_scaled_by_the_powers_of_two_that_its_answers_are_scaled_back_by():
+    """Of springs to either side of where the power changes: of twice another's, its answer would be twice as large."""
+    springs = np.array([0.3, 0.125 * 0.9995, 0.125 * 1.0005, 7.0, 2.0**-9 * 0.9998])
+    strain = np.random.default_rng(41).normal(size=(5, 3))
+    scales = soft_scales(springs)
+    assert list(scales) == [0.5, 0.25, 0.5, 1.0, 2.0**-5]
+    corner = np.diag([0.7, -0.2, 1.9])
+    found = bordered(-1.0 / springs, csc_array(strain), csc_array(corner)).toarray()
+    rows = scales[:, None] * strain
+    assert found == pytest.approx(np.block([[np.diag(-(scales**2) / springs), rows], [rows.T, corner]]), rel=1e-15)
 
 
 def pencils(beam, n):

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
-from verify.motion import judged_step
+from verify.motion import judged_step, stepping
 from verify.motion.records import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
@@ -248,6 +248,16 @@ def test_a_stick_and_a_slip_that_share_a_step_are_both_kept():
     assert list(coarse.events[:, 1]) == list(fine.events[:, 1])
     assert {STICKS, SLIPS} == set(fine.events[:, 1])
     assert coarse.events[:, 0] == pytest.approx(fine.events[:, 0], abs=1 / (12 * FREQUENCY))
+
+
+def test_a_run_says_how_many_sticks_and_slips_it_had_no_room_for(monkeypatch):
+    slider = Slider(mass=0.4, mu=0.05, position=0.19, coupling="one-way", law="coulomb", normal="massless")
+    every = slid(slider, 12, modal_damping=0.003)
+    monkeypatch.setattr(stepping, "EVENTS", 3)
+    few = slid(slider, 12, modal_damping=0.003)
+    assert few.notes == (*every.notes, f"events: the first 3 of {len(every.events)}")
+    assert few.events == pytest.approx(every.events[:3], rel=1e-15)
+    assert few.displacement == every.displacement
 
 
 def test_steps_follow_what_a_step_load_excites():

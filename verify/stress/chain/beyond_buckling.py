@@ -82,7 +82,7 @@ def _led(system: ChainSystem, load: tuple[float, float, float]) -> Array:
 
 
 def led_error(number: float) -> float:
-    """Of angles, of the tip over the length, of moments and of the energy under one of the loads."""
+    """Of angles, of the tip over the length, of moments, of curvatures and of the energy under one of the loads."""
     beam, system, least = _chain()
     along, across, moment = LOADS[int(number)]
     load = along * least, across * least, moment * least * beam.length
@@ -94,6 +94,10 @@ def led_error(number: float) -> float:
     moments = np.append(system.stiffness * turned, load[2])
     off = [abs(found.angles - exact).max(), abs(found.tip - tip).max() / beam.length, found.energy / energy - 1.0]
     off += [abs(found.moments - moments).max() / abs(moments).max(), found.turn - exact[-1] - beyond]
+    ends = np.cumsum([piece.length for piece in beam.pieces[:-1]])
+    on = (system.nodes[:, None] > ends - 1e-9 * beam.length).sum(axis=1)  # the piece that begins where two meet
+    bends = found.curvature * np.array([piece.bending_stiffness for piece in beam.pieces])[on]
+    off += [abs(bends - moments).max() / abs(moments).max()]
     return max(abs(float(one)) for one in off)
 
 
@@ -136,7 +140,7 @@ def pushed(share: float) -> object:
 ROWS: tuple[Row, ...] = (
     Floor(
         id="bent-beyond-buckling",
-        title="A cantilever of unlike links led beyond its buckling load: angles, tip, moments, energy",
+        title="A cantilever of unlike links led beyond its buckling load: angles, tip, moments, curvatures, energy",
         why="chain/load_path.py: the equilibrium that stays stable, to Newton's own rounding; against its joints in a "
         "row from the tip, the tip's angle followed in 300 steps of the load.",
         along="load",

@@ -260,8 +260,11 @@ def _names(mode: int, field: str, solve: Any, beam: Beam, hertz: Any, n: int) ->
 
 
 def wavenumber_error(hertz: float) -> float:
-    """Of wavenumbers by every theory, with loss, tension and ground, against rates of states; of a unit answer."""
-    from verify.models.fields import unit_response, wavenumber
+    """Of wavenumbers by every theory, with loss, tension and ground, against rates of states; of a unit answer.
+
+    And of waves that travel, of which there are none below what a foundation lets by.
+    """
+    from verify.models.fields import travelling_wavenumber, unit_response, wavenumber
     from verify.stress.modes.any_beam import States
 
     worst, bare = 0.0, replace(PLAIN, supports=("pinned", "pinned"))
@@ -278,6 +281,9 @@ def wavenumber_error(hertz: float) -> float:
                 float(abs(rates + 1j * k).min() / abs(k)),
                 float(k.imag > 0.0 or k.real < 0.0 or not (k.real or beam.foundation > 1.0)),
             )
+            own, told = wavenumber(beam, hertz), travelling_wavenumber(lossy, hertz)
+            travels = beam.mass_per_length * (2.0 * pi * hertz) ** 2 > beam.foundation
+            worst = max(worst, float(told is not None) if not travels else abs((told or 0.0) / own - 1.0))
     reach = min(sqrt(bare.wave_constant / (2.0 * pi * hertz)), bare.length)
     return max(worst, abs(unit_response(bare, hertz) / (reach**3 / bare.bending_stiffness) - 1.0))
 
@@ -379,8 +385,8 @@ ROWS: tuple[Row, ...] = (
     ),
     Floor(
         id="wavenumbers-by-states",
-        title="Wavenumbers by three theories, with loss, tension and ground, against rates of states; a unit answer",
-        why="models/fields.py: roots of a quadratic, to rounding.",
+        title="Wavenumbers by three theories, with loss, tension and ground, and which travel; a unit answer",
+        why="models/fields.py: roots of a quadratic, to rounding, against rates of states.",
         along="Hz",
         at=(0.3, 3.1, 67.0, 431.0),
         promise=1e-13,

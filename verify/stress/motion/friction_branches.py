@@ -188,23 +188,24 @@ def _moved(t: float, x: float, v: float, follows: bool) -> tuple[float, float, f
 def given_error(number: float) -> float:
     """Of a slider's way, speed and friction on a surface that is given, over the largest: Eq. (3), followed or not.
 
-    The third slides under Coulomb's law, the fourth sticks to the surface all the time.
+    The third slides under Coulomb's law, the fourth sticks to the surface all the time, and the fifth is gripped by
+    Eq. (3) so hard that it is caught in a small part of a period.
     """
     from scipy.integrate import solve_ivp
 
     from verify.motion.kernels import slide_given
     from verify.motion.stepping import contact_space, fresh_motion
 
-    follows, sticks = number in (1.0, 2.0), number == 3.0
-    static = None if number < 2.0 else 1e4 if sticks else FULL
-    kinetic, speed = (1e4 if sticks else FULL), (_moved(0.0, 0.0, 0.0, False)[0] if sticks else 1.9)
+    follows, sticks, grips = number in (1.0, 2.0), number == 3.0, number == 4.0
+    static = None if number < 2.0 or grips else 1e4 if sticks else FULL
+    kinetic, speed = (1e4 if sticks or grips else FULL), (_moved(0.0, 0.0, 0.0, False)[0] if sticks else 1.9)
 
     def flow(t: float, y: Array) -> list[float]:
         along, ahead, pull = _moved(t, float(y[0]), float(y[1]), follows)
         if sticks:
             return [along, 0.0]
         slip = float(y[1]) - along
-        return [ahead, pull - FULL * (tanh(SLOPE * slip) if static is None else copysign(1.0, slip))]
+        return [ahead, pull - kinetic * (tanh(SLOPE * slip) if static is None else copysign(1.0, slip))]
 
     times = np.linspace(0.0, LONG, 13)
     exact = solve_ivp(flow, (0.0, LONG), [0.0, speed], "DOP853", times, rtol=1e-12, atol=1e-15, max_step=2e-4).y
@@ -227,7 +228,7 @@ def given_error(number: float) -> float:
         exact[1] = seen
     pairs = [(rows[:, 0], exact[0]), (rows[:, 1], exact[1]), (rows[:, 3], seen)]
     if static is None:
-        pairs.append((rows[:, 2], -FULL * np.tanh(SLOPE * (exact[1] - seen))))
+        pairs.append((rows[:, 2], -kinetic * np.tanh(SLOPE * (exact[1] - seen))))
     if sticks:  # what holds it on gives it its speed
         before = kept[KEPT // 12 - 1 :: KEPT // 12]
         pairs.append((rows[1:, 2], (rows[1:, 1] - before[:12, 1]) * KEPT / LONG))
@@ -306,6 +307,16 @@ ROWS: tuple[Row, ...] = (
         along="run",
         at=(3.0,),
         promise=1e-7,
+        error=given_error,
+        kernels=_chains,
+    ),
+    Floor(
+        id="surfaces-that-grip",
+        title="A slider that Eq. (3) grips within 2e-4 s, and its way on that surface",
+        why="motion/way_kernels.py: exact on a surface that speeds up evenly in a step.",
+        along="run",
+        at=(4.0,),
+        promise=1e-9,
         error=given_error,
         kernels=_chains,
     ),
