@@ -113,9 +113,18 @@ def central_error(steps: float) -> float:
 
 def books_error(slope: float) -> float:
     """What the books of a slider on the driven strip miss over 20 000 steps, over what friction rubs away."""
-    run = _ridden(20_000, _slider(slope))
+    return _missed(20_000, slope)
+
+
+def _missed(steps: float, slope: float) -> float:
+    run = _ridden(steps, _slider(slope))
     assert run.ledger is not None
     return abs(run.ledger.residual) / (run.ledger.rubbed + run.ledger.work_in)
+
+
+def energy_error(steps: float) -> float:
+    """The same over so many steps, of the slope that the rows of phase have."""
+    return _missed(steps, 310.0)
 
 
 def bounded_error(mu: float) -> float:
@@ -174,6 +183,18 @@ ROWS: tuple[Row, ...] = (
         beside=central_error,
         textbook="central differences",
         seconds=60.0,
+        quick=False,
+        kernels=_loops,
+    ),
+    Floor(
+        id="energy-of-ten-million-steps",
+        title="What the energy books of such a run miss over what is put in, of up to ten million steps",
+        why="motion/result.py: quadrature of the power, order 4: 1e-6, however many steps there are.",
+        along="steps",
+        at=(1e4, 1e6, 1e7),
+        promise=1e-6,
+        error=energy_error,
+        seconds=30.0,
         quick=False,
         kernels=_loops,
     ),
