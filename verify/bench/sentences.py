@@ -189,7 +189,7 @@ def _verdict(first: str, second: str, answer: Crossing) -> tuple[str, str]:
     low, high = min(sizes), max(sizes)
     if max(abs(log(low)), abs(log(high))) <= answer.spread:
         spread = f"the spread of {100 * answer.spread:.0f} %"
-        return f"{span} neither is cheaper beyond {spread}, {second} over {first} {_span(sizes)}", ""
+        return f"{span} neither is cheaper beyond {spread}, {second} takes {_span(sizes)} times as long as {first}", ""
     if log(low) + log(high) < 0.0:
         first, second, low, high = second, first, 1.0 / high, 1.0 / low
     if low < 1.0:

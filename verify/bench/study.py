@@ -87,7 +87,8 @@ def settled(asked: Bench, scene: "Scene") -> Settled:
     if duration is None and scene.drive:
         duration = PERIODS / scene.drive.frequency_hz
     own = convergence.counts if convergence else scene.motion.counts if scene.motion else COUNTS
-    chain = (axial.count,) if axial else (scene.motion.count,) if scene.motion else CHAIN
+    asking = next((one for one in (axial, scene.motion, getattr(scene, "motor", None)) if one), None)
+    chain = (asking.count,) if asking else CHAIN
     return Settled(
         sets=asked.sets or tuple(name for name in BENCH_SETS if not unasked(name, scene)),  # type: ignore[misc]
         counts=tuple(sorted(asked.counts or (n for n in own if n > 1))),
@@ -106,11 +107,16 @@ def unasked(name: str, scene: "Scene") -> str:
         return "nothing drives the beam"
     if name == "slider" and (scene.slider is None or scene.motion is None):
         return f"the scene has no [{'slider' if scene.slider is None else 'motion'}]"
-    if name == "chain":
-        chained = any(gate.quantity.startswith("chain.") for gate in scene.gate)
-        if getattr(scene, "axial_inertia", None) is None and not (chained and driven):
-            return "nothing in the scene asks for the nonlinear chain: name it in sets"
-    return ""
+    if name == "chain" and not _chained(scene):
+        return "nothing in the scene asks for the nonlinear chain: name it in sets"
+    return "nothing drives the beam" if name == "chain" and not driven else ""
+
+
+def _chained(scene: "Scene") -> bool:
+    """Whether a study or a gate of a scene asks for the nonlinear chain."""
+    motor = getattr(scene, "motor", None)
+    studied = getattr(scene, "axial_inertia", None) is not None or (motor is not None and "chain" in motor.models)
+    return studied or any(gate.quantity.startswith("chain.") for gate in scene.gate)
 
 
 class BenchStudy(Study[Bench, "BenchFound"]):
