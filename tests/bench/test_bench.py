@@ -15,7 +15,7 @@ from verify.bench.against import moved
 from verify.bench.keeping import page
 from verify.bench.request import Bench
 from verify.bench.running import benched
-from verify.bench.sets import all_cases, settled
+from verify.bench.sets import SETS, all_cases, settled
 from verify.bench.study import BenchStudy
 from verify.cli import status_of
 from verify.errors import InputError
@@ -339,6 +339,13 @@ def test_defaults_are_the_scenes_own():
     assert settled(Bench(), load_scene("steel-cantilever")).sets == ("modes",)
 
 
+def test_a_motor_on_the_nonlinear_chain_asks_for_that_set_and_its_number_of_links():
+    asked = settled(Bench(), load_scene("preloaded-motor", ("motor.count=40",)))
+    assert "chain" in asked.sets
+    assert asked.chains == (40,)
+    assert "chain" not in settled(Bench(), load_scene("multi-contact-slider")).sets
+
+
 def test_sets_that_a_scene_has_not_are_named_with_the_reason():
     found = found_of(
         load_scene("steel-cantilever"), sets=("modes", "slider", "harmonic"), counts=(8,), modes=(1,), cold=True
@@ -348,7 +355,10 @@ def test_sets_that_a_scene_has_not_are_named_with_the_reason():
     assert "slider is left out: slider: the scene has no [slider], add it" in told
     assert "harmonic is left out: harmonic: nothing drives the beam" in told
     notes = " / ".join(found.notes)
-    assert "chain is left out: nothing in the scene asks for the nonlinear chain" in notes
+    assert "chain is left out: nothing drives the beam" in notes  # its chains are bent, not driven
+    assert (
+        SETS["chain"].unasked(load_scene("guided-bar")).startswith("nothing in the scene asks for the nonlinear chain")
+    )
     assert "the mean of both takes no part: mode.bracket: with wall = 'gregory'" in notes
     assert "cold: nothing of modes is compiled" in notes
 

@@ -236,6 +236,16 @@ def test_a_push_to_a_side_that_rounding_would_choose_is_refused():
         bend(STRUT, 20, (-50.0, 1e-30), wall="half")
 
 
+def test_a_load_that_snaps_under_a_moment_is_refused_with_the_moment_that_grows_with_it():
+    """A force of 1000 N across that a moment of 300 N m rolls up the other way."""
+    with pytest.raises(InputError) as found:
+        bend(STRUT, 9, 1000.0, moment=-300.0, wall="half")
+    assert "load = (0.0, 1000.0) N with moment = -300.0 N m buckles" in str(found.value)
+    assert "give another moment, or less load" in str(found.value)
+    assert bend(STRUT, 9, 1000.0, moment=3.0, wall="half").deflection > 0.0
+    assert bend(STRUT, 9, 10.0, moment=-300.0, wall="half").energy > 0.0
+
+
 @pytest.mark.parametrize(
     ("asked", "said"),
     [

@@ -141,6 +141,17 @@ def test_only_what_leaves_the_surface_is_said_to_bounce():
     ]
 
 
+def test_a_slider_that_leaves_the_surface_and_creeps_is_told_to_take_more_time_and_not_more_damping():
+    hops = replace(
+        at_speed(CASE, 1e-5), unsettled=("force",), taken_up=0.4, spread=SPREAD, crept=True, contact_share=0.6
+    )
+    field = SimpleNamespace(title="exact beam", curve=(hops, hops), free=SimpleNamespace(settled=True))
+    (told,) = unsettled([field], False)
+    assert told.startswith("creeping, points leaving the surface: on the exact beam means at 2 of 2 held speeds")
+    assert "damping" not in told
+    assert "over more periods" in told
+
+
 @pytest.mark.parametrize(
     ("contact", "preload", "speed", "periods", "damping"),
     [

@@ -59,6 +59,16 @@ def test_a_quick_row_is_held_and_says_which_kernels_it_runs(name):
     assert names(called) == names(planned)
 
 
+@pytest.mark.parametrize("name", [name for name, one in rows().items() if isinstance(one, Floor) and not one.quick])
+def test_a_row_that_no_scene_runs_is_held_where_it_begins(name):
+    """Ten million steps at a hundredth of the first million, a million parts at a hundredth of the first hundred thousand."""
+    one = row(name)
+    first = one.at[0] / 100.0 if one.at[0] >= 1e5 else one.at[0]
+    found = replace(one, at=(first,), beyond=(), beside=None).run()
+    assert found.held, found.reason
+    assert found.measured is not None
+
+
 def test_some_rows_run_kernels_and_most_none():
     """Else nothing would be compared above."""
     assert 15 < sum(bool(row(name).kernels()) for name in light()) < 0.5 * len(light())

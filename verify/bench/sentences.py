@@ -116,8 +116,13 @@ def _compared(case: Case, found: Sequence[Outcome], scene: str, first: str, seco
         return _at_wanted(case, found, scene, (first, second), f"{answer.why}; {answer.remedy}")
     ends = [_end(name, one) for name, one in ((first, a), (second, b)) if one.n_finer]
     at = _inside(case, answer, a, b)
-    wanted = [f"{ratio:.2f} at {percent(error)}" for error, ratio in at]
-    parts = (_verdict(first, second, answer), *wanted, *_alone(found, (first, second), answer), *ends)
+    verdict, slower = _verdict(first, second, answer)
+    wanted = [f"{_likewise(first, second, slower, ratio)} at {percent(error)}" for error, ratio in at]
+    alone = _alone(found, (first, second), answer)
+    if alone is not None:
+        said = _likewise(first, second, slower, alone)
+        wanted.append(f"runs without their set-up {said} at {percent(answer.low)}")
+    parts = (verdict, *wanted, *ends)
     orders = f"observed orders {_span(a.orders)} and {_span(b.orders)}"
     text = f"{case.name}: {first} against {second}: {'; '.join(parts)} ({orders}; {_condition(case, found, scene)})"
     return _sentence(case, (first, second), text, answer, at)
@@ -169,8 +174,8 @@ def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unear
     return converging(points, orders, floor, finer=remedy or "give finer ones")
 
 
-def _verdict(first: str, second: str, answer: Crossing) -> str:
-    """Which is cheaper, over which errors, by how much."""
+def _verdict(first: str, second: str, answer: Crossing) -> tuple[str, str]:
+    """(which is cheaper, over which errors, by how much; the slower one, empty where that changes or is none)."""
     span = f"at errors from {percent(answer.high)} down to {percent(answer.low)}"
     (_, fine), (_, coarse) = answer.ratios[0], answer.ratios[-1]
     if answer.crossings:
@@ -179,17 +184,25 @@ def _verdict(first: str, second: str, answer: Crossing) -> str:
         ends = (
             f"{_slower(first, second, ratio)} at {percent(e)}" for e, ratio in (answer.ratios[0], answer.ratios[-1])
         )
-        return f"the cheaper one changes at an error of {changes}: {above} above, {below} below; {', '.join(ends)}"
+        return f"the cheaper one changes at an error of {changes}: {above} above, {below} below; {', '.join(ends)}", ""
     sizes = [ratio for _, ratio in answer.ratios]
     low, high = min(sizes), max(sizes)
     if max(abs(log(low)), abs(log(high))) <= answer.spread:
-        return f"{span} neither is cheaper beyond the spread of {100 * answer.spread:.0f} %, ratios {_span(sizes)}"
+        spread = f"the spread of {100 * answer.spread:.0f} %"
+        return f"{span} neither is cheaper beyond {spread}, {second} takes {_span(sizes)} times as long as {first}", ""
     if log(low) + log(high) < 0.0:
         first, second, low, high = second, first, 1.0 / high, 1.0 / low
     if low < 1.0:
         most = _slower(first, second, high)
-        return f"{span} the cheaper one, where they differ beyond the spread, is {first}: up to {most}"
-    return f"{span} it takes {_span((low, high))} times as long by {second} as by {first}"
+        return f"{span} the cheaper one, where they differ beyond the spread, is {first}: up to {most}", second
+    return f"{span} it takes {_span((low, high))} times as long by {second} as by {first}", second
+
+
+def _likewise(first: str, second: str, slower: str, ratio: float) -> str:
+    """A ratio after a verdict: the number alone where the same one is slower."""
+    told = _slower(first, second, ratio)
+    own = f" times as long by {slower}"
+    return told.removesuffix(own) if slower else told
 
 
 def _slower(first: str, second: str, ratio: float) -> str:
@@ -208,19 +221,19 @@ def _inside(case: Case, answer: Crossing, a: Stretch, b: Stretch) -> tuple[tuple
     return tuple((error, b.seconds(error) / a.seconds(error)) for error in inside)
 
 
-def _alone(found: Sequence[Outcome], methods: tuple[str, str], answer: Crossing) -> list[str]:
-    """The ratio of the runs without their set-up, at the smallest error that both reach; nothing without a set-up."""
+def _alone(found: Sequence[Outcome], methods: tuple[str, str], answer: Crossing) -> float | None:
+    """The ratio of the runs without their set-up, at the smallest error that both reach; None without a set-up."""
     seconds: list[float] = []
     for name in methods:
         own = sorted(
             (o for o in found if o.entry.line.name == name and o.point), key=lambda o: -abs(o.row.error or 0.0)
         )
         if not all(o.row.warm_s for o in own):
-            return []
+            return None
         seconds.append(at_error([abs(o.row.error or 0.0) for o in own], [o.row.warm_s or 0.0 for o in own], answer.low))
     if not any(o.row.set_up_s for o in found if o.entry.line.name in methods):
-        return []
-    return [f"runs without their set-up {seconds[1] / seconds[0]:.2f} at {percent(answer.low)}"]
+        return None
+    return seconds[1] / seconds[0]
 
 
 def _condition(case: Case, found: Sequence[Outcome], scene: str) -> str:

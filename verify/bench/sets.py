@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import Scene
 
-COUNTS, MODES, CHAIN = (24, 49, 98, 196), (1, 5, 22), (49,)
+COUNTS, MODES, LINKS = (24, 49, 98, 196), (1, 5, 22), (49,)
 PERIODS = 4.0
 """Of the drive, that a motion lasts where the scene does not say how long."""
 
@@ -49,13 +49,20 @@ def _still(scene: "Scene") -> str:
 
 
 def _unchained(scene: "Scene") -> str:
+    if not _chained(scene):
+        return "nothing in the scene asks for the nonlinear chain: name it in sets"
+    return _undriven(scene)
+
+
+def _chained(scene: "Scene") -> bool:
+    """Whether a study or a gate of a scene asks for the nonlinear chain."""
+    from verify.motor.combine import CHAIN
     from verify.quantities.catalogue import QUANTITIES
 
-    asked = getattr(scene, "axial_inertia", None) is not None
-    if not asked and not _undriven(scene):
-        known = (QUANTITIES[gate.quantity] for gate in scene.gate if gate.quantity in QUANTITIES)
-        asked = any(quantity.arguments.chained for quantity in known)
-    return "" if asked else "nothing in the scene asks for the nonlinear chain: name it in sets"
+    axial, motor = (getattr(scene, name, None) for name in ("axial_inertia", "motor"))
+    known = (QUANTITIES[gate.quantity] for gate in scene.gate if gate.quantity in QUANTITIES)
+    studied = axial is not None or (motor is not None and CHAIN in motor.models)
+    return studied or any(quantity.arguments.chained for quantity in known)
 
 
 def _mode_cases(scene: "Scene", its: Settled, bench: "Workbench") -> "Iterator[Case]":
@@ -109,7 +116,8 @@ def settled(asked: Bench, scene: "Scene") -> Settled:
     if duration is None and scene.drive:
         duration = PERIODS / scene.drive.frequency_hz
     own = convergence.counts if convergence else scene.motion.counts if scene.motion else COUNTS
-    chain = (axial.count,) if axial else (scene.motion.count,) if scene.motion else CHAIN
+    asking = next((one for one in (axial, scene.motion, getattr(scene, "motor", None)) if one), None)
+    chain = (asking.count,) if asking else LINKS
     return Settled(
         sets=asked.sets or tuple(one.name for one in SETS.values() if not one.unasked(scene)),
         counts=tuple(sorted(asked.counts or (n for n in own if n > 1))),

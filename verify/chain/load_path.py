@@ -38,7 +38,9 @@ def led_to(system: "ChainSystem", along: float, across: float, moment: float) ->
         angles = solve_static(system).angles
         if size < least or stable(system, angles):
             return angles
-    return _followed(system, min(SAFE * least / size, 1.0), f"load = {shown((along, across))} N", least)
+    said = f"load = {shown((along, across))} N" + (f" with moment = {shown(moment)} N m" if moment else "")
+    remedy = "another moment" if moment else "a larger force across"
+    return _followed(system, min(SAFE * least / size, 1.0), said, f"give {remedy}, or less load", least)
 
 
 def buckling_load(system: "ChainSystem") -> float:
@@ -55,7 +57,7 @@ def stable(system: "ChainSystem", angles: Array) -> bool:
     return _solved(system, forces_at(system, angles, 1.0)) is not None
 
 
-def _followed(system: "ChainSystem", share: float, said: str, least: float) -> Array:
+def _followed(system: "ChainSystem", share: float, said: str, remedy: str, least: float) -> Array:
     """The equilibrium under the whole load, through stable ones near to each other from a share of it on."""
     done, growth, angles = 0.0, 1.0, np.zeros(system.n_links)
     while done < 1.0:
@@ -68,7 +70,7 @@ def _followed(system: "ChainSystem", share: float, said: str, least: float) -> A
         else:
             raise InputError(
                 f"{said} buckles the cantilever (its buckling load is {least:.6g} N): at {done:.6g} of it no stable "
-                "equilibrium follows, give a larger force across, or less load"
+                f"equilibrium follows, {remedy}"
             )
     return angles
 

@@ -54,6 +54,11 @@ def worst_of(bench: Workbench, model: str, modes: range, count: int, settings: S
     return max(modes, key=lambda mode: (inf if (error := found[mode]) is None else abs(error), mode))
 
 
+def largest_error(bench: Workbench, model: str, modes: range, count: int, settings: Settings) -> float:
+    """The error, signed, of the mode that is furthest off at a size that has them all."""
+    return bench.frequency_error(model, count, worst_of(bench, model, modes, count, settings), settings)
+
+
 def unbuilt(bench: Workbench, model: str, settings: Settings, count: int, mode: int) -> str:
     """Why a model of so many parts is refused; empty where it is solved, or has not so many modes."""
     try:

@@ -17,7 +17,7 @@ from verify.exact.error_laws import (
     sine_fits,
     smallest_count,
 )
-from verify.judge.known import by_law, kept, solved, unbuilt, worst_of
+from verify.judge.known import by_law, kept, largest_error, solved, unbuilt, worst_of
 from verify.judge.variants import Rules, Variant, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
@@ -86,7 +86,7 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     smaller: int | None
     """A smaller size that happens to do, though one between does not; None where none was found."""
     smaller_error: float | None
-    """Its error."""
+    """Its error, of several modes the largest."""
     known_by: str
     """Which larger sizes do, and how it is known."""
     unbuilt: str = ""
@@ -377,7 +377,7 @@ def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error:
             unbuilt=unbuilt(bench, one.model, one.settings, enough.count - 1, enough.mode),
             smaller_error=None
             if enough.smaller is None
-            else bench.frequency_error(one.model, enough.smaller, enough.mode, one.settings),
+            else largest_error(bench, one.model, _several(mode), enough.smaller, one.settings),
         )
         for (one, enough), seconds in zip(found.items(), interleaved_medians(jobs), strict=True)
     ]

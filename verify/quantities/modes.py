@@ -55,12 +55,23 @@ def _by_dispersion(a: FirstModes, scene: "Scene") -> tuple[Need, ...]:
     return _solved(a.model, a.count, a.modes)
 
 
-def _beside_a_law(a: DiscreteAtSize, scene: "Scene") -> tuple[Need, ...]:
+def _check_law(a: DiscreteAtSize, beam: "Beam") -> None:
+    """Raise InputError where the leading law is that of other parts, another wall or another theory."""
     from verify.exact.closed_forms import check_uniform
     from verify.exact.error_laws import law_of
 
     law_of(a.model)
-    check_uniform(scene.beam)
+    check_uniform(beam)
+    for name, value in a.settings:
+        if name in ("theory", "grading") or (name == "wall" and "clamped" in beam.supports):
+            raise InputError(
+                f"{name} = {value!r}: the leading law is that of equal parts, Gregory's joints and Euler-Bernoulli's "
+                f"theory, leave {name} out or ask for mode.frequency_error"
+            )
+
+
+def _beside_a_law(a: DiscreteAtSize, scene: "Scene") -> tuple[Need, ...]:
+    _check_law(a, scene.beam)
     return _at_size(a, scene)
 
 
@@ -108,10 +119,9 @@ def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
 
 
 def _law_ratio(a: DiscreteAtSize, scene: "Scene", bench: Workbench) -> float:
-    from verify.exact.closed_forms import check_uniform
     from verify.exact.error_laws import leading_error
 
-    check_uniform(scene.beam)
+    _check_law(a, scene.beam)
     law = leading_error(a.model, scene.beam.supports, a.mode, a.count)
     return bench.frequency_error(a.model, a.count, a.mode, a.settings) / law
 

@@ -290,7 +290,8 @@ def print_choices(
         less = f"cannot be built ({one.unbuilt})" if one.unbuilt else "does not"
         console.print(Text(f"{one.variant.title}: N = {one.count - 1} {less}; {one.known_by}"))
         if one.smaller:
-            console.print(Text(f"  N = {one.smaller} happens to do as well, with {percent(one.smaller_error)}"))
+            worst = f"{percent(one.smaller_error)}{' at worst' * several}"
+            console.print(Text(f"  N = {one.smaller} happens to do as well, with {worst}"))
         if one.lower:
             console.print(Text(f"  {_lower_told(one)}"))
     for model, why in left_out.items():

@@ -53,7 +53,8 @@ def _slider(slope: float = 310.0, mu: float = 0.23) -> Slider:
 FORCE = (PointForce(position=SHARE * STRIP.length, amplitude=1e-3),)
 
 
-def _ridden(steps: float, **given: object) -> Motion:
+def _ridden(steps: float, slider: Slider | None = None, *, ledger: bool = True) -> Motion:
+    """The driven strip for as long as so many steps take, in these steps where a slider is carried."""
     from verify.motion.simulate import simulate
 
     step = 1.0 / (PER_PERIOD * HERTZ)
@@ -64,11 +65,12 @@ def _ridden(steps: float, **given: object) -> Motion:
         steps * step,
         model="analytic",
         modes=MODES,
-        step=step,
+        step=step if slider else None,
+        slider=slider,
         at=[0.29 * STRIP.length],
         samples=2,
+        ledger=ledger,
         patient=True,
-        **given,  # type: ignore[arg-type]
     )
 
 
@@ -77,7 +79,7 @@ def turning_error(steps: float) -> float:
 
     Against the closed form of the same modes at the same time. One rounding is 1.1e-16.
     """
-    ridden = _ridden(steps, slider=_slider(), ledger=False)
+    ridden = _ridden(steps, _slider(), ledger=False)
     still = _still(steps)
     size = _size()
     assert ridden.statistics.steps >= steps
@@ -111,15 +113,24 @@ def central_error(steps: float) -> float:
 
 def books_error(slope: float) -> float:
     """What the books of a slider on the driven strip miss over 20 000 steps, over what friction rubs away."""
-    run = _ridden(20_000, slider=_slider(slope))
+    return _missed(20_000, slope)
+
+
+def _missed(steps: float, slope: float) -> float:
+    run = _ridden(steps, _slider(slope))
     assert run.ledger is not None
     return abs(run.ledger.residual) / (run.ledger.rubbed + run.ledger.work_in)
+
+
+def energy_error(steps: float) -> float:
+    """The same over so many steps, of the slope that the rows of phase have."""
+    return _missed(steps, 310.0)
 
 
 def bounded_error(mu: float) -> float:
     """How far the friction force exceeds mu m g, and the travel what that could have moved, over 20 000 steps."""
     slider = _slider(1e9, mu)
-    run = _ridden(20_000, slider=slider, ledger=False)
+    run = _ridden(20_000, slider, ledger=False)
     push, time = slider.mu * slider.normal_force, float(run.times[-1])
     worst = float(abs(run.friction).max()) / push
     travel = float(abs(run.travelled).max()) / (0.5 * push / slider.mass * time**2)
@@ -172,6 +183,18 @@ ROWS: tuple[Row, ...] = (
         beside=central_error,
         textbook="central differences",
         seconds=60.0,
+        quick=False,
+        kernels=_loops,
+    ),
+    Floor(
+        id="energy-of-ten-million-steps",
+        title="What the energy books of such a run miss over what is put in, of up to ten million steps",
+        why="motion/result.py: quadrature of the power, order 4: 1e-6, however many steps there are.",
+        along="steps",
+        at=(1e4, 1e6, 1e7),
+        promise=1e-6,
+        error=energy_error,
+        seconds=30.0,
         quick=False,
         kernels=_loops,
     ),

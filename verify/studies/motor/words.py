@@ -121,13 +121,14 @@ def unsettled(fields: "Sequence[FieldFound]", hard: bool) -> Iterator[str]:
         loss = f"{'less slider.contact.restitution' if hard else 'more slider.contact.damping'} "
         loss += "or more slider.preload"
         shaky = [at for at in one.curve if not at.settled()]
-        on = [at for at in shaky if not at.bounces]
+        crept, other = [[at for at in shaky if at.crept is creeps] for creeps in (True, False)]
         more = "ask for one figure over more periods (verify measure slider.force_speed)"
         calmer, swing = f"give {loss}, or {more}", "not come to rest, all points on the surface"
         for does, of, remedy in (
-            ("bouncing", [at for at in shaky if at.bounces], calmer),
-            ("creeping, all points on the surface", [at for at in on if at.crept], more),
-            (swing, [at for at in on if not at.crept], calmer),
+            ("bouncing", [at for at in other if at.bounces], calmer),
+            ("creeping, all points on the surface", [at for at in crept if not at.bounces], more),
+            ("creeping, points leaving the surface", [at for at in crept if at.bounces], more),
+            (swing, [at for at in other if not at.bounces], calmer),
         ):
             if of:
                 yield (
