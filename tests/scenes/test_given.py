@@ -108,7 +108,7 @@ def test_any_tables_written_as_toml_are_read_as_they_were(data):
 
 
 def test_what_a_terminal_would_obey_is_written_by_its_number():
-    """A title as its file has it, `\\u202egnp`, turned the line of `verify show` round."""
+    r"""A title as its file has it, `\u202egnp`, turned the line of `verify show` round."""
     data = {"title": "a\u202egnp\x7f\x9b2J\u2028", "beam": {"\u200b": "é²\U0001f600"}}
     text = toml_text(data)
     assert tomllib.loads(text) == data
