@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import NoReturn
 
 from verify.errors import InputError, shown, written
 
@@ -17,12 +18,21 @@ def check_work(field: str, value: object, seconds: float, remedy: str) -> None:
 
     Estimates are of one slow core and from above; they count operations, so that they do not depend on the day.
     """
-    if seconds <= (limit := _limit()):
-        return
+    if not waited_for(seconds):
+        _refuse(field, value, f"would take about {_words(seconds)}, more", remedy)
+
+
+def check_taken(field: str, value: object, seconds: float, remedy: str) -> None:
+    """The same of work that is under way, and of which so much is known: how much is left nobody knows."""
+    if not waited_for(seconds):
+        _refuse(field, value, "takes longer", remedy)
+
+
+def _refuse(field: str, value: object, takes: str, remedy: str) -> NoReturn:
     told = written(value) if isinstance(value, float) else shown(value)
     raise InputError(
-        f"{field} = {told} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
-        f"{remedy}, or set {VARIABLE} to more seconds"
+        f"{field} = {told} {takes} than the {_limit():g} s that are waited for: {remedy}, or set {VARIABLE} to more "
+        "seconds"
     )
 
 

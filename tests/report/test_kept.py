@@ -5,7 +5,7 @@ import json
 import pytest
 from strip import STRIP
 
-from verify import run_scene
+from verify import __version__, run_scene
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.report.html import page
@@ -110,6 +110,15 @@ def test_a_file_where_runs_are_to_be_kept_is_told_before_anything_is_run(strip, 
     assert (tmp_path / "reports" / "strip").read_text() == "mine"
 
 
+@pytest.mark.parametrize("words", [("report", "RUN", "--to", "RUN"), ("diff", "RUN", "RUN", "--to", "RUN")])
+def test_no_page_takes_the_place_of_a_run(strip, tmp_path, capsys, words):
+    """`verify diff a.json b.json --to b.json` wrote its page over the run."""
+    was = (keep(strip, tmp_path, "strip", "verify run strip").folder / "run.json").rename("a.json").read_bytes()
+    assert status_of(["a.json" if word == "RUN" else word for word in words]) == 2
+    assert capsys.readouterr().err == "verify: --to = 'a.json' is no name of a page: let it end in .html\n"
+    assert (tmp_path / "a.json").read_bytes() == was
+
+
 @pytest.mark.parametrize("name", ["paper", "patched-strip"])
 def test_a_page_rendered_again_is_the_page_that_was(name, tmp_path, capsys):
     """To the last character: charts, tables and gates go through JSON and come back."""
@@ -174,6 +183,7 @@ def test_numbers_of_numpy_in_a_chart_of_somebodys_study_are_kept_as_numbers(stri
         (b"\xff\xfe", "is no run that was kept"),
         ('{"layout": 7, "verify": "9.1"}', "was written by verify 9.1, and this is "),
         ('{"layout": 1, "verify": "0.0.9"}', "lays runs out otherwise (Object missing required field `report`): run"),
+        (f'{{"layout": 1, "verify": "{__version__}"}}', f"is no run as verify {__version__} keeps it (Object missing"),
     ],
 )
 def test_anything_else_is_refused_in_one_sentence(tmp_path, capsys, text, said):

@@ -107,6 +107,15 @@ def test_any_tables_written_as_toml_are_read_as_they_were(data):
     assert tomllib.loads(toml_text(data)) == data
 
 
+def test_what_a_terminal_would_obey_is_written_by_its_number():
+    r"""A title as its file has it, `\u202egnp`, turned the line of `verify show` round."""
+    data = {"title": "a\u202egnp\x7f\x9b2J\u2028", "beam": {"\u200b": "é²\U0001f600"}}
+    text = toml_text(data)
+    assert tomllib.loads(text) == data
+    assert all(c.isprintable() or c == "\n" for c in text)
+    assert "é²\U0001f600" in text
+
+
 def test_a_copied_scene_keeps_its_comments_under_another_name():
     own = read_text(scene_path("steel-cantilever"))
     copy = renamed(own, "mine")

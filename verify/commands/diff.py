@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import json_alone, print_json
+from verify.commands.shared import json_alone, page_at, print_json
 
 BROKEN = 1
 
@@ -25,14 +25,15 @@ def diff(before: str, after: str, target: str | None, as_json: bool) -> None:
     from verify.report.diff import as_plain, differences, rendered
     from verify.report.kept import runs_at
 
+    page = page_at(target) if target is not None else None
     found = differences(runs_at(Path(before), "A"), runs_at(Path(after), "B"), (before, after))
-    if target is not None:
-        write_whole(Path(target), rendered(found), "--to")
+    if page is not None:
+        write_whole(page, rendered(found), "--to")
     if as_json:
         print_json(as_plain(found))
     else:
         from verify.report.terminal_suite import print_differences
 
-        print_differences(found, Path(target) if target else None)
+        print_differences(found, page)
     if found.broken:
         raise SystemExit(BROKEN)

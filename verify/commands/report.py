@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from verify.commands.shared import page_at
+
 
 @click.command()
 @click.argument("run", metavar="RUN.json")
@@ -17,9 +19,10 @@ def report(run: str, target: str | None) -> None:
     from verify.report.html import rendered
     from verify.report.kept import FILE, PAGE, read_kept
 
+    given = page_at(target) if target is not None else None
     exists(Path(run), "run")  # which refuses a name that no file can have
     path = Path(run) / FILE if Path(run).is_dir() else Path(run)
     kept = read_kept(path, "run")
-    page = Path(target) if target else path.parent / (PAGE if path.name == FILE else f"{path.stem}.html")
+    page = given or path.parent / (PAGE if path.name == FILE else f"{path.stem}.html")
     write_whole(page, rendered(kept.document), "--to")
     click.echo(f"report: {page}")

@@ -4,11 +4,12 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.errors import InputError, NoTomlError, raise_all
+from verify.errors import InputError, NoTomlError, raise_all, shown
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -49,6 +50,13 @@ def load(scene: str, overrides: tuple[str, ...]) -> "Scene":
 
         check_per_cents(loaded, overrides)
     return loaded
+
+
+def page_at(target: str) -> Path:
+    """Where a page is written. Raises InputError for a name of anything else: the run that it tells would be lost."""
+    if not target.lower().endswith((".html", ".htm")):
+        raise InputError(f"--to = {shown(target)} is no name of a page: let it end in .html")
+    return Path(target)
 
 
 def is_scene(word: str) -> bool:

@@ -42,9 +42,10 @@ from verify.motion.request import MOST_STEPS, Request
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.sound_books import check_books, excess_of
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
-from verify.motion.stepping import Sliding, fresh_motion, on_beam, run_stages, slider_seconds
+from verify.motion.stepping import Sliding, Waited, fresh_motion, run_stages
 from verify.motion.surface import Stage
 from verify.motion.turning import couple, modal_turning
+from verify.motion.windows import on_beam
 from verify.patience import check_work
 from verify.slider import Slider
 
@@ -158,30 +159,27 @@ def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motio
     request, felt = laid.request, laid.coupling.two_way
     stages, step_note = _in_steps(request, laid.stages, begin(request, laid.stages[0], laid.basis, None), laid.coupling)
     laid = replace(laid, stages=stages, notes=(*laid.notes, laid.coupling.note, *step_note))
-    rows, ready = len(stages[0].modal.squares), perf_counter()
-
-    def seconds(n_steps: float) -> float:
-        return slider_seconds(n_steps, rows, felt)
-
+    duration, ready = sum(stage.duration for stage in stages), perf_counter()
+    waited = Waited(rows=len(stages[0].modal.squares), two_way=felt, duration=None if patient else duration)
     if not patient:
-        duration = sum(stage.duration for stage in stages)
-        check_work("duration", duration, seconds(steps_in(stages)), "shorten it or lengthen the step")
+        check_work("duration", duration, waited.seconds(steps_in(stages)), "shorten it or lengthen the step")
     if request.step is None and felt:
-        ran = until_it_stands(partial(_ran, laid), stages, seconds, progress)
+        ran = until_it_stands(partial(_ran, laid, waited), stages, waited.seconds, progress)
     else:
-        ran = _ran(laid, stages, progress)
+        ran = _ran(laid, waited, stages, progress)
     check_books(ran.excess, request, ran.stages)
     taken = ran.motion.statistics
     return replace(ran.motion, statistics=replace(taken, set_up_s=taken.set_up_s + ready - laid.began))
 
 
-def _ran(laid: Laid, stages: list[Stage], progress: Callable[[float], None]) -> Ran:
+def _ran(laid: Laid, waited: Waited, stages: list[Stage], progress: Callable[[float], None]) -> Ran:
     """A run through these stages."""
     request, basis = laid.request, laid.basis
     began = perf_counter()
     z = begin(request, stages[0], basis, laid.coupling)
-    sliding = _fresh(request, laid.slider, stages, laid.coupling)
+    sliding = _fresh(request, laid.slider, stages, laid.coupling, waited)
     n_steps = steps_in(stages)
+    waited.steps += n_steps
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
     ready = perf_counter()
     stopped, *state = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / n_steps))
@@ -290,13 +288,14 @@ def _grip(slider: Slider) -> float:
     )
 
 
-def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> Sliding:
+def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling, waited: Waited) -> Sliding:
     """Room for the slider's run from where it starts."""
     start, speed, stuck = put_on(request, slider)
     law = law_of(slider, standing_at(request.beam, start))
     rider = Rider(fresh_motion(speed, stuck), law, coupling.two_way or None)
     samples = sum(stage.n_steps // stage.every for stage in stages)
-    sliding = Sliding.fresh(start, samples, request.points, rider, request.accounts and request.start == "rest")
+    booked = request.accounts and request.start == "rest"
+    sliding = Sliding.fresh(start, samples, request.points, rider, booked, waited.read)
     if request.before is not None and request.before.height is not None:
         sliding.on_its_way = request.before.height, request.before.climb
     return sliding

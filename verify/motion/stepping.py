@@ -13,11 +13,11 @@ from verify.motion import records
 from verify.motion.forcing import turns
 from verify.motion.records import Books, Drive, Kept, Rider, Space, Surface
 from verify.motion.surface import Stage
+from verify.motion.windows import Window, Windows, on_beam, table_seconds
+from verify.patience import check_taken
 
 CHUNK = 20_000
 """Steps between two looks at the keyboard."""
-REACH = 1
-"""Pieces of the beam kept ready on each side of the slider."""
 EVENTS = 20_000
 
 
@@ -33,6 +33,8 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     """Its points and the steps between samples are each stage's own."""
     accounts: bool
     ledger: Array
+    heard: Callable[[Array], None]
+    """Hears each table of the beam's pieces that is read on the way."""
     first: Array
     """(1, 5), the sample before any step, `records.KEPT_X` and so on."""
     first_deflection: Array
@@ -49,7 +51,15 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     """Processor time of the compiled loop alone."""
 
     @classmethod
-    def fresh(cls, start: float, samples: int, points: Array, rider: Rider, accounts: bool) -> "Sliding":
+    def fresh(
+        cls,
+        start: float,
+        samples: int,
+        points: Array,
+        rider: Rider,
+        accounts: bool,
+        heard: Callable[[Array], None] = lambda table: None,
+    ) -> "Sliding":
         """Room for a run."""
         return cls(
             start=start,
@@ -65,6 +75,7 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
             ),
             accounts=accounts,
             ledger=np.zeros(records.TURNED + 1),
+            heard=heard,
             first=np.zeros((1, 5)),
             first_deflection=np.zeros((1, len(points))),
         )
@@ -184,24 +195,26 @@ def slider_seconds(steps: float, rows: int, two_way: bool) -> float:
     return steps * (8e-6 + 6e-8 * rows if two_way else 1.5e-6 + 1.5e-8 * rows)
 
 
-Window = tuple[Array, Array]
-"""Polynomials of the pieces around the slider, (pieces, degree + 1, rows), and their edges, metres."""
+class Waited(msgspec.Struct, eq=False, kw_only=True):
+    """What a slider's runs take, one after another: steps that are begun, and what they read of the beam on the way."""
 
+    rows: int
+    two_way: bool
+    duration: float | None
+    """Seconds of the motion, refused where the runs take longer than is waited for; None however long they take."""
+    steps: int = 0
+    reading_s: float = 0.0
 
-def on_beam(stage: Stage, start: float, travelled: float) -> bool:
-    """Whether start + travelled lies on the beam, judged as the loop does, in distances from the start."""
-    return bool(stage.edges[0] - start <= travelled <= stage.edges[-1] - start)
+    def seconds(self, steps: float) -> float:
+        """An estimate from above of so many steps and all that was read."""
+        return slider_seconds(steps, self.rows, self.two_way) + self.reading_s
 
-
-def window(stage: Stage, start: float, travelled: float) -> Window | None:
-    """The polynomials around start + travelled, their edges counted from start; None off the beam."""
-    if not on_beam(stage, start, travelled):
-        return None
-    edges = stage.edges - start
-    pieces = len(edges) - 1
-    here = int(np.clip(np.searchsorted(edges, travelled, side="right") - 1, 0, pieces - 1))
-    first, last = max(here - REACH, 0), min(here + REACH + 1, pieces)
-    return stage.table(first, last), edges[first : last + 1]
+    def read(self, table: Array) -> None:
+        """Hear of a table of the beam's pieces. Raises InputError where it is too much."""
+        self.reading_s += table_seconds(table)
+        if self.duration is not None:
+            remedy = "the slider comes by ever more of the beam, shorten it or keep fewer modes"
+            check_taken("duration", self.duration, self.seconds(self.steps), remedy)
 
 
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:
@@ -233,13 +246,14 @@ def run_stages(
     for i, stage in enumerate(stages):
         began = perf_counter()
         fed = feed(stage, z if i == 0 else stage.start(*state), forces, sliding)
-        around = window(stage, sliding.start, float(sliding.motion[records.X]))
+        windows = Windows(stage, sliding.start, sliding.heard)
+        around = windows.around(float(sliding.motion[records.X]))
         if i == 0 and around:
             look(fed, around, sliding)
         sliding.set_up_s += perf_counter() - began
         sliding.steps_before, sliding.kept.tally[records.STEP] = sliding.steps, 0
         try:
-            stopped = _run_stage(fed, around, sliding, tell)
+            stopped = _run_stage(fed, windows, around, sliding, tell)
         except KeyboardInterrupt:
             stopped = "interrupted"
         state = stage.state(fed.z, int(sliding.kept.tally[records.STEP]) * stage.dt)
@@ -248,7 +262,9 @@ def run_stages(
     return stopped, *state
 
 
-def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callable[[int], None]) -> str:
+def _run_stage(
+    fed: Feed, windows: Windows, around: Window | None, sliding: Sliding, tell: Callable[[int], None]
+) -> str:
     """One stage in chunks; why it ended. The loop keeps its own books, so that an interrupt finds them closed."""
     from verify.motion import kernels
 
@@ -265,7 +281,7 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
             return "diverged"
         if why == records.OFF_PIECES:
             began = perf_counter()
-            around = window(stage, s.start, float(motion[records.X]))
+            around = windows.around(float(motion[records.X]))
             s.set_up_s += perf_counter() - began
     at = float(motion[records.X])
     return "end" if around and on_beam(stage, s.start, at) else stage.beyond(s.start + at, s.start + at)

@@ -167,10 +167,10 @@ def read_kept(path: Path, field: str) -> Kept:
         why = f"layout {head.layout} for {LAYOUT}"
     except msgspec.DecodeError as error:
         why = shortened(str(error), 120)
-    raise InputError(
-        f"{field} = {str(path)!r} was written by verify {head.verify}, and this is {__version__}, which lays runs out "
-        f"otherwise ({why}): run its scene again"
-    )
+    told = f"was written by verify {head.verify}, and this is {__version__}, which lays runs out otherwise"
+    if head.verify == __version__:
+        told = f"is no run as verify {__version__} keeps it"
+    raise InputError(f"{field} = {str(path)!r} {told} ({why}): run its scene again")
 
 
 class _Head(msgspec.Struct, frozen=True):

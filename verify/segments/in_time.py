@@ -19,7 +19,7 @@ from verify.segments.assembly import build_chain, chain_pencil
 from verify.segments.linear import check, leading_sign
 from verify.segments.links import Chain
 from verify.segments.loads import joint_weights
-from verify.segments.reading import body_turns, corrected_reading, joint_positions, spline_at
+from verify.segments.reading import body_turns, corrected_reading, joint_positions, line_through
 
 
 @as_typed
@@ -123,7 +123,7 @@ def _splined(beam: Beam, chain: Chain, joints: Read, uniform: bool) -> Callable[
     """The C2 spline through the corrected joints."""
     if not uniform:
         everywhere = corrected_reading(chain, joints(np.arange(chain.n_segments + 1)))
-        return lambda x, derivative: spline_at(chain, everywhere, x, derivative)
+        return line_through(chain, lambda: everywhere)
     return _sine_spline(chain, joints)
 
 
