@@ -191,7 +191,7 @@ def factorised(pencils: Pencils, shifts: Array) -> Factors:
     for _ in _eliminated(pencils, shifts, rows, corner):
         pass
     rows = rows[:n].reshape(n, width + r, -1)
-    roots, signs = _cornered(pencils, shifts, corner)
+    roots, signs = _cornered(_of_bodies(pencils, shifts), corner)
     return Factors(
         pivots=np.concatenate([rows[:, 0], corner[range(r), range(r)]]) if r else rows[:, 0],
         signs=signs,
@@ -220,7 +220,7 @@ def _pivots(pencils: Pencils, shifts: Array) -> Pivots:
     rows = _window(pencils, shifts, n + width - 1 if few else width)
     for i, pivot in enumerate(_eliminated(pencils, shifts, rows, corner)):
         pivots[i] = pivot
-    _, signs = _cornered(pencils, shifts, corner)
+    _, signs = _cornered(_of_bodies(pencils, shifts), corner)
     pivots[n:] = corner[range(r), range(r)]
     return Pivots(pivots=pivots, signs=signs)
 
@@ -287,9 +287,13 @@ def _steps_of_bodies(rows: Array, shares: Array, width: int, corner: Array) -> l
     ]
 
 
-def _cornered(pencils: Pencils, shifts: Array, corner: Array) -> tuple[Array, Array]:
-    """(roots of what the motions of bodies weigh, their signs), (r, m) both; `corner` becomes that of the factors."""
-    own = (pencils.held[:, None] - shifts * pencils.heavy[:, None]).reshape(len(corner), shifts.size)
+def _of_bodies(pencils: Pencils, shifts: Array) -> Array:
+    """What the motions of bodies weigh, (r, m)."""
+    return np.asarray((pencils.held[:, None] - shifts * pencils.heavy[:, None]).reshape(len(pencils.held), shifts.size))
+
+
+def _cornered(own: Array, corner: Array) -> tuple[Array, Array]:
+    """(roots of what the motions of bodies weigh, their signs), (r, m) all; `corner` becomes that of the factors."""
     signs, roots = np.where(own < 0.0, -1.0, 1.0), np.sqrt(abs(own))
     for j in range(len(corner)):
         corner[j, j:] *= roots[j] * roots[j:]
