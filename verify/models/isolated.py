@@ -38,7 +38,7 @@ _ROUND = 3.0
 """Points from zero within which a determinant has not begun to grow as it does beyond."""
 _MIDDLE = 0.5 * (_NODES - 1)
 """Of the points, from the first."""
-_PARTS = 32
+_PARTS = 128
 """Of the step of the grid: where modes between two points are told apart."""
 _DOUBT = 5e-5
 """Of the distance to the next mode: what may be off by more is looked at."""
@@ -110,6 +110,21 @@ class _Brackets(msgspec.Struct, frozen=True, eq=False):
             getattr(self, name)[mode, beam] = getattr(others, name)
 
 
+class _Curve(msgspec.Struct, frozen=True, eq=False):
+    """What polynomials through `_NODES` points about each bracket say, (m, n_beams) all."""
+
+    zero: Array
+    """Its place, or the middle of the bracket."""
+    told: BoolArray
+    """Whether it has the zeros that the counts say."""
+    middle: Array
+    """The place in the middle of the points."""
+    slope: Array
+    """At the zero."""
+    doubt: Array
+    """How far the zero of a polynomial without the outermost two points lies from it."""
+
+
 class _Measured(msgspec.Struct, frozen=True, eq=False):
     """Counts of elastic modes, and logs of determinants without rigid motions and without their growth."""
 
@@ -144,8 +159,7 @@ def isolated(pencils: Pencils, rigid_modes: int, n_modes: int) -> Array:
     """About where the lowest elastic eigenvalues of K v = lambda M v are, (n_modes, n_beams); not a number if lost."""
     measured, places, below, logs = _gridded(pencils, rigid_modes, n_modes)
     brackets, curve = _on_grid(places, below, logs, n_modes)
-    last, found = curve.zero, _bettered(measured, brackets, curve)
-    found = _followed(measured, brackets, curve.told, last, found)
+    found = _followed(measured, brackets, curve, *_bettered(measured, brackets, curve))
     return np.asarray(np.where(brackets.below_high >= brackets.modes, measured.scale.values(found), np.nan))
 
 
@@ -175,19 +189,25 @@ def _reaching(plain: _Measured, places: Array, n_modes: int) -> tuple[_Measured,
     return plain, below, logs
 
 
-def _followed(measured: _Measured, brackets: _Brackets, told: BoolArray, last: Array, found: Array) -> Array:
-    """Places (m, n_beams) where modes are that moved from `last` to `found`; brackets are narrowed in their place."""
-    apart = told.copy()
+def _followed(measured: _Measured, brackets: _Brackets, curve: _Curve, found: Array, values: Array) -> Array:
+    """Places (m, n_beams) where modes are that moved from a curve's zero to `found`, all of them in their place.
+
+    `values` are determinants at the zero, not a number where nobody has looked.
+    """
+    apart, last = curve.told.copy(), curve.zero
     for _ in range(_ROUNDS):
         mode, beam = np.nonzero(~apart | (abs(found - last) > _NEAR * between(found)))
         if not len(mode):
             break
-        at, last = found[mode, beam], found.copy()
+        at, before, last = found[mode, beam], last[mode, beam], found.copy()
         own = brackets.of(mode, beam)
         apart[mode, beam] = own.alone
-        own = _narrowed(own, at, *measured.at(at, beam))
+        below, logs = measured.at(at, beam)
+        own, value = _narrowed(own, at, below, logs), _signed(below, logs)
         brackets.become(mode, beam, own)
-        found[mode, beam] = _between(own)
+        secant = at - value * (at - before) / (value - values[mode, beam])
+        inside = own.alone & (secant > own.low) & (secant < own.high)
+        found[mode, beam], values[mode, beam] = np.where(inside, secant, _between(own)), value
     return found
 
 
@@ -208,21 +228,6 @@ def _scale(pencils: Pencils, rigid_modes: int, n_modes: int) -> _Scale:
     part = (half + 0.5) / whole
     bent = np.clip((0.25 - part**2) / (0.75 * part**2), 0.0, _BENT)
     return _Scale(np.where(far, 2.0 * ends, ends), _GRID * whole, bent)
-
-
-class _Curve(msgspec.Struct, frozen=True, eq=False):
-    """What polynomials through `_NODES` points about each bracket say, (m, n_beams) all."""
-
-    zero: Array
-    """Its place, or the middle of the bracket."""
-    told: BoolArray
-    """Whether it has the zeros that the counts say."""
-    middle: Array
-    """The place in the middle of the points."""
-    slope: Array
-    """At the zero."""
-    doubt: Array
-    """How far the zero of a polynomial without the outermost two points lies from it."""
 
 
 def _on_grid(points: Array, below: Indices, logs: Array, n_modes: int) -> tuple[_Brackets, _Curve]:
@@ -314,26 +319,26 @@ def _exp(logs: Array) -> Array:
     return np.asarray(np.exp(np.clip(logs, -_ENDLESS, _ENDLESS)))
 
 
-def _bettered(measured: _Measured, brackets: _Brackets, curve: _Curve) -> Array:
-    """Zeros of the curves; of those in doubt where the polynomial through the curve's points and its zero is zero.
+def _bettered(measured: _Measured, brackets: _Brackets, curve: _Curve) -> tuple[Array, Array]:
+    """(zeros of the curves, not a number), of those in doubt what is next to it and the determinant there.
 
-    Brackets are narrowed in their place by the count there.
+    That is where the polynomial through the curve's points and its zero is zero; brackets are narrowed in their place.
     """
-    found = curve.zero.copy()
+    found, values = curve.zero.copy(), np.full_like(curve.zero, np.nan)
     mode, beam = np.nonzero(curve.told & ~(curve.doubt < _DOUBT * between(found)))
-    at, narrowed = found[mode, beam], brackets.of(mode, beam)
     if not len(mode):
-        return found
+        return found, values
+    at = found[mode, beam]
     below, logs = measured.at(at, beam)
-    narrowed = _narrowed(narrowed, at, below, logs)
+    narrowed = _narrowed(brackets.of(mode, beam), at, below, logs)
     brackets.become(mode, beam, narrowed)
     value, away = _signed(below, logs), at - curve.middle[mode, beam]
     # of the product of all distances to the points, which is zero there, the slope over itself
     rise = np.asarray(sum(1.0 / (away + _MIDDLE - node) for node in range(_NODES)))
     better = at - value / (curve.slope[mode, beam] + value * rise)
     told = (better > narrowed.low) & (better < narrowed.high)
-    found[mode, beam] = np.where(told, better, _between(narrowed))
-    return found
+    found[mode, beam], values[mode, beam] = np.where(told, better, _between(narrowed)), value
+    return found, values
 
 
 def _between(brackets: _Brackets) -> Array:
