@@ -12,7 +12,7 @@ from verify.models.arrays import Array, Indices
 from verify.models.band_stack import Pencils, banded, of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
-from verify.segments.attached import felt_at, is_mended, mended, places_on
+from verify.segments.attached import is_mended, mended, places_on, plainly
 from verify.segments.crowded import Links, mend_each, near
 from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
@@ -178,7 +178,8 @@ def _where_felt(
             beams[0].supports, n, standing[body, at_once], on[body, at_once]
         )
         for j in map(int, np.flatnonzero(~at_once)):
-            (felt[j, body],), (turned[j, body],) = felt_at(_chain_of(beams[j], chains, j), [float(row[j])], attachment)
+            where = int(standing[body, j]), float(on[body, j])
+            felt[j, body], turned[j, body] = plainly(_chain_of(beams[j], chains, j), float(row[j]), attachment, *where)
     crowded = np.flatnonzero(near(standing + on, n) & is_mended(attachment, n))
     links = Links(
         supports=beams[0].supports,
