@@ -7,7 +7,9 @@ Vectors are (n, k, c), k of each matrix. Loops run over the rows; what numpy is 
 a few hundred of them cost little more than one.
 """
 
+from collections.abc import Iterator
 from math import ceil
+from typing import TypeAlias
 
 import msgspec
 import numpy as np
@@ -18,10 +20,16 @@ _NEAR = 32768
 """Numbers that a product takes at once."""
 _MOST = 3_000_000
 """Numbers in factors that are taken at once: 24 MB."""
+_FEW = 500_000
+"""Numbers in factors of which all rows stay near the processor."""
 _ROWS = 16
 """Pivots whose product is a number of ordinary size."""
 _NEXT_TO_NOTHING = 1e-30
 """For a pivot that is zero: small beside any, and large enough to be divided by twice."""
+
+
+_Step: TypeAlias = tuple[int, Array, list[Array], list[Array], Array]
+"""(How far after a row, its share there, of what of each row, from what of each row, scratch)."""
 
 
 class Pencils(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -70,19 +78,11 @@ def banded(stiffness: Array, mass: Array) -> Pencils:
     return Pencils(stiffness=stiffness, mass=mass, felt=np.zeros((len(mass), *none.shape)), held=none, heavy=none)
 
 
-class Factors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """[[A, F D], [D F^T, -S]] = L diag(d) L^T without row exchanges, of m matrices A + F D S D F^T, S of signs."""
+class Pivots(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """D of the factors below of m matrices A + F D S D F^T, S of signs."""
 
     pivots: Array
     """d, (n + r, m)."""
-    beside: Array
-    """L_{i + 1 + a, i} d_i, (n, w, m)."""
-    felt: Array
-    """Of the rows of F^T, likewise, (n, r, m)."""
-    corner: Array
-    """Of the corner, likewise, above its diagonal, (r, r, m)."""
-    roots: Array
-    """D, (r, m), roots of what the motions of bodies weigh."""
     signs: Array
     """S, (r, m)."""
 
@@ -100,6 +100,19 @@ class Factors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         parts = [np.multiply.reduce(self.pivots[i : i + _ROWS], axis=0) for i in range(0, len(self.pivots), _ROWS)]
         return np.asarray(sum(np.log(abs(part)) for part in parts))
 
+
+class Factors(Pivots, frozen=True, eq=False, kw_only=True):
+    """[[A, F D], [D F^T, -S]] = L diag(d) L^T without row exchanges."""
+
+    beside: Array
+    """L_{i + 1 + a, i} d_i, (n, w, m)."""
+    felt: Array
+    """Of the rows of F^T, likewise, (n, r, m)."""
+    corner: Array
+    """Of the corner, likewise, above its diagonal, (r, r, m)."""
+    roots: Array
+    """D, (r, m), roots of what the motions of bodies weigh."""
+
     @property
     def grown(self) -> Array:
         """The diagonal of |L| |d| |L|^T, (n + r, m): the factors are those of a matrix that is off by its rounding."""
@@ -115,13 +128,6 @@ class Factors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def solve(self, loads: Array) -> Array:
         """A^-1 b, (n, k, m)."""
         return self._back(*self._forward(loads))
-
-    def answer(self, loads: Array) -> Array:
-        """A^-1 L b, (n, k, m): of any load at all, as right as another to begin with, in half the time."""
-        n, w, m = self.beside.shape
-        found = np.zeros((n + w, loads.shape[1], m))
-        np.divide(loads[:n], self.pivots[:n, None], out=found[:n])
-        return self._back(found, loads[n:] / self.pivots[n:, None])
 
     def energy(self, loads: Array) -> Array:
         """b^T A^-1 b, (k, m)."""
@@ -180,42 +186,122 @@ def _energies(shares: Array, pivots: Array) -> Array:
 
 def factorised(pencils: Pencils, shifts: Array) -> Factors:
     """The factors of K - shift M for shifts (k, c), m = k c. Not a number below a pivot that is zero."""
-    stiffness, mass, felt = pencils.stiffness, pencils.mass, pencils.felt
-    (n, width, c), narrow, r = stiffness.shape, mass.shape[1], felt.shape[1]
-    w = width - 1
-    rows = np.empty((n + w, width + r, len(shifts) * c))
-    filled = rows[:n].reshape(n, width + r, len(shifts), c)
-    np.multiply(mass[:, :, None], -shifts, out=filled[:, :narrow])
-    filled[:, :narrow] += stiffness[:, :narrow, None]
-    filled[:, narrow:width], filled[:, width:] = stiffness[:, narrow:, None], felt[:, :, None]
-    rows[n:] = 0.0
-    shares, taken = np.empty_like(rows[0, 1:width]), np.empty_like(rows[0, 1:])
-    steps = [(shares[a], list(rows[:n, 1 + a : width]), list(rows[1 + a :, : w - a]), taken[: w - a]) for a in range(w)]
-    if r:
-        steps += [(shares[a], list(rows[:n, width:]), list(rows[1 + a :, width:]), taken[w:]) for a in range(w)]
-    for i, (pivot, beside) in enumerate(zip(rows[:n, 0], rows[:n, 1:width], strict=True)):
-        np.divide(beside, pivot, shares)
-        for share, owns, lefts, part in steps:
-            np.multiply(share, owns[i], part)
-            np.subtract(lefts[i], part, lefts[i])
-    own = (pencils.held[:, None] - shifts * pencils.heavy[:, None]).reshape(r, rows.shape[2])
-    return _cornered(own, rows[:n, 0], rows[:n, 1:width], rows[:n, width:])
+    (n, width, _), r = pencils.stiffness.shape, pencils.felt.shape[1]
+    rows, corner = _window(pencils, shifts, n + width - 1), np.zeros((r, r, shifts.size))
+    for _ in _eliminated(pencils, shifts, rows, corner):
+        pass
+    rows = rows[:n].reshape(n, width + r, -1)
+    roots, signs = _cornered(_of_bodies(pencils, shifts), corner)
+    return Factors(
+        pivots=np.concatenate([rows[:, 0], corner[range(r), range(r)]]) if r else rows[:, 0],
+        signs=signs,
+        beside=rows[:, 1:width],
+        felt=rows[:, width:],
+        corner=corner,
+        roots=roots,
+    )
 
 
-def _cornered(own: Array, pivots: Array, beside: Array, felt: Array) -> Factors:
-    """The factors with what bodies feel, (n, r, m), of weights (r, m), of those of the bands."""
-    r = len(own)
+def tally(pencils: Pencils, shifts: Array) -> tuple[Indices, Array]:
+    """(how many eigenvalues of K v = lambda M v lie below shifts, log |det(K - shift M)|), (k, c) both."""
+    found = []
+    for some in in_parts(pencils, shifts):
+        pivots = _pivots(pencils, some)
+        found.append((pivots.below.reshape(some.shape), pivots.logs.reshape(some.shape)))
+    below, logs = (np.concatenate(each) for each in zip(*found, strict=True))
+    return below, logs
+
+
+def _pivots(pencils: Pencils, shifts: Array) -> Pivots:
+    """Those of the factors of K - shift M alone."""
+    (n, width, _), r = pencils.stiffness.shape, pencils.felt.shape[1]
+    pivots, corner = np.empty((n + r, shifts.size)), np.zeros((r, r, shifts.size))
+    few = shifts.size * pencils.size < _FEW
+    rows = _window(pencils, shifts, n + width - 1 if few else width)
+    for i, pivot in enumerate(_eliminated(pencils, shifts, rows, corner)):
+        pivots[i] = pivot
+    _, signs = _cornered(_of_bodies(pencils, shifts), corner)
+    pivots[n:] = corner[range(r), range(r)]
+    return Pivots(pivots=pivots, signs=signs)
+
+
+def _window(pencils: Pencils, shifts: Array, n_rows: int) -> Array:
+    """Room for rows of K - shift M and of what bodies feel, (n_rows, w + 1 + r, k, c)."""
+    return np.empty((n_rows, pencils.stiffness.shape[1] + pencils.felt.shape[1], *shifts.shape))
+
+
+def _eliminated(pencils: Pencils, shifts: Array, window: Array, corner: Array) -> Iterator[Array]:
+    """The pivots of K - shift M, (m,), one after another, with the row of the factors in a window (`_window`).
+
+    In a window of w + 1 rows, which stay near the processor, each row takes the place of the one w + 1 before; one of
+    n + w keeps them all. What rows take from what bodies feel of each other is taken from `corner`, (r, r, m), on and
+    above its diagonal.
+    """
+    (n, width, _), length, less = pencils.stiffness.shape, len(window), -shifts
+    whole, w = length > n, width - 1
+    _enter(pencils, less, 0, window if whole else window[:w])
+    rows = window.reshape(*window.shape[:2], -1)
+    shares = np.empty_like(rows[0, 1:])
+    pivots, others, steps = list(rows[:, 0]), list(rows[:, 1:]), _steps(rows, shares, width)
+    if not whole:
+        steps += _steps_of_bodies(rows, shares, width, corner)
+    for i in range(n):
+        here = i % length
+        if not whole:
+            _enter(pencils, less, i + w, window[(i + w) % length, None])
+        np.divide(others[here], pivots[here], shares)
+        for a, share, owns, lefts, part in steps:
+            left = lefts[(i + a) % length]
+            np.multiply(share, owns[here], part)
+            np.subtract(left, part, left)
+        yield pivots[here]
+    for b in range(len(corner) if whole else 0):
+        corner[b, b:] -= np.einsum("im,iam->am", rows[:n, width + b] / rows[:n, 0], rows[:n, width + b :])
+
+
+def _enter(pencils: Pencils, less: Array, first: int, rows: Array) -> None:
+    """Put rows of K + less M, from `first` on, and of what bodies feel in their room; zeros after the last of them."""
+    (n, width, _), narrow = pencils.stiffness.shape, pencils.mass.shape[1]
+    last = min(first + len(rows), n)
+    there, rows[last - first :] = rows[: last - first], 0.0
+    np.multiply(pencils.mass[first:last, :, None], less, out=there[:, :narrow])
+    there[:, :narrow] += pencils.stiffness[first:last, :narrow, None]
+    there[:, narrow:width] = pencils.stiffness[first:last, narrow:, None]
+    there[:, width:] = pencils.felt[first:last, :, None]
+
+
+def _steps(rows: Array, shares: Array, width: int) -> list[_Step]:
+    """What each row takes from those after it, in a window (length, w + 1 + r, m)."""
+    taken, w, bodies = np.empty_like(shares), width - 1, rows.shape[1] > width
+    steps = [(a + 1, shares[a], list(rows[:, 1 + a : width]), list(rows[:, : w - a]), taken[a:w]) for a in range(w)]
+    felt = list(rows[:, width:])
+    return steps + [(a + 1, shares[a], felt, felt, taken[w:]) for a in range(w) if bodies]
+
+
+def _steps_of_bodies(rows: Array, shares: Array, width: int, corner: Array) -> list[_Step]:
+    """What each row takes from what bodies feel of each other."""
+    taken = np.empty(corner.shape[1:])
+    return [
+        (0, shares[width - 1 + b], list(rows[:, width + b :]), [corner[b, b:]] * len(rows), taken[b:])
+        for b in range(len(corner))
+    ]
+
+
+def _of_bodies(pencils: Pencils, shifts: Array) -> Array:
+    """What the motions of bodies weigh, (r, m)."""
+    return np.asarray((pencils.held[:, None] - shifts * pencils.heavy[:, None]).reshape(len(pencils.held), shifts.size))
+
+
+def _cornered(own: Array, corner: Array) -> tuple[Array, Array]:
+    """(roots of what the motions of bodies weigh, their signs), (r, m) all; `corner` becomes that of the factors."""
     signs, roots = np.where(own < 0.0, -1.0, 1.0), np.sqrt(abs(own))
-    corner = np.empty((r, r, own.shape[1]))
-    for j in range(r):
-        scaled = felt[:, j] / pivots
-        corner[j, j:] = -roots[j] * roots[j:] * np.einsum("im,iam->am", scaled, felt[:, j:])
+    for j in range(len(corner)):
+        corner[j, j:] *= roots[j] * roots[j:]
         corner[j, j] -= signs[j]
-    for j in range(r):
-        for after in range(j + 1, r):
+    for j in range(len(corner)):
+        for after in range(j + 1, len(corner)):
             corner[after, after:] -= corner[j, after] / corner[j, j] * corner[j, after:]
-    pivots = np.concatenate([pivots, corner[range(r), range(r)]]) if r else pivots
-    return Factors(pivots=pivots, beside=beside, felt=felt, corner=corner, roots=roots, signs=signs)
+    return roots, signs
 
 
 def regular(factors: Factors) -> Factors:
@@ -254,16 +340,6 @@ def product(bands: Array, vectors: Array) -> Array:
                     np.multiply(beside, vectors[start + to : stop + to], out=part)
                     out[start - first : stop - first] += part
     return found
-
-
-def tally(pencils: Pencils, shifts: Array) -> tuple[Indices, Array]:
-    """(how many eigenvalues of K v = lambda M v lie below shifts, log |det(K - shift M)|), (k, c) both."""
-    found = []
-    for some in in_parts(pencils, shifts):
-        factors = factorised(pencils, some)
-        found.append((factors.below.reshape(some.shape), factors.logs.reshape(some.shape)))
-    below, logs = (np.concatenate(each) for each in zip(*found, strict=True))
-    return below, logs
 
 
 def in_parts(pencils: Pencils, shifts: Array) -> list[Array]:

@@ -2,10 +2,11 @@
 
 Two counts tell about where modes lie, over the fourth root, and how much closer the higher ones do; there a grid is
 laid that is a few times as dense as they are. Between two counts that differ by one the determinant, but for how it
-grows, is a sine: it is zero first about where a polynomial through six points of the grid is, then where one through
-these and the first is. What still moves goes on by false position as mended by Anderson and Bjoerck (BIT 13 (1973),
-p. 253), and where modes lie close together by halves. What is found is a shift to start from, and no more: who takes
-it judges what comes of it.
+grows, is a sine, alike on both sides of zero; a polynomial through fourteen points of the grid has its zeros, also two
+between two points. Where a polynomial through fewer says otherwise, what is found is a point of one more.
+Where there are not as many zeros as are counted, modes are followed by false position as mended by Anderson and Bjoerck
+(BIT 13 (1973), p. 253), and where they lie close together by halves. What is found is a shift to start from, and no
+more: who takes it judges what comes of it.
 """
 
 from typing import Any, TypeVar
@@ -29,11 +30,19 @@ _GRID = 2.5
 """Points for each eigenvalue."""
 _WIDENED = 3
 """Times that a grid is laid anew where it ends before the last mode."""
-_MIRRORED = 2
+_NODES = 14
+"""Points of the grid about a mode, as many below as above where there are."""
+_MIRRORED = _NODES // 2 - 1
 """Points on the other side of zero, where the determinant is what it is on this."""
-_NODES = (-2, -1, 0, 1, 2, 3)
-"""Points of the grid about a mode between 0 and 1."""
-_NEWTON = 4
+_ROUND = 3.0
+"""Points from zero within which a determinant has not begun to grow as it does beyond."""
+_MIDDLE = 0.5 * (_NODES - 1)
+"""Of the points, from the first."""
+_PARTS = 128
+"""Of the step of the grid: where modes between two points are told apart."""
+_DOUBT = 5e-5
+"""Of the distance to the next mode: what may be off by more is looked at."""
+_NEWTON = 3
 _ROUNDS = 14
 """Of false position and halving at most."""
 _NEAR = 0.02
@@ -82,9 +91,38 @@ class _Brackets(msgspec.Struct, frozen=True, eq=False):
     """-1 where `low` moved last, 1 where `high` did, 0 at first."""
 
     @property
+    def held(self) -> Indices:
+        """How many are in it."""
+        return np.asarray(self.below_high - self.below_low)
+
+    @property
     def alone(self) -> BoolArray:
-        """Whether one is in it."""
-        return np.asarray(self.below_high - self.below_low == 1, dtype=bool)
+        """Whether one is."""
+        return np.asarray(self.held == 1, dtype=bool)
+
+    def of(self, mode: Indices, beam: Indices) -> "_Brackets":
+        """Those of some modes."""
+        return _Brackets(*(getattr(self, name)[mode, beam] for name in self.__struct_fields__))
+
+    def become(self, mode: Indices, beam: Indices, others: "_Brackets") -> None:
+        """Put others in place of some."""
+        for name in self.__struct_fields__:
+            getattr(self, name)[mode, beam] = getattr(others, name)
+
+
+class _Curve(msgspec.Struct, frozen=True, eq=False):
+    """What polynomials through `_NODES` points about each bracket say, (m, n_beams) all."""
+
+    zero: Array
+    """Its place, or the middle of the bracket."""
+    told: BoolArray
+    """Whether it has the zeros that the counts say."""
+    middle: Array
+    """The place in the middle of the points."""
+    slope: Array
+    """At the zero."""
+    doubt: Array
+    """How far the zero of a polynomial without the outermost two points lies from it."""
 
 
 class _Measured(msgspec.Struct, frozen=True, eq=False):
@@ -94,7 +132,7 @@ class _Measured(msgspec.Struct, frozen=True, eq=False):
     rigid_modes: int
     scale: _Scale
     growth: Array
-    """Of powers 0, 1, 2 of the place, (3, n_beams)."""
+    """Of each of `_growing`, (3, n_beams)."""
 
     def at(self, places: Array, which: Any = slice(None)) -> tuple[Indices, Array]:
         """Both at places (..., n_beams), or of some beams."""
@@ -107,16 +145,21 @@ class _Measured(msgspec.Struct, frozen=True, eq=False):
     def grown_less(self, logs: Array, places: Array, which: Any = slice(None)) -> Array:
         """Logs at places without the growth there."""
         none, once, twice = self.growth[:, which]
-        return np.asarray(logs - (none + (once + twice * places) * places))
+        _, far, square = _growing(places)
+        return np.asarray(logs - (none + once * far + twice * square))
+
+
+def _growing(places: Array) -> tuple[float, Array, Array]:
+    """What the log of a determinant grows like, on both sides of zero alike."""
+    square = places**2
+    return 1.0, np.sqrt(square + _ROUND**2), square
 
 
 def isolated(pencils: Pencils, rigid_modes: int, n_modes: int) -> Array:
     """About where the lowest elastic eigenvalues of K v = lambda M v are, (n_modes, n_beams); not a number if lost."""
     measured, places, below, logs = _gridded(pencils, rigid_modes, n_modes)
     brackets, curve = _on_grid(places, below, logs, n_modes)
-    first = brackets.low + curve.root * (brackets.high - brackets.low)
-    found, brackets = _bettered(curve, brackets, first, *measured.at(first))
-    found = _followed(measured, brackets, curve.told, first, found)
+    found = _followed(measured, brackets, curve, *_bettered(measured, brackets, curve))
     return np.asarray(np.where(brackets.below_high >= brackets.modes, measured.scale.values(found), np.nan))
 
 
@@ -126,7 +169,8 @@ def _gridded(pencils: Pencils, rigid_modes: int, n_modes: int) -> tuple[_Measure
     plain = _Measured(pencils, rigid_modes, _scale(pencils, rigid_modes, n_modes), np.zeros((3, n_beams)))
     places = np.arange(0.5, _GRID * (n_modes + _BEYOND))[:, None] + np.zeros(n_beams)
     plain, below, logs = _reaching(plain, places, n_modes)
-    growth = np.linalg.pinv(places[:, :1] ** np.arange(3)) @ np.where(np.isfinite(logs), logs, 0.0)
+    growing = np.stack(np.broadcast_arrays(*_growing(places[:, 0])), axis=1)
+    growth = np.linalg.pinv(growing) @ np.where(np.isfinite(logs), logs, 0.0)
     measured = _Measured(pencils, rigid_modes, plain.scale, np.asarray(growth, dtype=float))
     mirrored = slice(_MIRRORED - 1, None, -1)
     places, logs = np.concatenate([-places[mirrored], places]), np.concatenate([logs[mirrored], logs])
@@ -145,25 +189,30 @@ def _reaching(plain: _Measured, places: Array, n_modes: int) -> tuple[_Measured,
     return plain, below, logs
 
 
-def _followed(measured: _Measured, brackets: _Brackets, told: BoolArray, last: Array, found: Array) -> Array:
-    """Places (m, n_beams) where modes are that moved from `last` to `found`; brackets are narrowed in their place."""
-    apart = told.copy()
+def _followed(measured: _Measured, brackets: _Brackets, curve: _Curve, found: Array, values: Array) -> Array:
+    """Places (m, n_beams) where modes are that moved from a curve's zero to `found`, all of them in their place.
+
+    `values` are determinants at the zero, not a number where nobody has looked.
+    """
+    apart, last = curve.told.copy(), curve.zero
     for _ in range(_ROUNDS):
-        mode, beam = np.nonzero(~apart | (abs(found - last) > _NEAR * _between_modes(found)))
+        mode, beam = np.nonzero(~apart | (abs(found - last) > _NEAR * between(found)))
         if not len(mode):
             break
-        at, last = found[mode, beam], found.copy()
-        own = _Brackets(*(each[mode, beam] for each in _all_of(brackets)))
+        at, before, last = found[mode, beam], last[mode, beam], found.copy()
+        own = brackets.of(mode, beam)
         apart[mode, beam] = own.alone
-        own = _narrowed(own, at, *measured.at(at, beam))
-        for each, one in zip(_all_of(brackets), _all_of(own), strict=True):
-            each[mode, beam] = one
-        found[mode, beam] = _between(own)
+        below, logs = measured.at(at, beam)
+        own, value = _narrowed(own, at, below, logs), _signed(below, logs)
+        brackets.become(mode, beam, own)
+        secant = at - value * (at - before) / (value - values[mode, beam])
+        inside = own.alone & (secant > own.low) & (secant < own.high)
+        found[mode, beam], values[mode, beam] = np.where(inside, secant, _between(own)), value
     return found
 
 
-def _between_modes(places: Array) -> Array:
-    """How far each mode lies from the next one, below or above, (m, n_beams)."""
+def between(places: Array) -> Array:
+    """How far each lies from the next one, below or above, the first from its like below zero, (m, n_beams)."""
     steps = np.diff(places, axis=0, prepend=-places[:1])
     return np.asarray(np.minimum(steps, np.concatenate([steps[1:], steps[-1:]])))
 
@@ -181,24 +230,9 @@ def _scale(pencils: Pencils, rigid_modes: int, n_modes: int) -> _Scale:
     return _Scale(np.where(far, 2.0 * ends, ends), _GRID * whole, bent)
 
 
-def _all_of(brackets: _Brackets) -> list[Any]:
-    return [getattr(brackets, name) for name in _Brackets.__struct_fields__]
-
-
-class _Curve(msgspec.Struct, frozen=True, eq=False):
-    """The polynomial through values at `_NODES`, of which 0 is `low`: where it is zero in the bracket."""
-
-    told: BoolArray
-    """Whether it says where the mode is."""
-    root: Array
-    """The middle where it does not."""
-    slope: Array
-    """There."""
-
-
 def _on_grid(points: Array, below: Indices, logs: Array, n_modes: int) -> tuple[_Brackets, _Curve]:
     """The brackets of modes and the curve in each, of points, counts and logs (g, n_beams)."""
-    modes, values, last = np.arange(1, n_modes + 1)[:, None], _signed(below, logs), len(points) - 1
+    modes, last = np.arange(1, n_modes + 1)[:, None], len(points) - 1
     counts = np.clip(below[_MIRRORED:], 0, n_modes).astype(np.uint16)  # four times as fast as whole numbers
     less = np.add.reduce(counts[:, None] < modes.astype(np.uint16), axis=0, dtype=np.uint16)
     after = less.astype(np.intp) + _MIRRORED
@@ -217,9 +251,13 @@ def _on_grid(points: Array, below: Indices, logs: Array, n_modes: int) -> tuple[
         log_high=at(logs, after),
         moved=np.zeros_like(after),
     )
-    share, slope = _root_between(np.array([at(values, after - 1 + node) for node in _NODES]))
-    told = inside & brackets.alone & (after + _NODES[-1] <= last + 1) & (share > 0.0) & (share < 1.0)
-    return brackets, _Curve(told, np.where(told, share, 0.5), slope)
+    first = np.clip(after - _NODES // 2, 0, last + 1 - _NODES)
+    values, at_first = _signed(below, logs), first * below.shape[1] + np.arange(below.shape[1])
+    nodes = np.array([values.ravel().take(at_first + node * below.shape[1]) for node in range(_NODES)])
+    curve = _curve(nodes, at(points, after - 1), at(points, first) + _MIDDLE, brackets)
+    told = curve.told & inside & (brackets.below_high >= modes)
+    zero = np.where(told, curve.zero, 0.5 * (brackets.low + brackets.high))
+    return brackets, replace(curve, zero=zero, told=told)
 
 
 def _signed(below: Indices, logs: Array) -> Array:
@@ -227,32 +265,80 @@ def _signed(below: Indices, logs: Array) -> Array:
     return np.asarray((1.0 - 2.0 * (below % 2)) * _exp(logs))
 
 
-def _root_between(values: Array) -> tuple[Array, Array]:
-    """(where the polynomial through values at `_NODES`, (6, ...), is zero past 0, by Newton's steps, its slope)."""
-    *others, highest = np.tensordot(np.linalg.inv(np.vander(_NODES, increasing=True)), values, 1)
-    share = values[2] / (values[2] - values[3])
+def _curve(values: Array, low: Array, middle: Array, brackets: _Brackets) -> _Curve:
+    """The curve through `values`, (nodes, m, n_beams), about `middle`, with its zeros past the points `low`."""
+    nodes, begin = np.arange(_NODES) - _MIDDLE, low - middle
+    powers = np.tensordot(np.linalg.inv(np.vander(nodes, increasing=True)), values, 1)
+    ends = [_polynomial(powers, begin + step) for step in (0.0, 1.0)]
+    zero = _zero(powers, begin + ends[0] / (ends[0] - ends[1]))
+    told = brackets.alone & (zero > begin) & (zero < begin + 1.0)
+    mode, beam = np.nonzero(~told)
+    some = _parted(powers[:, mode, beam], begin[mode, beam], brackets.of(mode, beam))
+    zero[mode, beam], told[mode, beam] = some
+    slope = _polynomial(_slopes(powers), zero)
+    without = (powers[-2] + powers[-1] * zero) / slope
+    for node in nodes[1:-1]:
+        without *= zero - node
+    return _Curve(zero=zero + middle, told=told, middle=middle, slope=slope, doubt=abs(without))
+
+
+def _parted(powers: Array, begin: Array, brackets: _Brackets) -> tuple[Array, BoolArray]:
+    """(where some polynomials' zeros past `begin` are, whether there are as many as are counted)."""
+    parts = np.array([_polynomial(powers, begin + part) for part in np.linspace(0.0, 1.0, _PARTS + 1)])
+    seen = np.cumsum(np.signbit(parts[1:]) != np.signbit(parts[:-1]), axis=0)
+    order, which = brackets.modes - brackets.below_low, np.arange(len(begin))
+    part = np.minimum((seen < order).sum(axis=0), _PARTS - 1)
+    before, after = parts[part, which], parts[part + 1, which]
+    zero = _zero(powers, begin + (part + before / (before - after)) / _PARTS)
+    return zero, (seen[-1] == brackets.held) & (zero > begin) & (zero < begin + 1.0)
+
+
+def _zero(powers: Array, at: Array) -> Array:
+    """A polynomial's zero next to a place, by Newton's steps."""
+    slopes = _slopes(powers)
     for _ in range(_NEWTON):
-        value, slope = highest, np.zeros_like(share)
-        for power in reversed(others):
-            slope = slope * share + value
-            value = value * share + power
-        share = share - value / slope
-    return share, slope
+        at = at - _polynomial(powers, at) / _polynomial(slopes, at)
+    return at
+
+
+def _slopes(powers: Array) -> Array:
+    """Powers of a polynomial's slope."""
+    return np.asarray(powers[1:] * np.arange(1.0, len(powers)).reshape(-1, *[1] * (powers.ndim - 1)))
+
+
+def _polynomial(powers: Array, at: Array) -> Array:
+    """By its powers, the lowest first (Horner)."""
+    value = powers[-1] * at
+    for power in powers[-2:0:-1]:
+        value += power
+        value *= at
+    return np.asarray(value + powers[0])
 
 
 def _exp(logs: Array) -> Array:
     return np.asarray(np.exp(np.clip(logs, -_ENDLESS, _ENDLESS)))
 
 
-def _bettered(curve: _Curve, brackets: _Brackets, at: Array, below: Indices, logs: Array) -> tuple[Array, _Brackets]:
-    """(where the polynomial through the points of a curve and its root is zero, the brackets with the count there)."""
-    root, narrowed = curve.root, _narrowed(brackets, at, below, logs)
-    value = _signed(below, logs)
+def _bettered(measured: _Measured, brackets: _Brackets, curve: _Curve) -> tuple[Array, Array]:
+    """(zeros of the curves, not a number), of those in doubt what is next to it and the determinant there.
+
+    That is where the polynomial through the curve's points and its zero is zero; brackets are narrowed in their place.
+    """
+    found, values = curve.zero.copy(), np.full_like(curve.zero, np.nan)
+    mode, beam = np.nonzero(curve.told & ~(curve.doubt < _DOUBT * between(found)))
+    if not len(mode):
+        return found, values
+    at = found[mode, beam]
+    below, logs = measured.at(at, beam)
+    narrowed = _narrowed(brackets.of(mode, beam), at, below, logs)
+    brackets.become(mode, beam, narrowed)
+    value, away = _signed(below, logs), at - curve.middle[mode, beam]
     # of the product of all distances to the points, which is zero there, the slope over itself
-    rise = np.asarray(sum(1.0 / (root - node) for node in _NODES))
-    found = at - value / (curve.slope + value * rise)
-    told = curve.told & (found > narrowed.low) & (found < narrowed.high)
-    return np.where(told, found, _between(narrowed)), narrowed
+    rise = np.asarray(sum(1.0 / (away + _MIDDLE - node) for node in range(_NODES)))
+    better = at - value / (curve.slope[mode, beam] + value * rise)
+    told = (better > narrowed.low) & (better < narrowed.high)
+    found[mode, beam], values[mode, beam] = np.where(told, better, _between(narrowed)), value
+    return found, values
 
 
 def _between(brackets: _Brackets) -> Array:

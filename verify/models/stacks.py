@@ -13,14 +13,14 @@ import numpy as np
 
 from verify.models.arrays import Array, BoolArray
 from verify.models.band_stack import Factors, Pencils, factorised, in_parts, regular
-from verify.models.isolated import isolated
+from verify.models.isolated import between, isolated
 
 _STEPS = 3
 """Of Rayleigh quotient iteration at most: each triples the digits of a vector."""
 _LEVEL = 1e-3
 """Of the place above the last value: what K is grounded by, so that it is regular where motions are rigid."""
-_STILL = 1e-9
-"""Of a value: a residual that a step need not lower."""
+_STILL = 1e-17
+"""Of a value: what a residual may leave of it to be off by, without a step that lowers it."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
 _UNLIKE = 1e6
@@ -130,7 +130,7 @@ def _homed(pencils: Pencils, shifts: Array) -> tuple[Array, Array]:
     parts = [_stepped(pencils, some) for some in in_parts(pencils, shifts)]
     vectors, carried, values, residuals = map(_beside, zip(*parts, strict=True))
     for _ in range(_STEPS):
-        mode, beam = np.nonzero(residuals > _STILL * values)
+        mode, beam = np.nonzero(residuals**2 > _STILL * values * between(values))
         if not len(mode):
             break
         found, heavy, at, left = _stepped(pencils.of_beams(beam), values[None, mode, beam])
@@ -155,8 +155,8 @@ def _stepped(pencils: Pencils, shifts: Array) -> tuple[Array, Array, Array, Arra
         carried = pencils.weighed(vectors.reshape(-1, *shifts.shape))
         return carried, _over_unknowns(vectors.reshape(carried.shape), carried)
 
-    some = np.random.default_rng(4276).standard_normal((len(factors.pivots), 1, 1))
-    load, before = carried_by(factors.answer(some))
+    some = np.random.default_rng(4276).standard_normal((len(factors.beside), 1, 1))
+    load, before = carried_by(factors.solve(np.broadcast_to(some, (len(some), 1, shifts.size))))
     found = factors.solve(load.reshape(len(load), 1, -1))
     carried, squares = carried_by(found)
     vectors = found.reshape(carried.shape)

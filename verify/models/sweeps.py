@@ -32,8 +32,8 @@ FEW = 4
 """Frequencies up to which each is solved by itself."""
 LEAST = 8
 """Beams of one layout from which on a stack takes less time than each by itself."""
-TOGETHER, MODES_TOGETHER = 256, 4000
-"""Beams in a stack, and modes of them, at most: enough to fill numpy's loops, few enough to share among cores."""
+TOGETHER, MODES_TOGETHER = 800, 8000
+"""Beams in a stack, and modes of them, at most: enough to fill numpy's loops, few enough to stay near the processor."""
 MODES_WORTH, UNKNOWNS_WORTH = 4000, 2000
 """Modes in stacks, and unknowns of beams alone, that take longer than a process does to begin: 20 ms."""
 FIELD = "frequencies_hz"
@@ -311,12 +311,13 @@ def _keep_memory() -> None:
 
 
 def _parts(group: list[int], n_modes: int) -> list[list[int]]:
-    """A group in equal parts of `TOGETHER` and `MODES_TOGETHER` at most.
+    """A group in equal parts of `TOGETHER` and `MODES_TOGETHER` at most, an even number of them if worth a process.
 
     However many cores there are: how they are cut may show in a last digit.
     """
-    most = min(TOGETHER, max(MODES_TOGETHER // n_modes, LEAST))
-    size = ceil(len(group) / ceil(len(group) / most))
+    parts = ceil(len(group) / min(TOGETHER, max(MODES_TOGETHER // n_modes, LEAST)))
+    parts += parts % 2 * (n_modes * len(group) >= MODES_WORTH)
+    size = ceil(len(group) / parts)
     return [group[first : first + size] for first in range(0, len(group), size)]
 
 

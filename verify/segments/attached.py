@@ -50,11 +50,11 @@ def felt_at(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Array,
     if len(alike):
         deflections[alike], turns[alike] = mended(chain.supports, n, links[alike], on[alike])
     for p in set(range(len(places))).difference(alike.tolist()):
-        deflections[p], turns[p] = _plainly(chain, positions[p], rule, int(links[p]), float(on[p]))
+        deflections[p], turns[p] = plainly(chain, positions[p], rule, int(links[p]), float(on[p]))
     return deflections, turns
 
 
-def _plainly(chain: Chain, position: float, rule: str, link: int, s: float) -> tuple[Array, Array]:
+def plainly(chain: Chain, position: float, rule: str, link: int, s: float) -> tuple[Array, Array]:
     """Weights of one place, `s` on `link`: of the rigid link as it is, or those that mending begins from."""
     n, turn = chain.n_segments, np.zeros(chain.n_segments)
     if rule == "reciprocal" and n >= 3:

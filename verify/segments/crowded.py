@@ -19,12 +19,11 @@ Schoenemann, Psychometrika 31 (1966)).
 No moment reaches a free or a pinned end: there q is s, s^2 or s, s^3 of the distance s, and 1, s^2 at a guided one.
 """
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil, floor
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
 
 from verify.models.arrays import Array, BoolArray, Indices
 from verify.segments.attached import felt_at, is_mended, places_on
@@ -38,6 +37,8 @@ _WALL = 5
 _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 """Of the distance from an end, in moments from far away."""
 _PARABOLA = (0, 1, 2)
+_REACH = 8
+"""Columns of weights beyond the joints that may be chosen: as many as a body has alone."""
 _RIGHT = 1e-7
 """What is so near to what it should be stays as it is."""
 _TIE = 1e-10
@@ -45,46 +46,108 @@ _TIE = 1e-10
 _ABOUT = 0.05
 
 
-class _Stretch(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """The joints around bodies that stand near each other, told from the nearer end, in links, of m chains."""
+class Links(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Of m chains on the same supports what crowds on them are told by."""
 
-    places: Array
-    """(m, p), from joint `origin`, ascending or descending."""
-    origin: int
-    first: int
-    """The first joint whose moments may be chosen, from joint 0."""
-    beyond: int
-    """The first after them."""
+    supports: tuple[str, str]
+    elastic: tuple[bool, bool]
+    lengths: Array
+    """(m, N), in units of each chain."""
+    compliances: Array
+    """(m, N + 1)."""
+
+    @property
+    def n(self) -> int:
+        """N."""
+        return int(self.lengths.shape[1])
+
+
+class _Layout(msgspec.Struct, frozen=True):
+    """What crowds have in common whose weights are found at once, joints told from the nearer end."""
+
+    bodies: int
+    inner: int
+    """The first joint whose moments may be chosen, from that where powers are told from."""
+    width: int
+    """How many there are of these."""
+    before: int
+    """Of joints before the first of them, 1 or 0."""
     powers: tuple[int, ...]
-    """Of moments from far away, over the distance from `origin`."""
-    weights: Array
-    """(m, beyond - first), c_k in what a joint inside has."""
-
-    @property
-    def joints(self) -> Array:
-        """Those that may be chosen, from `origin`."""
-        return np.asarray(np.arange(self.first, self.beyond) - float(self.origin))
-
-    @property
-    def edge(self) -> float:
-        """The first after them, from `origin`."""
-        return float(self.beyond - self.origin)
+    """Of moments from far away."""
 
 
 class _Crowd(msgspec.Struct, frozen=True, eq=False):
     """Bodies of one chain that stand near each other or an end."""
 
-    rows: Indices
+    chain: int
+    rows: list[int]
     """Which of its bodies, one of each place."""
     end: int
     """The nearer one, 0 or 1."""
-    stretch: _Stretch
+    first: int
+    """The first joint whose moments may be chosen, from there."""
+
+
+class _Stretch(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """The joints around m crowds of one layout, told from the nearer end of each, in links."""
+
+    layout: _Layout
+    chains: Indices
+    """(m, 1)."""
+    rows: Indices
+    """(m, p)."""
+    ends: Indices
+    """(m, 1)."""
+    window: Indices
+    """(m, columns), joints and links where weights are seen: the one before those that may be chosen, and on."""
+    places: Array
+    """(m, p), from the joint where powers are told from."""
+    weights: Array
+    """(m, width), c_k in what a joint inside has."""
 
     @property
-    def layout(self) -> Hashable:
-        """What crowds have in common whose weights are found at once."""
-        stretch = self.stretch
-        return (len(self.rows), self.end, stretch.origin, stretch.first, stretch.beyond, stretch.powers)
+    def joints(self) -> Array:
+        """Those that may be chosen, likewise."""
+        return np.asarray(np.arange(self.layout.width) + float(self.layout.inner))
+
+    @property
+    def edge(self) -> float:
+        """The first after them, likewise."""
+        return float(self.layout.inner + self.layout.width)
+
+    def of(self, which: BoolArray) -> "_Stretch":
+        """Those of some crowds."""
+        arrays = {name: getattr(self, name)[which] for name in self.__struct_fields__ if name != "layout"}
+        return _Stretch(layout=self.layout, **arrays)
+
+    def seen(self, weights: Array) -> Array:
+        """Of weights of all bodies (chains, bodies, N or N + 1) these, (m, p, columns); zeros beyond the other end."""
+        return _from_end(weights[self.chains, self.rows], self.ends[..., None], self.window[:, None])
+
+    def put(self, weights: Array, found: Array, which: BoolArray) -> None:
+        """Put what is found, (m, p, columns), in place of some of these."""
+        chains, rows = self.chains[which], self.rows[which]
+        columns = self.window[which, : self.layout.before + self.layout.width + 1]
+        columns = np.where(self.ends[which], weights.shape[2] - 1 - columns, columns)
+        weights[chains, rows] = 0.0
+        weights[chains[..., None], rows[..., None], columns[:, None]] = found[which][..., : columns.shape[1]]
+
+
+def _from_end(values: Array, ends: Indices, at: Indices) -> Array:
+    """Of values (..., columns) those of columns `at` from the ends; zeros beyond the other."""
+    last = values.shape[-1] - 1
+    there = np.take_along_axis(values, np.clip(np.where(ends, last - at, at), 0, last), axis=-1)
+    return np.where((at >= 0) & (at <= last), there, 0.0)
+
+
+def links_of(chain: Chain) -> Links:
+    """Those of one chain."""
+    return Links(
+        supports=chain.supports,
+        elastic=chain.elastic,
+        lengths=chain.lengths[None],
+        compliances=chain.compliances[None],
+    )
 
 
 def felt_together(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Array, Array]:
@@ -98,34 +161,62 @@ def felt_together(chain: Chain, positions: Sequence[float], rule: str) -> tuple[
         return felt, turned
     places = np.array(positions, dtype=float) / chain.unit
     links, on, _ = places_on(np.broadcast_to(chain.lengths[:, None], (n, len(places))), places)
-    mend_each([chain], (links + on)[None], felt[None], turned[None])
+    mend_each((links + on)[None], felt[None], turned[None], links_of(chain))
     return felt, turned
 
 
-def mend_each(chains: Sequence[Chain], places: Array, felt: Array, turned: Array) -> None:
+def mend_each(places: Array, felt: Array, turned: Array, links: Links) -> None:
     """Mend the weights of the bodies of m chains that have each alone, (m, p, N + 1) and (m, p, N), in place.
 
     Places, (m, p), are told in links. What crowds have in common is solved once for all of them.
     """
-    alike: dict[Hashable, list[tuple[int, _Crowd]]] = {}
-    for number, (chain, own) in enumerate(zip(chains, places, strict=True)):
-        for crowd in _crowds(chain, own):
-            alike.setdefault(crowd.layout, []).append((number, crowd))
-    for members in alike.values():
-        numbers = np.array([number for number, _ in members])
-        rows, step = np.array([crowd.rows for _, crowd in members]), -1 if members[0][1].end else 1
-        stretch = replace(
-            members[0][1].stretch,
-            places=np.concatenate([crowd.stretch.places for _, crowd in members]),
-            weights=np.concatenate([crowd.stretch.weights for _, crowd in members]),
-        )
-        across = numbers[:, None], rows
-        mended = _mended(stretch, felt[across][..., ::step], turned[across][..., ::step])
-        for which, number in enumerate(numbers):
-            for place, row in enumerate(rows[which]):
-                same = abs(places[number] - places[number, row]) < 1e-9
-                for weights, found in zip((felt, turned), mended, strict=True):
-                    weights[number, same, ::step] = found[which, place]
+    for stretch in _stretches(places, links):
+        own = stretch.seen(felt), stretch.seen(turned)
+        found = _mended(stretch, *own)
+        changed = np.any([(one != other).any(axis=(1, 2)) for one, other in zip(found, own, strict=True)], axis=0)
+        stretch.put(felt, found[0], changed)
+        stretch.put(turned, found[1], changed)
+    same = abs(places[:, :, None] - places[:, None]) < 1e-9
+    for number in np.flatnonzero(same.sum(axis=(1, 2)) > places.shape[1]):
+        first = same[number].argmax(axis=1)
+        felt[number], turned[number] = felt[number, first], turned[number, first]
+
+
+def _stretches(places: Array, links: Links) -> Iterator[_Stretch]:
+    """The joints around crowds, where these are about alike and a chain has as many, all of one layout together."""
+    alike: dict[_Layout, list[_Crowd]] = {}
+    for number, own in enumerate(places.tolist()):
+        for rows in _groups(links.n, links.supports, own):
+            layout, crowd = _told(links, number, rows, own)
+            if crowd.first + layout.width <= links.n - 3:
+                alike.setdefault(layout, []).append(crowd)
+    for layout, crowds in alike.items():
+        stretch, alike_there = _stretch(layout, crowds, places, links)
+        if alike_there.any():
+            yield stretch.of(alike_there)
+
+
+def _stretch(layout: _Layout, crowds: list[_Crowd], places: Array, links: Links) -> tuple[_Stretch, BoolArray]:
+    """(The joints around crowds of one layout, of which links and joints but for a wall's are about alike)."""
+    told = np.array([(crowd.chain, crowd.end, crowd.first) for crowd in crowds], dtype=np.intp)
+    chains, ends, firsts = np.split(told, 3, axis=1)
+    rows, window = np.array([crowd.rows for crowd in crowds]), np.arange(-layout.before, layout.width + _REACH) + firsts
+    first, beyond = layout.before, layout.before + layout.width
+    compliances = _from_end(links.compliances[chains[:, 0]], ends, window[:, : beyond + 1])
+    lengths = _from_end(links.lengths[chains[:, 0]], ends, window[:, : beyond + 1])
+    weights, there = compliances[:, first:beyond] / compliances[:, beyond:], places[chains, rows]
+    inside = np.where(window[:, first:beyond] < _WALL, 1.0, weights)
+    stretch = _Stretch(
+        layout=layout,
+        chains=chains,
+        rows=rows,
+        ends=ends,
+        window=window,
+        places=np.where(ends, links.n - there, there) - (firsts - layout.inner),
+        weights=weights,
+    )
+    even = np.ptp(lengths, axis=1) <= _ABOUT * lengths[:, 0]
+    return stretch, np.asarray(even & (abs(inside - 1.0) <= _ABOUT).all(axis=1))
 
 
 def near(places: Array, n: int) -> BoolArray:
@@ -137,24 +228,15 @@ def near(places: Array, n: int) -> BoolArray:
     return np.asarray(ends.any(axis=0) | (apart < _BEFORE + _AFTER).any(axis=0))
 
 
-def _crowds(chain: Chain, places: Array) -> Iterator[_Crowd]:
-    """Bodies at places (p,) of a chain that may be mended."""
-    for rows in _groups(chain, places):
-        end = int(places[rows].mean() > 0.5 * chain.n_segments)
-        stretch = _stretch(chain, places[rows], end)
-        if stretch is not None:
-            yield _Crowd(rows, end, stretch)
-
-
-def _groups(chain: Chain, places: Array) -> Iterator[Indices]:
+def _groups(n: int, supports: tuple[str, str], places: Sequence[float]) -> Iterator[list[int]]:
     """Rows of bodies that stand near each other or an end, one of each place; without those at an end it turns with.
 
     One on a joint is on both its links, so that bodies are as near seen from the other end. Of a few bodies, which
     numpy would take ten times as long for.
     """
-    n, rows, groups = chain.n_segments, dict[float, int](), list[list[int]]()
-    ends = {end for end, support in zip((0.0, float(n)), chain.supports, strict=True) if support != "guided"}
-    for row, place in enumerate(places.tolist()):
+    rows, groups = dict[float, int](), list[list[int]]()
+    ends = {end for end, support in zip((0.0, float(n)), supports, strict=True) if support != "guided"}
+    for row, place in enumerate(places):
         if place not in ends:
             rows.setdefault(round(place, 9), row)
     links = {row: (min(floor(place), n - 1), max(ceil(place) - 1, 0)) for place, row in sorted(rows.items())}
@@ -166,35 +248,27 @@ def _groups(chain: Chain, places: Array) -> Iterator[Indices]:
     for group in groups:
         after, before = links[group[0]]
         if len(group) > 1 or before < _WALL + _BEFORE or after >= n - _WALL - _BEFORE:
-            yield np.array(group, dtype=np.intp)
+            yield group
 
 
-def _stretch(chain: Chain, places: Array, end: int) -> _Stretch | None:
-    """The joints around bodies at places (p,), from the end 0 or 1 on; None where a chain has none to choose."""
-    n, support = chain.n_segments, chain.supports[end]
-    places = n - places if end else places
-    lengths, compliances = (one[::-1] if end else one for one in (chain.lengths, chain.compliances))
-    holds = support in ("clamped", "guided") and not chain.elastic[end]
-    first = max(int(places.min()) - _BEFORE, 0 if holds else 1)
-    beyond = max(int(places.max()) + _AFTER, first + max(_FEWEST, 3 + 2 * len(places)))
-    if beyond > n - 3:
-        return None
-    there, weights = lengths[max(first - 1, 0) : beyond + 1], compliances[first:beyond] / compliances[beyond]
-    inside = abs(weights[max(_WALL - first, 0) :] - 1.0)
-    if np.ptp(there) > _ABOUT * there[0] or (inside > _ABOUT).any():
-        return None
-    at_end = first <= 1 and int(places.min()) - _BEFORE <= first
-    origin = 0 if at_end else first
-    powers = _PARABOLA if not at_end or chain.elastic[end] else _POWERS.get(support, _PARABOLA)
-    return _Stretch(
-        places=places[None] - origin, origin=origin, first=first, beyond=beyond, powers=powers, weights=weights[None]
-    )
+def _told(links: Links, number: int, rows: list[int], places: Sequence[float]) -> tuple[_Layout, _Crowd]:
+    """The crowd of some bodies of a chain, told from the nearer end on, and its layout."""
+    end = int(sum(places[row] for row in rows) > 0.5 * links.n * len(rows))
+    support, elastic = links.supports[end], links.elastic[end]
+    there = [links.n - places[row] if end else places[row] for row in rows]
+    before, after = int(min(there)) - _BEFORE, int(max(there)) + _AFTER
+    first = max(before, 0 if support in ("clamped", "guided") and not elastic else 1)
+    beyond = max(after, first + max(_FEWEST, 3 + 2 * len(rows)))
+    at_end = first <= 1 and before <= first
+    powers = _PARABOLA if not at_end or elastic else _POWERS.get(support, _PARABOLA)
+    layout = _Layout(len(rows), first if at_end else 0, beyond - first, int(first > 0), powers)
+    return layout, _Crowd(number, rows, end, first)
 
 
 def _mended(stretch: _Stretch, felt: Array, turned: Array) -> tuple[Array, Array]:
-    """Weights (m, p, N + 1) and (m, p, N), from the nearer end, with the products of their bodies on the beam."""
+    """Weights of joints and turns, (m, p, columns) both, with the products of their bodies on the beam."""
     roots = np.sqrt(stretch.weights)[..., None]
-    far = roots * stretch.joints[:, None] ** np.array(stretch.powers)
+    far = roots * stretch.joints[:, None] ** np.array(stretch.layout.powers)
     seen, products = _of_far(stretch), _of_each_other(stretch)
     alone = roots * _moments(stretch, felt, turned)
     lack = (abs(_turned(far) @ alone - seen), abs(_turned(alone) @ alone - products))
@@ -202,7 +276,7 @@ def _mended(stretch: _Stretch, felt: Array, turned: Array) -> tuple[Array, Array
     if right.all():
         return felt, turned
     basis, triangle = np.linalg.qr(far, mode="complete")
-    n_far = len(stretch.powers)
+    n_far = len(stretch.layout.powers)
     least, rest = basis[..., :n_far] @ np.linalg.solve(_turned(triangle[:, :n_far]), seen), basis[..., n_far:]
     values, vectors = np.linalg.eigh(products - _turned(least) @ least)
     lacking = (vectors * np.sqrt(np.maximum(values, 0.0))[:, None]) @ _turned(vectors)
@@ -221,7 +295,7 @@ def _turned(matrices: Array) -> Array:
 
 def _of_far(stretch: _Stretch) -> Array:
     """Integrals of M q less what joints from `edge` on have of them, (m, powers, 2 p): of forces, then of couples."""
-    x, b, p = stretch.places[:, None], stretch.edge, np.array(stretch.powers, dtype=float)[:, None]
+    x, b, p = stretch.places[:, None], stretch.edge, np.array(stretch.layout.powers, dtype=float)[:, None]
     couples = (b ** (p + 1) - x ** (p + 1)) / (p + 1)
     forces = (b ** (p + 2) - x ** (p + 2)) / (p + 2) - x * couples
     return np.concatenate([forces - _beyond(b, p + 1) + x * _beyond(b, p), couples - _beyond(b, p)], axis=2)
@@ -244,26 +318,21 @@ def _of_each_other(stretch: _Stretch) -> Array:
 
 def _moments(stretch: _Stretch, felt: Array, turned: Array) -> Array:
     """Moments of weights in the joints that may be chosen, (m, joints, 2 p), of forces, then of couples."""
-    window = np.arange(stretch.first, min(stretch.beyond + 8, felt.shape[2]))
-    joints = window[: stretch.beyond - stretch.first]
-    ahead = np.maximum(window[:, None] - joints, 0)
-    forces = stretch.joints[:, None] - stretch.places[:, None] + _turned(felt[..., window] @ ahead)
-    links = window[window < turned.shape[2]]
-    couples = 1.0 - _turned(turned[..., links] @ (links[:, None] >= joints))
-    return np.concatenate([forces, couples], axis=2)
+    felt, turned = felt[..., stretch.layout.before :], turned[..., stretch.layout.before :]
+    ahead = np.arange(felt.shape[2])[:, None] - np.arange(stretch.layout.width)
+    forces = stretch.joints[:, None] - stretch.places[:, None] + _turned(felt @ np.maximum(ahead, 0))
+    return np.concatenate([forces, 1.0 - _turned(turned @ (ahead >= 0))], axis=2)
 
 
-def _of_moments(stretch: _Stretch, moments: Array, n_joints: int) -> tuple[Array, Array]:
-    """Weights (m, p, N + 1) and (m, p, N) of moments (m, joints, 2 p): changes of links' forces, and of moments."""
-    (m, p), first, beyond = stretch.places.shape, stretch.first, stretch.beyond
-    begin = max(first - 1, 0)
-    every = np.zeros((m, 2 * p, beyond + 2 - begin))
-    every[..., first - begin : beyond - begin] = _turned(moments)
-    ahead = np.arange(2.0) + stretch.edge
-    every[:, :p, beyond - begin :] = ahead - stretch.places[..., None]
-    every[:, p:, beyond - begin :] = 1.0
+def _of_moments(stretch: _Stretch, moments: Array, columns: int) -> tuple[Array, Array]:
+    """Weights (m, p, columns) both of moments (m, joints, 2 p): changes of links' forces, and of moments."""
+    (m, p), before, width = stretch.places.shape, stretch.layout.before, stretch.layout.width
+    every = np.zeros((m, 2 * p, before + width + 2))
+    every[..., before : before + width] = _turned(moments)
+    every[:, :p, before + width :] = np.arange(2.0) + stretch.edge - stretch.places[..., None]
+    every[:, p:, before + width :] = 1.0
     across = np.diff(every)
-    felt, turned = np.zeros((m, p, n_joints)), np.zeros((m, p, n_joints - 1))
-    felt[..., begin : beyond + 1] = np.diff(across[:, :p], prepend=0.0)
-    turned[..., begin:beyond] = across[:, p:, :-1]
+    felt, turned = np.zeros((m, p, columns)), np.zeros((m, p, columns))
+    felt[..., : before + width + 1] = np.diff(across[:, :p], prepend=0.0)
+    turned[..., : before + width] = across[:, p:, :-1]
     return felt, turned

@@ -12,8 +12,8 @@ from verify.models.arrays import Array, Indices
 from verify.models.band_stack import Pencils, banded, of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
-from verify.segments.attached import felt_at, is_mended, mended, places_on
-from verify.segments.crowded import mend_each, near
+from verify.segments.attached import is_mended, mended, places_on, plainly
+from verify.segments.crowded import Links, mend_each, near
 from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
 
@@ -178,11 +178,17 @@ def _where_felt(
             beams[0].supports, n, standing[body, at_once], on[body, at_once]
         )
         for j in map(int, np.flatnonzero(~at_once)):
-            (felt[j, body],), (turned[j, body],) = felt_at(_chain_of(beams[j], chains, j), [float(row[j])], attachment)
+            where = int(standing[body, j]), float(on[body, j])
+            felt[j, body], turned[j, body] = plainly(_chain_of(beams[j], chains, j), float(row[j]), attachment, *where)
     crowded = np.flatnonzero(near(standing + on, n) & is_mended(attachment, n))
-    some = [replace(_chain_of(beams[j], chains, j), elastic=elastic) for j in map(int, crowded)]
+    links = Links(
+        supports=beams[0].supports,
+        elastic=elastic,
+        lengths=chains.lengths.T[crowded],
+        compliances=_compliances(chains.joints).T[crowded],
+    )
     mended_felt, mended_turned = felt[crowded], turned[crowded]
-    mend_each(some, (standing + on).T[crowded], mended_felt, mended_turned)
+    mend_each((standing + on).T[crowded], mended_felt, mended_turned, links)
     felt[crowded], turned[crowded] = mended_felt, mended_turned
     return np.ascontiguousarray(felt.transpose(1, 2, 0)), np.ascontiguousarray(turned.transpose(1, 2, 0))
 
@@ -195,12 +201,15 @@ def _chain_of(beam: Beam, chains: Chains, index: int) -> Chain:
         unit=beam.length / len(chains.lengths),
         start=0.0,
         lengths=chains.lengths[:, index],
-        compliances=np.divide(
-            1.0, chains.joints[:, index], out=np.full(len(chains.joints), np.inf), where=chains.joints[:, index] > 0.0
-        ),
+        compliances=_compliances(chains.joints[:, index]),
         masses=chains.masses[:, index],
         inertias=chains.inertias[:, index],
     )
+
+
+def _compliances(joints: Array) -> Array:
+    """Infinite where there is no joint."""
+    return np.divide(1.0, joints, out=np.full_like(joints, np.inf), where=joints > 0.0)
 
 
 def _pencils(chains: Chains) -> Pencils:

@@ -224,30 +224,30 @@ def moments_error(number: float) -> float:
     at = np.array(places)
     found = crowded.felt_together(chain, tuple(at * beam.length / n), "reciprocal")
     worst, seen = 0.0, 0
-    for crowd in crowded._crowds(chain, at):
-        step = -1 if crowd.end else 1
-        felt, turned = (one[crowd.rows][None][..., ::step] for one in found)
-        stretch = crowd.stretch
+    for stretch in crowded._stretches(at[None], crowded.links_of(chain)):
+        felt, turned = (stretch.seen(one[None]) for one in found)
         moments = crowded._moments(stretch, felt, turned)
-        back = crowded._of_moments(stretch, moments, n + 1)
+        back = crowded._of_moments(stretch, moments, felt.shape[2])
         worst = max(worst, *(float(abs(a - b).max()) for a, b in zip(back, (felt, turned), strict=True)))
-        lever = _levers(stretch, felt[0], turned[0])
-        worst, seen = max(worst, float(abs(moments[0].T - lever).max())), seen + len(crowd.rows)
+        for which in range(len(moments)):
+            lever = _levers(stretch, which, felt[which], turned[which])
+            worst = max(worst, float(abs(moments[which].T - lever).max()))
+        seen += stretch.rows.size
     return max(worst, float(seen != len(places)))
 
 
-def _levers(stretch: Any, felt: Array, turned: Array) -> Array:
+def _levers(stretch: Any, which: int, felt: Array, turned: Array) -> Array:
     """Moments in joints that a unit force, then couple, at each place makes, less those of what it does to a chain.
 
     From the joints that are further along: those hold it.
     """
     rows = []
-    joints = np.arange(stretch.first, stretch.beyond)
-    every = np.arange(felt.shape[1])
-    for place, weights in zip(stretch.places[0] + stretch.origin, felt, strict=True):
+    every, layout = stretch.window[which], stretch.layout
+    joints = every[layout.before : layout.before + layout.width]
+    for place, weights in zip(stretch.places[which] + joints[0] - layout.inner, felt, strict=True):
         ahead = np.maximum(every - joints[:, None], 0)
         rows.append(joints - place + ahead @ weights)
-    after = np.arange(turned.shape[1])[:, None] >= joints
+    after = every[:, None] >= joints
     return np.vstack([np.array(rows), 1.0 - turned @ after])
 
 
