@@ -201,8 +201,8 @@ def _unclaimed() -> Iterator[bool]:
     member = family(STRIP)[0]
     for paired, n, fits in ((3, 7, False), (4, 7, True), (2, 3, False), (3, 3, True), (2, 2, True), (3, 6, False)):
         pairs, still = in_order_of(paired), np.zeros(paired)
-        one = judged_fit(member, 9, pairs, still, 1.0, still, 0.0, n)
-        yield bool(np.isfinite(one.score)) is fits
+        fit = judged_fit(member, 9, pairs, still, 1.0, still, 0.0, n)
+        yield bool(np.isfinite(fit.score)) is fits
     for one in family(STRIP):
         if one.packaged and one.model == "segment":
             yield frequencies_hz(one, STRIP, 1, 5).shape == (0,)
