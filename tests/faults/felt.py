@@ -19,7 +19,7 @@ from verify.judge import bracket, sizing, variants
 from verify.models import driven_pencil, eigen, fields
 from verify.models.modes import Modes
 from verify.motion import simulate, step_size, surface, validity
-from verify.segments import attached, carried, loaded
+from verify.segments import attached, carried, loaded, orders
 from verify.segments import linear as segment_linear
 from verify.segments import stacks as segment_stacks
 from verify.waves import absorber, best_phase, devices, imposed, operating_point, poles
@@ -206,6 +206,10 @@ def whatever_explains_is_believed(patch):
     patch.setattr(causes, "_credible", lambda found: True)
 
 
+def fields_of_the_order_of_frequencies(patch):
+    patch.setattr(orders, "field_order_of", orders.order_of)
+
+
 def members_of_an_order_more(patch):
     true = family.family
 
@@ -316,6 +320,7 @@ FAULTS = {
         factors_never_looked_for: {"lists-with-faults"},
         whatever_explains_is_believed: {"lists-of-nothing"},
         members_of_an_order_more: {"orders-of-members"},
+        fields_of_the_order_of_frequencies: {"orders-of-fields"},
         rigid_motions_judged: {"shapes-of-sines"},
         sizes_of_the_slowest_load: {"felt-at-the-worst-frequency"},
         limitless(devices, "_ASIDE", 0.0): {"devices-at-turning-ends"},
