@@ -309,6 +309,7 @@ def test_kicks_beat_fixed_steps_at_the_same_work_and_pass_their_limit():
     error, rival = (rms(m.deflection([0.2]) - exact) / rms(exact) for m in (kicked, stepped))
     assert error < 5e-3
     assert kicked.statistics.evaluations < 0.35 * stepped.statistics.evaluations
+    assert (kicked.statistics.rejected, stepped.statistics.rejected) == (0, 0)
     assert error < rival
 
 

@@ -14,12 +14,12 @@ from verify.elements import shear
 from verify.elements import stacks as element_stacks
 from verify.exact import error_laws
 from verify.exact import modes as exact_modes
-from verify.identify import family, fitting, shapes
+from verify.identify import causes, family, fitting, shapes
 from verify.judge import bracket, sizing, variants
 from verify.models import driven_pencil, eigen, fields
 from verify.models.modes import Modes
 from verify.motion import simulate, step_size, surface, validity
-from verify.segments import attached, carried, loaded
+from verify.segments import attached, carried, loaded, orders
 from verify.segments import linear as segment_linear
 from verify.segments import stacks as segment_stacks
 from verify.waves import absorber, best_phase, devices, imposed, operating_point, poles
@@ -202,6 +202,23 @@ def lists_a_thousandth_of_a_millionth_high(patch):
     patch.setattr(family, "frequencies_hz", lambda *given: (1.0 + 1e-9 * given[2]) * true(*given))
 
 
+def whatever_explains_is_believed(patch):
+    patch.setattr(causes, "_credible", lambda found: True)
+
+
+def fields_of_the_order_of_frequencies(patch):
+    patch.setattr(orders, "field_order_of", orders.order_of)
+
+
+def members_of_an_order_more(patch):
+    true = family.family
+
+    def declared(*given):
+        return tuple(one if one.order is None else replace(one, order=one.order + 1) for one in true(*given))
+
+    patch.setattr(family, "family", declared)
+
+
 def factors_never_looked_for(patch):
     patch.setattr(fitting, "UNITS", {})
 
@@ -301,6 +318,9 @@ FAULTS = {
         limitless(error_laws, "MEAN_LIMIT", 2.18766): {"where-errors-turn"},
         lists_a_thousandth_of_a_millionth_high: {"lists-of-members"},
         factors_never_looked_for: {"lists-with-faults"},
+        whatever_explains_is_believed: {"lists-of-nothing"},
+        members_of_an_order_more: {"orders-of-members"},
+        fields_of_the_order_of_frequencies: {"orders-of-fields"},
         rigid_motions_judged: {"shapes-of-sines"},
         sizes_of_the_slowest_load: {"felt-at-the-worst-frequency"},
         limitless(devices, "_ASIDE", 0.0): {"devices-at-turning-ends"},

@@ -44,6 +44,14 @@ def test_links_with_inertia_are_the_packages_own(supports, wall):
     assert ours == pytest.approx(solve_segments(beam, 7, 23, wall=wall).frequencies_hz, rel=1e-12)
 
 
+@pytest.mark.parametrize("supports", SUPPORTS, ids="-".join)
+def test_one_link_has_no_frequencies(supports):
+    """Nothing bends: a chain has its springs between two links."""
+    chains = [one for one in family(beam_of(supports)) if one.packaged and one.model == "segment"]
+    assert len(chains) > 2
+    assert {frequencies_hz(one, beam_of(supports), 1, 5).shape for one in chains} == {(0,)}
+
+
 def test_large_and_small_sizes_are_solved_alike():
     """Beyond 250 unknowns vectors come from Lanczos: the chain's dispersion holds on both sides."""
     beam = beam_of(("pinned", "pinned"))

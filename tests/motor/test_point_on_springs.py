@@ -20,6 +20,7 @@ from motor_references import (
 from motor_setups import HALF, MIDDLE, OMEGA, PERIOD, drive, ridden
 
 from verify.contact.landing import lift_off_ratio
+from verify.motion.records import SLIPS, STICKS
 from verify.slider import Contact, Slider
 
 AMPLITUDE, BACK, MASS, LOAD, STIFFNESS, PERIODS = 1e-6, 0.1, 2e-3, 2.0, 5e6, 5
@@ -108,6 +109,13 @@ def test_landings_and_leavings_are_where_dop853_has_them(name):
             continue  # it lets go before it is out: the kernel notes where it is out
         assert len(found) == len(times)
         assert np.abs(found - times).max() < 2e-3 * PERIOD
+
+
+def test_a_stick_and_a_slip_stand_between_the_two_mid_steps_that_tell_them():
+    run = run_of("sticks and slips", 400)
+    turned = run.events[(run.events[:, 1] == STICKS) | (run.events[:, 1] == SLIPS), 0] / (PERIOD / 400)
+    assert len(turned) > 4
+    assert turned == pytest.approx(np.round(turned), abs=1e-9 * turned.max())
 
 
 @pytest.mark.parametrize("name", CASES)

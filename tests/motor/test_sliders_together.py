@@ -5,6 +5,8 @@ import pytest
 from msgspec.structs import replace
 
 from verify import Beam, Contact, Foot, PointForce, Slider, run_motor, run_motors
+from verify.models.catalogue import MODELS
+from verify.motor.resting import _under
 
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = [PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0)]
@@ -24,6 +26,20 @@ SLIDER = Slider(
 def moved(slider, seconds=4e-3, **given):
     kept = {"model": "segment", "count": 49, "samples": 18, **given}
     return run_motor(BEAM, FORCES, HERTZ, seconds, slider=slider, **kept)
+
+
+def test_the_material_under_a_point_on_a_bent_beam_lies_no_further_than_its_end():
+    """X = x + (h/2) w', of the upper face outwards where the end rises, of the lower one back."""
+    beam = replace(BEAM, supports=("clamped", "free"))
+    basis = MODELS["fem"].time_basis(beam, 9, 4, "spline")
+    x = np.array([0.11, 0.31, 0.5])
+    still = np.append([1e-4, -2e-6, 0.0, 3e-7], np.zeros(len(basis.omegas) - 4))
+    still *= np.sign(still @ basis.shapes(x, 1)[:, 2])
+    slope = still @ basis.shapes(x, 1)
+    upper, lower = (_under(basis, still, x, np.full(3, lever)) for lever in (5e-4, -5e-4))
+    assert upper[:2] == pytest.approx(x[:2] + 5e-4 * slope[:2], rel=1e-15)
+    assert lower == pytest.approx(x - 5e-4 * slope, rel=1e-15)
+    assert upper[2] == 0.5 > lower[2]
 
 
 def test_feet_on_both_faces_are_driven_the_same_way_and_do_not_bend_the_beam():

@@ -1,5 +1,6 @@
 """Lists of frequencies and shapes by closed forms, told by `compare` what they are and what is wrong with them."""
 
+from collections.abc import Iterator
 from functools import cache
 from math import pi
 from pathlib import Path
@@ -15,6 +16,7 @@ from verify.stress.judge.sizes_chosen import turned_error
 from verify.stress.kind import Floor, Row
 from verify.stress.motion.told_of_runs import timoshenko_rate
 from verify.stress.references.beams import STRIP, held
+from verify.stress.references.textbook import assembled
 
 # --- Members of the family --------------------------------------------------------------------------------------------
 
@@ -161,6 +163,15 @@ def _thick() -> Any:
     return found, [], {"model": "analytic", "theory": "timoshenko", "identified": True}
 
 
+def _two_elements() -> Any:
+    """Of two elements where four are said: the smallest size there is to be looked at."""
+    from scipy.linalg import eigh
+
+    roots = np.sqrt(eigh(*(one.toarray() for one in assembled("fem", STRIP.supports, 2)), eigvals_only=True))
+    found = told_of(lines(roots * STRIP.wave_constant * (2.0 / STRIP.length) ** 2 / (2.0 * pi)), count=4)
+    return found, ["count"], {"model": "fem", "mass": "consistent", "count": 2}
+
+
 FAULTY = (
     _in_radians,
     _another_unit,
@@ -171,7 +182,55 @@ FAULTY = (
     _soft,
     _rounded,
     _thick,
+    _two_elements,
 )
+
+
+NOISE = np.exp([0.061, -0.043, 0.008, -0.072, 0.033, 0.054, -0.019, -0.038])
+
+
+def _unclaimed() -> Iterator[bool]:
+    """Of noise of 5 % about 1.3 times a list, of pairs too few for a fit, of a chain of one link."""
+    from verify.identify.alignment import in_order_of
+    from verify.identify.family import family, frequencies_hz
+    from verify.identify.fitting import judged_fit
+
+    found = told_of(lines(1.3 * NOISE * EXACT), count=11, kind="elements")
+    yield not found["told"] and not found["passed"]
+    yield (found["factor"], found["unit"], found["best"]["identified"]) == (1.0, "Hz", False)
+    member = family(STRIP)[0]
+    for paired, n, fits in ((3, 7, False), (4, 7, True), (2, 3, False), (3, 3, True), (2, 2, True), (3, 6, False)):
+        pairs, still = in_order_of(paired), np.zeros(paired)
+        fit = judged_fit(member, 9, pairs, still, 1.0, still, 0.0, n)
+        yield bool(np.isfinite(fit.score)) is fits
+    for one in family(STRIP):
+        if one.packaged and one.model == "segment":
+            yield frequencies_hz(one, STRIP, 1, 5).shape == (0,)
+
+
+def unclaimed_error(number: float) -> float:
+    """How much is claimed of lists that are nothing, and of sizes that have no frequencies."""
+    return float(sum(not right for right in _unclaimed()))
+
+
+def orders_error(number: float) -> float:
+    """Of the order of mode 2 of each member of a family, seen between 40 and 80 parts; above 3 where signs change."""
+    from verify.identify.family import EXACT as BEAM_ITSELF
+    from verify.identify.family import exact_hz, family, frequencies_hz
+
+    beam, worst = held(*ENDS[int(number)]), 0.0
+    exact = float(exact_hz(beam, 2)[-1])
+    for one in family(beam):
+        if one.theory != "euler-bernoulli" or one.model == BEAM_ITSELF:
+            continue
+        coarse, fine = (abs(float(frequencies_hz(one, beam, n, 2)[-1]) / exact - 1.0) for n in (40, 80))
+        order = float(np.log2(coarse / fine))
+        crossed = one.wall in ("gregory", "five-joint") and one.mass == "links"
+        worst = max(worst, max(3.0 - order, 0.0) if crossed else abs(order - (one.order or 0)))
+    return worst
+
+
+ENDS = (("pinned", "pinned"), ("clamped", "free"), ("guided", "clamped"), ("free", "free"))
 
 # --- Shapes -----------------------------------------------------------------------------------------------------------
 
@@ -230,6 +289,24 @@ ROWS: tuple[Row, ...] = (
         at=tuple(range(len(FAULTY))),
         promise=0.5,
         error=mended_error,
+    ),
+    Floor(
+        id="lists-of-nothing",
+        title="A list that is nothing, fits of too few of its entries, a chain of one link: nothing is claimed",
+        why="identify/causes.py, fitting.py: what is told of a list has to be borne out.",
+        along="1",
+        at=(1.0,),
+        promise=0.5,
+        error=unclaimed_error,
+    ),
+    Floor(
+        id="orders-of-members",
+        title="Orders that members of a family declare, seen between 40 and 80 parts",
+        why="identify/family.py: the next order is seen as well on so few parts.",
+        along="supports",
+        at=tuple(range(len(ENDS))),
+        promise=0.1,
+        error=orders_error,
     ),
     Floor(
         id="shapes-of-sines",
