@@ -19,6 +19,10 @@ from verify.motor import records
 from verify.motor.feet import Placed, feet_of, fresh_log, hard_of, rubbing_of
 from verify.motor.records import BeamAnswer, Feet, Hard, Line, Log, Rubbing
 
+ROUNDS, DAMPED_ROUNDS = 4.0, 6.0
+"""In a step, in which each point's force is spread over all pieces between the points: with dashpots it is found anew.
+"""
+
 
 class Riding(msgspec.Struct, eq=False, kw_only=True):
     """What grows while a slider runs."""
@@ -83,7 +87,8 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         if not self.two_way:
             return steps * (1e-6 + 1e-7 * points)
         near = 2 * AROUND + 1 + pieces * float(np.ptp(self.feet.points[:, records.OFFSET])) / length
-        step = 8e-6 + points * (8e-7 + 4e-9 * terms * (rows + 2.0 * near))
+        rounds = DAMPED_ROUNDS if np.any(self.feet.points[:, records.DASHPOT] > 0.0) else ROUNDS
+        step = 8e-6 + points * (8e-7 + 4e-9 * terms * rows + 7e-10 * rounds * terms**2 * near)
         return float(steps * step + 2e-10 * rows * (terms * near) ** 2)
 
     def set_touch(self, levels: Array) -> None:

@@ -154,13 +154,14 @@ def _solving() -> tuple[Limit, ...]:
     )
 
 
-def _riding(felt: bool) -> float:
-    """Seconds of 300 steps of a slider on three points."""
+def _riding(felt: bool, dashpot: float = 0.0) -> float:
+    """Seconds of 300 steps of a slider on three points, one of them with a dashpot."""
     from verify.motor import records
     from verify.motor.stepping import Riding
 
-    points = np.zeros((3, records.OFFSET + 1))
+    points = np.zeros((3, records.DASHPOT + 1))
     points[:, records.OFFSET] = (0.01, -0.02, 0.02)
+    points[1, records.DASHPOT] = dashpot
     own: Any = SimpleNamespace(feet=SimpleNamespace(points=points), two_way=felt)
     return Riding.seconds(own, 300, np.zeros((5, 4, 7)), 0.7)
 
@@ -171,13 +172,17 @@ def _stepping() -> tuple[Limit, ...]:
     from verify.motion.stepping import slider_seconds
 
     near = 2 * 8 + 1 + 5 * 0.04 / 0.7
-    ridden = 300 * (8e-6 + 3 * (8e-7 + 4e-9 * 4 * (7 + 2.0 * near))) + 14e-10 * 16 * near**2
+    ridden, damped = (
+        300 * (8e-6 + 3 * (8e-7 + 4e-9 * 4 * 7 + rounds * 7e-10 * 16 * near)) + 14e-10 * 16 * near**2
+        for rounds in (4.0, 6.0)
+    )
     modal = 1e-3 * 600 * 3 * 40 * (2.0 + 7 / 13.0)
     return (
         (1e5 * (1.5e-6 + 1.5e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, False))),
         (1e5 * (8e-6 + 6e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, True))),
         (300 * (1e-6 + 3e-7), False, _above(lambda: _riding(False))),
         (ridden, False, _above(lambda: _riding(True))),
+        (damped, False, _above(lambda: _riding(True, 0.3))),
         (19 * (150.0 + 50.0 / 0.2 * 0.6), False, _paced(150.0)),
         (19 * (350.0 + 350.0 / 0.4 * 0.6), False, _paced(350.0)),
         (modal, False, _above(lambda: 1e-3 * work.modal_work(0.6, 1e-3, 3, 40, 7))),
