@@ -26,6 +26,11 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
+SHARED = (
+    "cold: methods of a set are compiled in turn in one process, what several of them need is told of the first alone"
+)
+
+
 def cases_of(name: str, scene: "Scene", its: Settled, bench: "Workbench") -> Iterator[Case]:
     """Of one set. Raises InputError where the scene has not what it takes."""
     if name == "modes":
@@ -106,6 +111,8 @@ def benched(
     compiling = compile_costs(scene, sets) if asked.cold else {}
     if asked.cold and not compiling:
         notes.append(f"cold: nothing of {', '.join(sets)} is compiled")
+    elif asked.cold:
+        notes.append(SHARED)
     return BenchFound(
         scene=scene.name,
         date=today(),
