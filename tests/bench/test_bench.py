@@ -389,6 +389,16 @@ def test_every_input_moves_something(name, monkeypatch, ghost):
 
 
 @cache
+def test_what_is_compiled_for_several_methods_is_said_to_be_told_of_the_first(monkeypatch):
+    """Segments and elements run one loop under a slider: it takes seconds of the first and none of the second."""
+    monkeypatch.setattr(
+        running, "compile_costs", lambda scene, sets: {("modes", "segments"): 2.7, ("modes", "Hermite elements"): 0.06}
+    )
+    found = found_of(load_scene("paper"), sets=("modes",), counts=(8, 12, 16), modes=(1,), cold=True)
+    assert {one.compile_s for one in found.rows if one.method == "Hermite elements"} == {0.06}
+    assert any("what several of them need is told of the first alone" in note for note in found.notes)
+
+
 def told(asked):
     """What a bench of the strip tells, times aside; `asked` are pairs."""
     found = found_of(strip(), **dict(asked))

@@ -33,7 +33,8 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     first_s: float | None = None
     """The first call in its process, with imports and compiled code brought in."""
     compile_s: float | None = None
-    """Of compiling, with nothing kept on disk; None where nothing is compiled or nobody asked."""
+    """Of compiling what no method before it in its set has compiled, with nothing kept on disk; None where nothing is
+    compiled or nobody asked."""
     rounds: int = 0
     left_out: str = ""
 
