@@ -25,58 +25,11 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
-<<<<<<< HEAD
-=======
 SHARED = (
     "cold: methods of a set are compiled in turn in one process, what several of them need is told of the first alone"
 )
 
 
-def cases_of(name: str, scene: "Scene", its: Settled, bench: "Workbench") -> Iterator[Case]:
-    """Of one set. Raises InputError where the scene has not what it takes."""
-    if name == "modes":
-        from verify.bench.mode_set import mode_cases
-
-        return mode_cases(scene, its, bench)
-    if name == "harmonic":
-        from verify.bench.field_set import field_cases
-
-        return field_cases(scene, its)
-    if name == "transient":
-        from verify.bench.transient_set import transient_cases
-
-        return transient_cases(scene, its)
-    if name == "slider":
-        from verify.bench.slider_set import slider_cases
-
-        return slider_cases(scene, its)
-    from verify.bench.chain_set import chain_cases
-
-    return chain_cases(scene, its)
-
-
-def all_cases(
-    asked: Bench, scene: "Scene", bench: "Workbench", said: Callable[[str], None] = lambda step: None
-) -> tuple[list[Case], list[str], list[str]]:
-    """(every case, why sets are not asked for and methods left out, why sets that are asked for cannot be run)."""
-    its = settled(asked, scene)
-    notes = [
-        f"{name} is left out: {unasked(name, scene) or 'it is not among sets'}"
-        for name in BENCH_SETS
-        if name not in its.sets
-    ]
-    cases: list[Case] = []
-    refused: list[str] = []
-    for name in its.sets:
-        try:
-            cases += cases_of(name, scene, its, bench)
-        except InputError as error:
-            refused.append(f"{name} is left out: {error}")
-    notes += dict.fromkeys(note for case in cases for note in case.notes)
-    return cases, notes, refused
-
-
->>>>>>> h-audit
 def benched(
     asked: Bench,
     scene: "Scene",
