@@ -556,7 +556,9 @@ def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_i
     for which in ("chain", "slider"):
         own = rows(found, set=which, method="Ghost")
         assert len(own) == peer_set.RUNGS + peer_set.MORE
-        for one in own:
+        *run, last = own  # the one before is within a tenth of the least error that is asked for
+        assert last.left_out == "longer steps of Ghost come to 0.001 %, it is not run"
+        for one in run:
             assert one.error == pytest.approx((one.settings["step"] / COARSE) ** 2, rel=0.03, abs=1e-6)
     assert "MuJoCo is not installed: pip install 'fem-segment-verify[peers]', or go without it" in found.notes
     assert found.versions["Ghost"] == "1.2"
@@ -581,6 +583,7 @@ def test_an_engine_is_held_against_a_slider_on_the_exact_chain_as_well_as_that_i
     assert small < ride_set.SMALL < large
     found = found_of(gently(), sets=("slider",), counts=(30,), duration=6e-4, seconds=90.0, peers=True)
     own = rows(found, set="slider", method="Ghost")
+    own = [one for one in own if not one.left_out]
     assert {one.reference for one in own} == {
         "a slider on the exact linear chain, and how far the nonlinear one departs"
     }
@@ -590,8 +593,10 @@ def test_an_engine_is_held_against_a_slider_on_the_exact_chain_as_well_as_that_i
 def test_an_engine_under_larger_forces_is_held_against_its_own_shortest_step(ghost):
     found = found_of(strip(), sets=("slider",), counts=(30,), duration=6e-4, seconds=90.0, peers=True)
     own = rows(found, set="slider", method="Ghost")
-    assert own[-1].left_out == "Ghost: its shortest step is its own reference"
-    assert all(one.error > 0.0 for one in own[:-1])
+    assert own[-1].left_out == "longer steps of Ghost come to 0.001 %, it is not run"
+    run = [one for one in own if not one.left_out]
+    assert len(run) == len(own) - 1
+    assert all(one.error > 0.0 for one in run)
     assert own[3].order == pytest.approx(2.0, abs=0.05)
 
 

@@ -17,21 +17,21 @@ from verify.exact import closed_forms, minors, plate_strip, roots
 from verify.judge import compare, sizing, workbench
 from verify.models import division, eigen
 from verify.quantities.catalogue import QUANTITIES, Quantity
+from verify.segments import assembly, links
 from verify.segments import carried as chain_carried
 from verify.segments import linear as segment_model
-from verify.segments import links as chain
 from verify.segments import loaded as chain_loaded
 from verify.segments import reading as segment_reading
 from verify.segments import walls as chain_walls
 
 
 def link_inertia_left_out(patch):
-    patch.setattr(chain, "link_inertia", lambda mass, length: 0.0 * mass)
+    patch.setattr(assembly, "link_inertia", lambda mass, length: 0.0 * mass)
 
 
 def joint_stiffness_doubled(patch):
-    true = chain.joint_compliance
-    patch.setattr(chain, "joint_compliance", lambda *links: true(*links) / 2)
+    true = links.joint_compliance
+    patch.setattr(links, "joint_compliance", lambda *given: true(*given) / 2)
 
 
 def lumped_element_mass(patch):
@@ -206,12 +206,12 @@ def orders_of_the_other_walls_exchanged(patch):
 
 
 def welded_half_forgotten(patch):
-    patch.setattr(chain, "welded_halves", lambda supports: (0, 0))
+    patch.setattr(assembly, "welded_halves", lambda supports: (0, 0))
 
 
 def welded_halves_at_each_others_ends(patch):
-    true = chain.welded_halves
-    patch.setattr(chain, "welded_halves", lambda supports: true(supports)[::-1])
+    true = assembly.welded_halves
+    patch.setattr(assembly, "welded_halves", lambda supports: true(supports)[::-1])
 
 
 def mirrored(beam):
@@ -225,12 +225,12 @@ def clamped_end_on_the_wrong_side(patch):
 
 
 def section_order_reversed(patch):
-    true = chain.divide
+    true = assembly.divide
 
     def reversed_sections(beam, *given):
         return true(structs.replace(beam, section=beam.section[::-1]), *given)
 
-    patch.setattr(chain, "divide", reversed_sections)
+    patch.setattr(assembly, "divide", reversed_sections)
     patch.setattr(element_cuts, "divide", reversed_sections)
 
 
@@ -307,7 +307,7 @@ def grading_over_one_part_too_many(patch):
 
 def sections_of_the_mean_thickness(patch):
     """Each part keeps its material and gets the thickness of the whole."""
-    for module in (chain, element_cuts):
+    for module in (assembly, element_cuts):
         true = module.divide
 
         def even(beam, *given, true=true):

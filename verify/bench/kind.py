@@ -141,7 +141,10 @@ class Case(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     pairs: tuple[tuple[str, str], ...]
     """Lines that a sentence compares, by name."""
     races: tuple[tuple[str, str], ...] = ()
-    """Lines that a sentence compares at the errors `wanted` alone, each at its own longest step."""
+    """Lines that a sentence compares at the errors `wanted` alone, each at its own longest step.
+
+    Of the second, one that nothing else is compared with, sizes finer than the least of these takes are not run.
+    """
     judge: Callable[[], Callable[[Entry, Any], Judged]]
     """The reference, solved now; then (entry, answer) -> how far off. Both raise InputError."""
     estimate_s: float = 0.0
