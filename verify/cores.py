@@ -76,7 +76,7 @@ def at_once(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Resul
 def _give_back() -> None:
     """Give what has been freed back to the system, where the C library can: after a fork both copy it page by page.
 
-    They would as soon as they took it anew, 20 MB of it in a sweep, and be a fifth longer for that.
+    They would as soon as they took it anew, 30 MB of it in a sweep, and be a quarter longer for that.
     """
     from ctypes import CDLL
 

@@ -807,7 +807,7 @@ FAULTS = {
         real_and_imaginary_parts_by_other_weights: {"two-waves-measured-whole"},
         limitless(sweeps, "RESONANCE", 1.1e-9): {"resonances-in-sweeps-of-parts"},
         limitless(crowded, "_RIGHT", inf): {"crowds-beside-all-ends"},
-        limitless(sweeps, "MODES_TOGETHER", 3999): {"ways-by-size"},
+        limitless(sweeps, "MODES_TOGETHER", 7999): {"ways-by-size"},
         shifts_a_little_above_their_modes: {"shifts-beside-modes"},
         joints_that_slip_read_half_as_far_again: {"graded-parts"},
         limitless(reading, "MOST", 2001): {"lists-in-any-layout"},

@@ -155,6 +155,26 @@ def test_a_stack_of_chains_has_the_crowds_of_each(monkeypatch, supports):
         assert found == pytest.approx(solve_modes(beam, 3, 32).frequencies_hz, rel=1e-12)
 
 
+def test_crowds_anywhere_within_a_chain_have_weights_of_one_solution(monkeypatch):
+    """Two flanges 2.2 links apart, told from the nearer end, wherever they stand beyond the walls."""
+    solved, plain = [], crowded._mended
+    monkeypatch.setattr(crowded, "_mended", lambda *given: solved.append(1) or plain(*given))
+    step = L / 40
+    beams = [
+        replace(
+            FLANGES,
+            mass=tuple(
+                replace(one, position=(k + by) * step) for one, by in zip(FLANGES.mass, (0.4, 2.6), strict=True)
+            ),
+        )
+        for k in (8, 9, 10, 20, 21, 22, 26, 27, 28)
+    ]
+    together = sweep_modes(beams, 3, 40)
+    assert len(solved) == 2  # with that of the first beam alone, by which all are checked
+    for found, beam in zip(together, beams, strict=True):
+        assert found == pytest.approx(solve_modes(beam, 3, 40).frequencies_hz, rel=1e-12)
+
+
 def test_a_chain_too_short_or_unlike_for_a_crowd_keeps_what_it_had():
     for count, settings in ((9, {}), (30, {"grading": 3.0})):
         chain = build_chain(FLANGES, count, **settings)

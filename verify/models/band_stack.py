@@ -18,8 +18,8 @@ from verify.models.arrays import Array, Indices
 
 _NEAR = 32768
 """Numbers that a product takes at once."""
-_MOST = 3_000_000
-"""Numbers in factors that are taken at once: 24 MB."""
+_MOST = 6_000_000
+"""Numbers in factors that are taken at once: 48 MB."""
 _FEW = 500_000
 """Numbers in factors of which all rows stay near the processor."""
 _ROWS = 16

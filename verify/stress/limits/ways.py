@@ -49,12 +49,13 @@ LAYOUTS: tuple[tuple[int, int, int, int, bool], ...] = (
 )
 """Beams, unknowns, modes, rigid motions: whether they are one stack."""
 SHARED: tuple[tuple[int, int, tuple[int, ...]], ...] = (
-    (600, 3, (200, 200, 200)),
-    (257, 3, (129, 128)),
-    (256, 3, (256,)),
-    (40, 100, (40,)),
-    (90, 100, (30, 30, 30)),
-    (9, 4000, (5, 4)),
+    (801, 2, (401, 400)),
+    (800, 4, (800,)),
+    (800, 5, (400, 400)),
+    (79, 50, (79,)),
+    (160, 100, (80, 80)),
+    (170, 100, (43, 43, 43, 41)),
+    (9, 8000, (5, 4)),
 )
 """Beams, modes, in what parts."""
 
