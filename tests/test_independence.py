@@ -258,7 +258,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the mass of its neighbour",
-        ("segments.links.divide",),
+        ("segments.assembly.divide",),
         after(lambda parts: replace(parts, masses_per_length=np.roll(parts.masses_per_length, 1))),
         "patched-strip",
         ("segments-at-24",),
@@ -607,13 +607,14 @@ def in_use(path, name):
 
 PATIENCE = {
     "check_work": None,
-    "patient": {"stress.sizes", "stress.allowed", "stress.means"},
+    "check_taken": {"motion.stepping"},
+    "patient": {"stress.modes.sizes", "stress.limits.judgements", "stress.motor.means"},
     "own_limit": {"commands.stress"},
     "waited_for": {"motor.figures", "motion.judged_step"},
-    "PATIENCE_S": {"stress.refused_runs"},
+    "PATIENCE_S": {"stress.refused.runs"},
     "VARIABLE": {"motor.withheld"},
 }
-"""What is taken of `patience`, by whom where few may: its refusals; a `with` in which minutes are waited for, which the
+"""What is taken of `patience`, by whom where few may: its refusals, before work and on the way; a `with` in which minutes are waited for, which the
 stress table opens around whole solves; what is waited for at most, to refuse what takes a little more; and the seconds that the
 environment says, the cap of that table's command."""
 
@@ -640,6 +641,7 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
                 path.stem
             )
         assert not in_use(path, "check_work"), path.stem
+        assert not in_use(path, "check_taken"), path.stem
         heads = [call for node in nodes_of(path) if isinstance(node, ast.While) for call in ast.walk(node.test)]
         assert all(call in heads for call in calls_of(path, "waited_for")) or path.stem == "patience", path.stem
         unbound = [
@@ -650,7 +652,7 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
             if item.optional_vars is None
         ]
         assert all(call in unbound for call in calls_of(path, "patient")), path.stem
-    assert takers >= {"models.eigen", "stress.sizes", "commands.stress"}
+    assert takers >= {"models.eigen", "stress.modes.sizes", "commands.stress"}
     faces = ("exact.modes", "exact.in_time", "elements.linear", "elements.in_time", "segments.linear")
     behind = set().union(*(imported(face, set()) for face in (*faces, "segments.in_time")))
     assert not {name for name in behind if name.startswith(("stress", "commands"))}

@@ -85,9 +85,14 @@ def test_every_frequency_has_its_own_number(one):
 @settings(max_examples=15, deadline=None)
 @given(one=beams())
 def test_the_number_of_a_frequency_is_that_of_the_elements(one):
-    """Cubic elements lie above, by their own error: 5e-5 at most in 150 beams. Polynomials by Ritz lose low modes."""
+    """Cubic elements lie above, by their own error: 5e-5 at most in 150 beams. Polynomials by Ritz lose low modes.
+
+    A beam that is pulled at hard bends within sqrt(EI/T) of its ends and bodies alone, which takes shorter elements.
+    """
     beam, theory = one
-    others = elements.solve_modes(beam, 5, 48, theory=theory).frequencies_hz
+    bends = min(piece.bending_stiffness for piece in beam.pieces)
+    taut = beam.tension > 0.0 and np.sqrt(bends / beam.tension) < beam.length / 24
+    others = elements.solve_modes(beam, 5, 144 if taut else 48, theory=theory).frequencies_hz
     above = others / solve_modes(beam, 5, theory).frequencies_hz - 1
     assert above.min() > -1e-8
     assert above.max() < 3e-4

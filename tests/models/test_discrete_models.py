@@ -149,7 +149,7 @@ def test_the_factored_curvatures_are_scikit_fems_stiffness():
 def test_the_sparse_strains_of_a_chain_are_its_joint_angles(titanium_strip, count):
     chain = segment_model.build_chain(titanium_strip, count)
     unknowns = np.random.default_rng(5).standard_normal((count - 1, 2))
-    by_matrix = chain_of_links._strain_matrix(chain) @ unknowns
+    by_matrix = chain_of_links.strain_matrix(chain) @ unknowns
     assert by_matrix == pytest.approx(chain_of_links.joint_angles(chain, unknowns), abs=1e-14)
     dense, sparse = (chain_of_links.mass_matrix(chain, dense=d) for d in (True, False))
     assert (dense == sparse.toarray()).all()
