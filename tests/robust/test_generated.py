@@ -1,11 +1,12 @@
 """Scenes and command lines that nobody wrote: each is answered, refused in a sentence, or a fault of the suite's.
 
-300 of them by default. `pytest -m hostile` takes 10 000 others, for an hour or two.
+300 of them by default. `pytest -m hostile` takes 10 000 others, for an hour or two, and 1000 of a second kind.
 """
 
 from functools import cache
 
 import pytest
+from drawn_further_lines import further_line
 from drawn_lines import drawn_line
 from watched import timeless, wrong_with
 
@@ -21,9 +22,9 @@ def imports_are_timed_once(monkeypatch):
     monkeypatch.setattr(running, "import_costs", cache(running.import_costs))
 
 
-def complaints(seeds):
-    """What is wrong, by the number that draws it again: `drawn_line(number)`."""
-    found = {seed: wrong_with(drawn_line(seed))[1] for seed in seeds}
+def complaints(seeds, draw=drawn_line):
+    """What is wrong, by the number that draws it again: `drawn_line(number)`, `further_line(number)`."""
+    found = {seed: wrong_with(draw(seed))[1] for seed in seeds}
     return {seed: wrong for seed, wrong in found.items() if wrong}
 
 
@@ -36,6 +37,24 @@ def test_a_drawn_line_is_answered_or_refused_and_the_same_the_second_time(row):
 @pytest.mark.parametrize("row", range(100))
 def test_ten_thousand_drawn_lines_are_answered_or_refused(row):
     assert complaints(range(1000 + MANY * row, 1000 + MANY * (row + 1))) == {}
+
+
+@pytest.mark.hostile
+@pytest.mark.parametrize("row", range(10))
+def test_a_thousand_lines_of_the_second_kind_are_answered_or_refused(row):
+    assert complaints(range(MANY * row, MANY * (row + 1)), further_line) == {}
+
+
+def test_the_second_kind_is_drawn_alike_too_and_asks_for_what_the_first_does_not():
+    lines = [further_line(seed) for seed in range(200)]
+    assert lines == [further_line(seed) for seed in range(200)]
+    assert {"export", "picture", "compare-shapes", "diff", "report", "bench", "catalogue"} <= {
+        line.words[0] for line in lines
+    }
+    scenes = b"".join(line.files["scene.toml"] for line in lines)
+    for key in (b"motor", b"foot", b"contact", b"layer_stiffness", b"restitution", b"device", b"methods", b"bench",
+                b"stress", b"uncertainty", b"pull"):  # fmt: skip
+        assert b'"%s"' % key in scenes or b"%s = " % key in scenes, key
 
 
 def test_what_is_drawn_is_the_same_for_one_number_and_of_every_kind():
