@@ -193,6 +193,27 @@ def test_ratios_within_a_sentence_go_the_way_that_its_verdict_says(a, b, said):
     assert said in compared((*a, None), (*b, None), set_up=1e-9, wanted=(3e-4,)).text
 
 
+@pytest.mark.parametrize(
+    ("times", "said"),
+    [
+        ((2.0, 0.5, 0.5, 2.0), "0.017 %, 6.8e-05 %: a above, b between, a below; 2.00 times as long by b at 1.7e-05 %"),
+        ((0.5, 2.0, 2.0, 0.95), "0.017 %: b above, a below; 1.05 times as long by a at 1.7e-05 %"),
+    ],
+)
+def test_a_sentence_names_the_cheaper_one_on_either_side_of_every_crossing(times, said):
+    """Of b over those of a, which take a second: in the second case its last lies within the spread of 6 %."""
+    clock = Clock()
+    rounds = (0.97, 1.0, 1.03)
+    entries = [
+        entry(clock, name, n, seconds=[part * s for part in rounds])
+        for name, each in (("a", (1.0,) * 4), ("b", times))
+        for n, s in zip((10, 20, 40, 80), each, strict=True)
+    ]
+    one = case(*entries, pairs=(("a", "b"),))
+    (told,) = sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")
+    assert f"changes at an error of {said}" in told.text
+
+
 def test_a_sentence_is_withheld_where_errors_do_not_converge_and_says_why():
     told = compared((0.05, 1.0, None), (0.02, 2.0, lambda n: EXACT * (1.0 + 0.03 / n)))
     assert (told.earned, told.crossing, told.ratio) == (False, None, None)

@@ -177,14 +177,11 @@ def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unear
 def _verdict(first: str, second: str, answer: Crossing) -> tuple[str, str]:
     """(which is cheaper, over which errors, by how much; the slower one, empty where that changes or is none)."""
     span = f"at errors from {percent(answer.high)} down to {percent(answer.low)}"
-    (_, fine), (_, coarse) = answer.ratios[0], answer.ratios[-1]
     if answer.crossings:
-        changes = ", ".join(percent(error) for error in reversed(answer.crossings))
-        above, below = (first if ratio > 1.0 else second for ratio in (coarse, fine))
         ends = (
             f"{_slower(first, second, ratio)} at {percent(e)}" for e, ratio in (answer.ratios[0], answer.ratios[-1])
         )
-        return f"the cheaper one changes at an error of {changes}: {above} above, {below} below; {', '.join(ends)}", ""
+        return f"the cheaper one changes at an error of {_turns(first, second, answer)}; {', '.join(ends)}", ""
     sizes = [ratio for _, ratio in answer.ratios]
     low, high = min(sizes), max(sizes)
     if max(abs(log(low)), abs(log(high))) <= answer.spread:
@@ -196,6 +193,16 @@ def _verdict(first: str, second: str, answer: Crossing) -> tuple[str, str]:
         most = _slower(first, second, high)
         return f"{span} the cheaper one, where they differ beyond the spread, is {first}: up to {most}", second
     return f"{span} it takes {_span((low, high))} times as long by {second} as by {first}", second
+
+
+def _turns(first: str, second: str, answer: Crossing) -> str:
+    """Errors at which the cheaper one changes, and which it is on either side, where they differ beyond the spread."""
+    coarse = next(ratio for _, ratio in reversed(answer.ratios) if abs(log(ratio)) > answer.spread)
+    pair = (first, second) if coarse > 1.0 else (second, first)
+    above, *between, below = (pair[i % 2] for i in range(len(answer.crossings) + 1))
+    changes = ", ".join(percent(error) for error in reversed(answer.crossings))
+    inside = f" {', '.join(between)} between," if between else ""
+    return f"{changes}: {above} above,{inside} {below} below"
 
 
 def _likewise(first: str, second: str, slower: str, ratio: float) -> str:
