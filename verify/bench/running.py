@@ -40,16 +40,8 @@ def benched(
     """Everything a [bench] asks for. `step` is told the set about to be run. Raises InputError."""
     cases, notes, refused = all_cases(asked, scene, bench)
     left_out, estimate = fitting(cases, asked.seconds)
-    outcomes: list[tuple[Case, list[Outcome]]] = []
-    shown = ""
-    for case in cases:
-        if case.set != shown:
-            step(f"bench, {case.name}")
-            shown = case.set
-        try:
-            outcomes.append((case, measured(case, left_out, asked.rounds, asked.seconds / len(cases), clock)))
-        except InputError as error:
-            refused.append(f"{case.name} is left out: {error}")
+    outcomes, unanswered = _outcomes(cases, left_out, asked, step, clock)
+    refused += unanswered
     if not any(one.row.rounds for _, found in outcomes for one in found):
         raise InputError(f"bench: nothing is left to measure: {'; '.join([*refused, *notes]) or 'give more seconds'}")
     pushed: tuple[Break, ...] = ()
@@ -81,6 +73,24 @@ def benched(
         notes=tuple(notes),
         estimate_s=estimate,
     )
+
+
+def _outcomes(
+    cases: list[Case], left_out: dict[int, str], asked: Bench, step: Progress, clock: Clock
+) -> tuple[list[tuple[Case, list[Outcome]]], list[str]]:
+    """(every case with what came of its methods, why others have no answer)."""
+    outcomes: list[tuple[Case, list[Outcome]]] = []
+    refused: list[str] = []
+    shown = ""
+    for case in cases:
+        if case.set != shown:
+            step(f"bench, {case.name}")
+            shown = case.set
+        try:
+            outcomes.append((case, measured(case, left_out, asked.rounds, asked.seconds / len(cases), clock)))
+        except InputError as error:
+            refused.append(f"{case.name} is left out: {error}")
+    return outcomes, refused
 
 
 def _compiled(row: Row, compiling: dict[tuple[str, str], float]) -> Row:
