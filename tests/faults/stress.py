@@ -539,6 +539,13 @@ def blows_that_throw_a_little_higher(patch):
     patch.setattr(motor_stepping, "hard_of", higher)
 
 
+def points_that_weigh_a_little_less(patch):
+    true = motor_feet._rider
+    patch.setattr(
+        motor_feet, "_rider", lambda one: tuple(v * (1.001 if i == 1 else 1.0) for i, v in enumerate(true(one)))
+    )
+
+
 def links_that_draw_in_a_little_faster(patch):
     true = ride._of_rigid
 
@@ -885,6 +892,7 @@ FAULTS = {
         points_a_little_farther_apart: {"feet-written-out", "works-of-feet"},
         feet_without_their_preload_spring: {"feet-that-stick"},
         blows_that_throw_a_little_higher: {"hard-points-thrown"},
+        points_that_weigh_a_little_less: {"hard-points-carried"},
         friction_of_a_step_a_billionth_larger: {"friction-in-one-step"},
         bodies_felt_as_if_each_stood_alone: {"crowds-on-a-cantilever"},
         surfaces_that_fall_a_little_faster: {"nearest-to-lifting-off"},

@@ -16,6 +16,8 @@ from verify.stress.references.beams import STRIP
 AT, TURNS, MASS = 0.2437, 6.3, 2.3e-3
 SMALL = 1e-10
 """Metres: a wave so flat that what is of second order in it is lost."""
+ENOUGH = 12.0
+"""Times the share of the load that presses at least: so much friction that the point sticks whatever the wave does."""
 HARD: tuple[tuple[float, float, float, float | None, float | None, float], ...] = (
     (1.9, 0.4, 0.02, None, None, -6.0),
     (1.5, 0.0, 0.02, None, -3.0, 0.0),
@@ -104,15 +106,22 @@ class Thrown:
         return theta if turn < -2.0 * edge else theta + 2.0 * pi - turn
 
 
-def thrown_error(number: float) -> float:
-    """Of events in radians, of height, speed, means and what blows and friction take."""
+def _flat(hertz: float) -> tuple[PointForce, complex, complex]:
+    """A force under which the surface at AT rises SMALL metres, and the phasors of deflection and slope there."""
     from verify.exact.harmonic import solve_harmonic
-    from verify.motor.run import run_motor
 
-    hertz, i = 4276.0, int(number)
     field = solve_harmonic(STRIP, (PointForce(position=0.03),), hertz)
     force = PointForce(position=0.03, amplitude=SMALL / abs(complex(field.deflection([AT])[0])))
     deflection, slope = (complex(one[0]) * force.amplitude for one in (field.deflection([AT]), field.slope([AT])))
+    return force, deflection, slope
+
+
+def thrown_error(number: float) -> float:
+    """Of events in radians, of height, speed, means and what blows and friction take."""
+    from verify.motor.run import run_motor
+
+    hertz, i = 4276.0, int(number)
+    force, deflection, slope = _flat(hertz)
     own, omega = Thrown(i, 2.0 * pi * hertz, deflection, slope), 2.0 * pi * hertz
     start = own.v
     slider = Slider(
@@ -150,6 +159,36 @@ def thrown_error(number: float) -> float:
     return float(max(off))
 
 
+def stuck_error(ratio: float) -> float:
+    """Of the speed of a point that a flat wave carries along, which is the surface's; of its momentum and its friction.
+
+    `ratio` of how hard the surface throws over how hard the load presses lies below 1: the point never flies.
+    """
+    from verify.motor.run import run_motor
+
+    hertz = 4276.0
+    force, deflection, slope = _flat(hertz)
+    omega = 2.0 * pi * hertz
+    press, along = abs(deflection) * omega**2 / ratio, -1j * omega * STRIP.surface_distance * slope
+    slider = Slider(
+        mass=MASS,
+        mu=ENOUGH / (1.0 - ratio),
+        law="coulomb",
+        gravity=0.0,
+        preload=MASS * press,
+        position=AT,
+        speed=along.real,
+        coupling="one-way",
+        contact=Contact(restitution=0.0),
+    )
+    given: dict[str, Any] = {"model": "analytic", "samples": 12, "step": 1.0 / hertz / 500.0, "frozen": True}
+    run = run_motor(STRIP, (force,), hertz, TURNS / hertz, slider=slider, **given)
+    carried = (along * np.exp(1j * omega * run.times)).real
+    taken = run.friction[1:] * np.diff(run.times) / MASS - np.diff(run.speed)
+    off = [abs(run.speed - carried).max() / abs(along), abs(taken).max() / abs(along)]
+    return float(max(*off, abs(run.ledger.rubbed) / (MASS * abs(along) ** 2)))
+
+
 def _loops() -> Iterator[Call]:
     from verify.motor import warm
 
@@ -167,6 +206,17 @@ ROWS: tuple[Row, ...] = (
         at=tuple(float(number) for number in range(len(HARD))),
         promise=1e-5,
         error=thrown_error,
+        kernels=_loops,
+    ),
+    Floor(
+        id="hard-points-carried",
+        title="A hard point that friction holds on a flat wave: speed of the surface, momentum, nothing rubbed away",
+        why="motor/hop_kernels.py: friction of a point that sticks gives it the surface's speed at a step's end; "
+        "against the wave itself. What is rubbed away is summed from means over steps, to their square.",
+        along="how hard the surface throws over how hard the load presses",
+        at=(0.3, 0.7),
+        promise=2e-5,
+        error=stuck_error,
         kernels=_loops,
     ),
 )
