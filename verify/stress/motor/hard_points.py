@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from math import asin, copysign, cos, pi, sin, tanh
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from verify.motor.records import LANDS, LEAVES
 from verify.slider import Contact, Slider
 from verify.stress.kind import Floor, Row
 from verify.stress.references.beams import STRIP
+
+if TYPE_CHECKING:
+    from verify.motor.result import MotorRun
 
 AT, TURNS, MASS = 0.2437, 6.3, 2.3e-3
 SMALL = 1e-10
@@ -40,7 +43,7 @@ class Thrown:
         self.steep = None if steep is None else steep / abs(self.along)
         self.held, self.v = held is not None, (speed if held is None else held) * abs(self.along)
         self.push, self.rub, self.lost, self.events = 0.0, 0.0, 0.0, list[tuple[float, float]]()
-        self.rubbed, self.z, self.climb = 0.0, 0.0, 0.0
+        self.rubbed, self.z, self.climb, self.ridden = 0.0, 0.0, 0.0, 0.0
 
     def strike(self, theta: float, push: float) -> None:
         """An impulse across, over the mass; friction does not drive the point beyond the surface's speed."""
@@ -56,6 +59,7 @@ class Thrown:
     def ride(self, theta: float, end: float) -> None:
         """From a phase to another, by Gauss's rule."""
         points, weights = np.polynomial.legendre.leggauss(200)
+        self.ridden += end - theta
         for point, weight in zip(points, weights, strict=True):
             at = theta + 0.5 * (end - theta) * (point + 1.0)
             push = self.press * (1.0 - self.ratio * cos(at))
@@ -146,17 +150,22 @@ def thrown_error(number: float) -> float:
     if [int(kind) for kind in found[:, 1]] != [kind for _, kind in own.events]:
         return 1.0
     off = [abs(omega * t + own.lead - theta) for (t, *_), (theta, _) in zip(found, own.events, strict=True)]
-    span, blow = float(run.times[-1]), own.size * omega
+    return float(max(*off, 0.0, *_off(run, own)))
+
+
+def _off(run: "MotorRun", own: Thrown) -> list[float]:
+    """Of height, shares of time, speed, means and books of a run, each over its own size."""
+    off, span, blow, books = list[float](), float(run.times[-1]), own.size * own.omega, run.ledger
     if own.restitution and own.ratio > 1.0:
         off.append(abs(float(run.height[-1, 0]) - own.z) / own.size)
-        off.append(abs(run.ledger.impacts / (MASS * own.lost) - 1.0))
+        off.append(abs(books.impacts / (MASS * own.lost) - 1.0))
+    off += [abs(float(run.contact_share[-1]) - own.ridden / (own.omega * span)), float(run.stuck_share[-1])]
     off.append(abs(float(run.speed[-1]) - own.v) / blow)
     off.append(abs(float(run.normal_force[-1]) * span / (MASS * own.push) - 1.0))
     off.append(abs(float(run.friction[-1]) * span - MASS * own.rub) / (MASS * own.mu * own.push))
-    off.append(abs(run.ledger.rubbed / (MASS * own.rubbed) - 1.0))
-    books = run.ledger
+    off.append(abs(books.rubbed / (MASS * own.rubbed) - 1.0))
     off.append(abs(books.residual) / (abs(books.across) + books.rubbed))
-    return float(max(off))
+    return off
 
 
 def stuck_error(ratio: float) -> float:
@@ -186,6 +195,7 @@ def stuck_error(ratio: float) -> float:
     carried = (along * np.exp(1j * omega * run.times)).real
     taken = run.friction[1:] * np.diff(run.times) / MASS - np.diff(run.speed)
     off = [abs(run.speed - carried).max() / abs(along), abs(taken).max() / abs(along)]
+    off.append(1.0 - min(run.stuck_share[1:].min(), run.contact_share.min()))
     return float(max(*off, abs(run.ledger.rubbed) / (MASS * abs(along) ** 2)))
 
 
