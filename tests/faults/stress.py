@@ -524,6 +524,11 @@ def friction_of_a_step_a_billionth_larger(patch):
     patch.setattr(friction_kernels, "tanh_speed_change", lambda *given: (1.0 + 1e-9) * true(*given))
 
 
+def sliders_that_stick_a_little_late(patch):
+    true = friction_kernels.coulomb_span
+    patch.setattr(friction_kernels, "coulomb_span", lambda *given: ((1.0 + 1e-9) * true(*given)[0], *true(*given)[1:]))
+
+
 def feet_without_their_preload_spring(patch):
     true = motor_feet._given
     patch.setattr(motor_feet, "_given", lambda *given: (*true(*given)[:3], 0.0))
@@ -893,6 +898,7 @@ FAULTS = {
         feet_without_their_preload_spring: {"feet-that-stick"},
         blows_that_throw_a_little_higher: {"hard-points-thrown"},
         points_that_weigh_a_little_less: {"hard-points-carried"},
+        sliders_that_stick_a_little_late: {"coulomb-spans"},
         friction_of_a_step_a_billionth_larger: {"friction-in-one-step"},
         bodies_felt_as_if_each_stood_alone: {"crowds-on-a-cantilever"},
         surfaces_that_fall_a_little_faster: {"nearest-to-lifting-off"},

@@ -3,7 +3,10 @@
 from collections.abc import Iterator
 from decimal import Decimal, localcontext
 from functools import partial
-from math import atan, pi, sqrt, tanh
+from itertools import product
+from math import atan, copysign, pi, sqrt, tanh
+
+import numpy as np
 
 from verify.models.compiling import Call
 from verify.slider import GRAVITY
@@ -15,6 +18,8 @@ SPEED = 0.1
 READ = (0.7, 1.3)
 """When speeds are read: before and after flat friction would have stopped the slider, over that time."""
 MU, SLOPE = 0.23, 310.0
+SLIDING, SPAN = 1.1, 0.25
+"""Of Coulomb's friction on what slides, m/s^2; of a step, s."""
 STEEP = 1e6
 STEPS = 4096
 """Of the suite's own run, which the textbook's gets as well."""
@@ -149,6 +154,49 @@ def _belt(law: str) -> Iterator[Call]:
     return on_belt(law)
 
 
+def span_error(static: float) -> float:
+    """Of how long Coulomb friction keeps its mind in a step on a surface that speeds up evenly more and more.
+
+    Which speeds cross nought within the step is found among all roots of r - (k + a) t - b t^2 / 2.
+    """
+    from verify.motion.friction_kernels import coulomb_span
+
+    worst = 0.0
+    for r, a0, a1, stuck in product((0.0, 0.061, 0.3, -0.17), (-4.1, -1.6, 0.7, 5.2), (-6.3, -0.4, 1.9, 8.1), (0, 1)):
+        given = (0.0 if stuck else r, a0, a1)
+        used, end, holds, kind = coulomb_span(*given, SLIDING, static, SPAN, bool(stuck))
+        known, left, still = _stuck_span(a0, a1, static) if stuck else _slipping_span(*given, static)
+        worst = max(worst, abs(used - known) / SPAN, abs(end - left), float(holds != still))
+        worst = max(worst, float((kind == 0.0) != (used >= SPAN)))
+    return worst
+
+
+def _stuck_span(a0: float, a1: float, static: float) -> tuple[float, float, bool]:
+    """(Time, relative speed, whether it sticks) of one at rest, until what drags it is more than it holds."""
+    if abs(a0) > static:
+        return 0.0, 0.0, False
+    share = (copysign(static, a1) - a0) / (a1 - a0) if abs(a1) > static else 1.0
+    return share * SPAN, 0.0, share >= 1.0
+
+
+def _slipping_span(r: float, a0: float, a1: float, static: float) -> tuple[float, float, bool]:
+    """The same of one that slips, until its speed is the surface's."""
+    rate = (a1 - a0) / SPAN
+    slowing = a0 + SLIDING * (np.sign(r) or -np.sign(a0))
+    found = np.roots([-0.5 * rate, -slowing, r])
+    crossed = sorted(float(t.real) for t in found if abs(t.imag) < 1e-12 and 1e-12 < t.real < SPAN)
+    if not crossed:
+        return SPAN, r - slowing * SPAN - 0.5 * rate * SPAN**2, False
+    return crossed[0], 0.0, abs(a0 + rate * crossed[0]) <= static
+
+
+def spans() -> Iterator[Call]:
+    """One stretch of Coulomb friction by itself."""
+    from verify.motion.friction_kernels import coulomb_span
+
+    yield coulomb_span, (0.0, 0.0, 1.0, 1.0, 1.0, 1.0, False)
+
+
 def one_step() -> Iterator[Call]:
     """One step of tanh friction by itself."""
     from verify.motion.friction_kernels import tanh_speed_change
@@ -248,5 +296,15 @@ ROWS: tuple[Row, ...] = (
         ask=_slow_belt,
         taken=(0.03,),
         kernels=partial(_belt, "coulomb"),
+    ),
+    Floor(
+        id="coulomb-spans",
+        title="Coulomb friction in a step on a surface that speeds up or slows: when its mind changes, against roots",
+        why="motion/friction_kernels.py: linear accelerations, hence roots of a parabola; each way out of a step.",
+        along="static friction, m/s^2",
+        at=(1.3, 2.4),
+        promise=1e-12,
+        error=span_error,
+        kernels=spans,
     ),
 )
