@@ -18,7 +18,7 @@ SPEED = 0.1
 READ = (0.7, 1.3)
 """When speeds are read: before and after flat friction would have stopped the slider, over that time."""
 MU, SLOPE = 0.23, 310.0
-SLIDING, SPAN = 1.1, 0.25
+SLIDING, SPAN = 0.41, 0.25
 """Of Coulomb's friction on what slides, m/s^2; of a step, s."""
 STEEP = 1e6
 STEPS = 4096
@@ -302,7 +302,7 @@ ROWS: tuple[Row, ...] = (
         title="Coulomb friction in a step on a surface that speeds up or slows: when its mind changes, against roots",
         why="motion/friction_kernels.py: linear accelerations, hence roots of a parabola; each way out of a step.",
         along="static friction, m/s^2",
-        at=(1.3, 2.4),
+        at=(0.6, 2.4),
         promise=1e-12,
         error=span_error,
         kernels=spans,
