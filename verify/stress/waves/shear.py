@@ -53,7 +53,7 @@ def states_of(beam: Beam, device: Device | None = DEVICE) -> tuple[ComplexArray,
     states = States(beam, "timoshenko", omega**2, stops, resists)
     under, ends = states.under(FORCES), [states.end(x) for x in PLACES.tolist()]
     bends = [(states.rates[min(i, len(states.rates) - 1)] @ under[i])[1] for i in ends]
-    return under[ends, 0], under[ends, 1] / beam.length, np.array(bends) / beam.length**2
+    return under[ends, 0], under[ends, 1] / beam.length, np.array(bends, dtype=complex) / beam.length**2
 
 
 def turn_error(number: float, model: str) -> float:
