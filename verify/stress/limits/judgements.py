@@ -233,6 +233,6 @@ ROWS: tuple[Row, ...] = (
         "estimates-of-work",
         work_error,
         "Seconds, bytes and counts that work is estimated by, and where it is refused, likewise",
-        "eigen.py, exact/modes.py, motion/stepping.py, chain/work.py, identify/compare.py: the laws that docstrings have.",
+        "eigen.py, exact/modes.py, motion/stepping.py, chain/work.py, identify/compare.py: laws of docstrings.",
     ),
 )

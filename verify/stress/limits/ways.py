@@ -71,6 +71,7 @@ SHARED: tuple[tuple[int, int, tuple[int, ...]], ...] = (
 
 def methods_error(number: float) -> float:
     """How often a problem is solved another way than its size, its parts and its company say."""
+    from verify.exact import modes as exact
     from verify.models import sweeps
     from verify.models.catalogue import MODELS
     from verify.models.eigen import method_name
@@ -79,8 +80,7 @@ def methods_error(number: float) -> float:
 
     wrong = sum(method_name(n, modes, unlike) != name for n, modes, unlike, name in METHODS)
     wrong += sum(MODELS["fem"].solve_modes(beam, modes, n).method != name for beam, modes, n, name in SOLVED)
-    exact = MODELS["analytic"]
-    wrong += sum(exact.solve_modes(beam, n, theory=theory).method != name for beam, n, theory, name in CLOSED)
+    wrong += sum(exact.solve_modes(beam, n, theory).method != name for beam, n, theory, name in CLOSED)
     for size, n, modes, rigid, shares in LAYOUTS:
         pencil: Any = SimpleNamespace(n=n, rigid_modes=rigid)
         wrong += sweeps._is_stack([3, *range(5, 4 + size)], modes, {3: (pencil, 1.0)}) is not shares

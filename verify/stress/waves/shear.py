@@ -52,8 +52,8 @@ def states_of(beam: Beam, device: Device | None = DEVICE) -> tuple[ComplexArray,
     stops = [*PLACES.tolist(), *resists, *(force.position for force in FORCES)]
     states = States(beam, "timoshenko", omega**2, stops, resists)
     under, ends = states.under(FORCES), [states.end(x) for x in PLACES.tolist()]
-    bends = [(states.rates[min(i, len(states.rates) - 1)] @ under[i])[1] for i in ends]
-    return under[ends, 0], under[ends, 1] / beam.length, np.array(bends, dtype=complex) / beam.length**2
+    bends: ComplexArray = np.array([(states.rates[min(i, len(states.rates) - 1)] @ under[i])[1] for i in ends])
+    return under[ends, 0], under[ends, 1] / beam.length, bends / beam.length**2
 
 
 def turn_error(number: float, model: str) -> float:
