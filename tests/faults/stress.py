@@ -83,6 +83,8 @@ from verify.motor import carry, combine, on_chain, on_wave, resting
 from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
 from verify.motor import figures as motor_figures
+from verify.motor import gripping as motor_gripping
+from verify.motor import resting as motor_resting
 from verify.motor import stepping as motor_stepping
 from verify.segments import attached, crowded, links, loaded
 from verify.segments import in_time as segments_in_time
@@ -544,6 +546,25 @@ def blows_that_throw_a_little_higher(patch):
     patch.setattr(motor_stepping, "hard_of", higher)
 
 
+def contacts_a_little_softer(patch):
+    true = motor_resting.contact_rate
+    patch.setattr(motor_resting, "contact_rate", lambda *given: (1.0 - 1e-9) * true(*given))
+
+
+def ways_a_little_shorter(patch):
+    true = motor_gripping.taken_up
+    patch.setattr(motor_gripping, "taken_up", lambda *given: (1.0 - 1e-9) * true(*given))
+
+
+def spreads_of_the_force_alone(patch):
+    true = motor_gripping.widened
+    patch.setattr(
+        motor_gripping,
+        "widened",
+        lambda spreads, *given: true(spreads, *given)._replace(rubbed=spreads.rubbed),
+    )
+
+
 def points_that_weigh_a_little_less(patch):
     true = motor_feet._rider
     patch.setattr(
@@ -897,6 +918,9 @@ FAULTS = {
         points_a_little_farther_apart: {"feet-written-out", "works-of-feet"},
         feet_without_their_preload_spring: {"feet-that-stick"},
         blows_that_throw_a_little_higher: {"hard-points-thrown"},
+        contacts_a_little_softer: {"rates-of-a-contact"},
+        ways_a_little_shorter: {"ways-taken-up"},
+        spreads_of_the_force_alone: {"forces-still-to-come"},
         points_that_weigh_a_little_less: {"hard-points-carried"},
         sliders_that_stick_a_little_late: {"coulomb-spans"},
         friction_of_a_step_a_billionth_larger: {"friction-in-one-step"},

@@ -18,7 +18,7 @@ GROUPS = {
         *("friction", "friction_branches", "sliders", "braked", "tableaux"),
     ),
     "chain": ("turned", "books", "written_out", "coils", "beyond_buckling", "folds", "stretching", "riders"),
-    "motor": ("feet", "hard_points", "means", "two_beams"),
+    "motor": ("feet", "hard_points", "means", "gripping", "two_beams"),
     "judge": ("sizes_chosen", "sizes_enough", "side_by_side", "error_laws", "sought", "words", "defaults"),
     "limits": ("as_written", "judgements", "edges", "ways", "growth"),
     "lists": ("members", "layouts", "shapes", "clamps", "sizes_in_turn", "tables", "answers", "beforehand"),
