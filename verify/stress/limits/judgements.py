@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from verify.beam import Beam
 from verify.stress.kind import Row
 from verify.stress.limits.as_written import Limit, misplaced, row_of, taken
+from verify.stress.references.beams import STEPPED, STRIP, held
 
 # --- Judgement --------------------------------------------------------------------------------------------------------
 
@@ -192,10 +194,19 @@ def _stepping() -> tuple[Limit, ...]:
 def _waited_for() -> tuple[Limit, ...]:
     """Seconds of comparisons that are begun, and counts beyond which nothing is."""
     from verify.chain import work
+    from verify.exact.modes import check_n_modes
     from verify.identify.compare import check_patience
     from verify.models import sweeps
 
+    def exact(beam: Beam, theory: str, n_beams: int = 1) -> Callable[[float], bool]:
+        return _begun(lambda: check_n_modes(beam, 700, theory, n_beams))
+
+    thick = "timoshenko"
     return (
+        (700 * 1.5e-5, False, exact(held("clamped", "free"), "euler-bernoulli")),
+        (700 * 6e-4, False, exact(held("clamped", "free"), thick)),
+        (700 * 6e-4, False, exact(STRIP, thick)),
+        (5 * 700 * 9e-4, False, exact(STEPPED, "euler-bernoulli", 5)),
         (1.2e-3 * 700 * 2.3, False, _begun(lambda: check_patience(23, 700, 5))),
         (1.2e-3 * 700, False, _begun(lambda: check_patience(7, 700, 5))),
         (5 * (0.1 + 0.55 * 1.7 + 0.2 * 1.7**3), False, _begun(lambda: check_patience(170, None, 5))),
@@ -222,6 +233,6 @@ ROWS: tuple[Row, ...] = (
         "estimates-of-work",
         work_error,
         "Seconds, bytes and counts that work is estimated by, and where it is refused, likewise",
-        "models/eigen.py, motion/stepping.py, chain/work.py, identify/compare.py: the laws that docstrings have.",
+        "eigen.py, exact/modes.py, motion/stepping.py, chain/work.py, identify/compare.py: laws of docstrings.",
     ),
 )

@@ -37,6 +37,15 @@ SOLVED: tuple[tuple[Beam, int, int, str], ...] = (
     (THIN, 3, 40, "dense inverse"),
 )
 """Beam, modes, elements, how they are found."""
+CLOSED: tuple[tuple[Beam, int, str, str], ...] = (
+    (held("clamped", "free"), 900, "euler-bernoulli", "closed form"),
+    (STRIP, 3, "timoshenko", "closed form"),
+    (STRIP, 500, "rayleigh", "closed form"),
+    (STRIP, 500, "timoshenko", "counted"),
+    (held("clamped", "free"), 3, "rayleigh", "counted"),
+    (THIN, 3, "euler-bernoulli", "counted"),
+)
+"""Beam, exact modes, theory, how they are found: the cut-off of the strip lies below its mode 500."""
 LAYOUTS: tuple[tuple[int, int, int, int, bool], ...] = (
     (7, 60, 5, 0, False),
     (8, 60, 5, 0, True),
@@ -62,6 +71,7 @@ SHARED: tuple[tuple[int, int, tuple[int, ...]], ...] = (
 
 def methods_error(number: float) -> float:
     """How often a problem is solved another way than its size, its parts and its company say."""
+    from verify.exact import modes as exact
     from verify.models import sweeps
     from verify.models.catalogue import MODELS
     from verify.models.eigen import method_name
@@ -70,6 +80,7 @@ def methods_error(number: float) -> float:
 
     wrong = sum(method_name(n, modes, unlike) != name for n, modes, unlike, name in METHODS)
     wrong += sum(MODELS["fem"].solve_modes(beam, modes, n).method != name for beam, modes, n, name in SOLVED)
+    wrong += sum(exact.solve_modes(beam, n, theory).method != name for beam, n, theory, name in CLOSED)
     for size, n, modes, rigid, shares in LAYOUTS:
         pencil: Any = SimpleNamespace(n=n, rigid_modes=rigid)
         wrong += sweeps._is_stack([3, *range(5, 4 + size)], modes, {3: (pencil, 1.0)}) is not shares
@@ -174,7 +185,7 @@ ROWS: tuple[Row, ...] = (
     _row(
         id="ways-by-size",
         title="How modes are found, which beams share a stack, in how many points a window is read",
-        why="models/eigen.py, sweeps.py, waves/measures.py: the sizes that docstrings have.",
+        why="models/eigen.py, sweeps.py, exact/modes.py, waves/measures.py: the sizes that docstrings have.",
         along="1",
         at=(1.0,),
         error=methods_error,

@@ -68,9 +68,10 @@ ANY: tuple[tuple[Beam, str], ...] = (
         replace(PLAIN, shear_stiffness=60.0, foundation=1e5, mass=MASSES[:1], supports=("free", "pinned")),
         "timoshenko",
     ),
+    (replace(PLAIN, shear_stiffness=640.0, rotary_inertia=6e-3, supports=("pinned", "pinned")), "timoshenko"),
 )
-"""Each with the theory that it is taken by; of the last but one the section's own
-turning is soon fast enough for a wave, the last hardly resists shear and lies on stiff ground."""
+"""Each with the theory that it is taken by; of the ninth the section's own turning is soon fast enough for a wave, the
+tenth hardly resists shear and lies on stiff ground, the last has its cut-off and more beyond among six modes."""
 LEAF = SECTIONS[0], Section(length=0.23, bending_stiffness=1.9e-3, mass_per_length=0.11), SECTIONS[2]
 DRIVEN = (*ANY, (replace(PLAIN, section=LEAF, supports=("clamped", "guided")), "euler-bernoulli"))
 """The last has a leaf in it that bends in waves a fourth as long as those beside it."""
@@ -319,7 +320,7 @@ _row = partial(Floor, along="beam")
 ROWS: tuple[Row, ...] = (
     _row(
         id="fields-of-any-beam",
-        title="Exact fields of eleven beams with anything on, alone and in a sweep, against states by exponentials",
+        title="Exact fields of twelve beams with anything on, alone and in a sweep, against states by exponentials",
         why="exact/spans.py: power series to rounding; the exponential's own rounding is what is left.",
         at=(*NUMBERS, float(len(ANY))),
         promise=1e-10,
