@@ -9,7 +9,8 @@ from verify.stress.kind import Row
 GROUPS = {
     "modes": (
         *("sizes", "scales", "attached", "nearly_floating", "many_at_once", "laws", "all_supports"),
-        *("any_beam", "written_out", "stacks", "mixed_stacks", "pencils", "felt", "small_systems", "searches", "rules"),
+        *("any_beam", "written_out", "stacks", "mixed_stacks", "pencils", "felt", "mended"),
+        *("small_systems", "searches", "rules"),
     ),
     "waves": ("drives", "closed_forms", "resonances", "shear", "best_drives", "two_waves", "readings"),
     "motion": (
