@@ -46,6 +46,15 @@ CLOSED: tuple[tuple[Beam, int, str, str], ...] = (
     (THIN, 3, "euler-bernoulli", "counted"),
 )
 """Beam, exact modes, theory, how they are found: the cut-off of the strip lies below its mode 500."""
+DIVIDED: tuple[tuple[tuple[int, ...], int, list[int]], ...] = (
+    ((3, 5, 2), 7, [2, 4, 1]),
+    ((1, 1000, 1), 5, [1, 3, 1]),
+    ((1, 6, 6, 1), 7, [1, 2, 3, 1]),
+    ((1, 10, 10, 1), 11, [1, 4, 5, 1]),
+)
+"""Lengths of sections, parts, how many each gets: by largest remainders, at least one, and a tie goes to the left."""
+UNITS = (1.0, 0.001, 0.073, 1.1, 7.3e-9)
+"""Metres, in which shares that are whole are so but for rounding."""
 LAYOUTS: tuple[tuple[int, int, int, int, bool], ...] = (
     (7, 60, 5, 0, False),
     (8, 60, 5, 0, True),
@@ -70,10 +79,11 @@ SHARED: tuple[tuple[int, int, tuple[int, ...]], ...] = (
 
 
 def methods_error(number: float) -> float:
-    """How often a problem is solved another way than its size, its parts and its company say."""
+    """How often a problem is solved or divided another way than its size, its parts and its company say."""
     from verify.exact import modes as exact
     from verify.models import sweeps
     from verify.models.catalogue import MODELS
+    from verify.models.division import part_counts
     from verify.models.eigen import method_name
     from verify.models.intervals import rule_over
     from verify.waves.measures import sample_points, window_rule
@@ -81,6 +91,7 @@ def methods_error(number: float) -> float:
     wrong = sum(method_name(n, modes, unlike) != name for n, modes, unlike, name in METHODS)
     wrong += sum(MODELS["fem"].solve_modes(beam, modes, n).method != name for beam, modes, n, name in SOLVED)
     wrong += sum(exact.solve_modes(beam, n, theory).method != name for beam, n, theory, name in CLOSED)
+    wrong += sum(part_counts([u * one for one in every], n) != each for every, n, each in DIVIDED for u in UNITS)
     for size, n, modes, rigid, shares in LAYOUTS:
         pencil: Any = SimpleNamespace(n=n, rigid_modes=rigid)
         wrong += sweeps._is_stack([3, *range(5, 4 + size)], modes, {3: (pencil, 1.0)}) is not shares
@@ -184,8 +195,8 @@ _row = partial(Floor, promise=0.5)
 ROWS: tuple[Row, ...] = (
     _row(
         id="ways-by-size",
-        title="How modes are found, which beams share a stack, in how many points a window is read",
-        why="models/eigen.py, sweeps.py, exact/modes.py, waves/measures.py: the sizes that docstrings have.",
+        title="How modes are found, beams divided, which share a stack, in how many points a window is read",
+        why="models/eigen.py, division.py, sweeps.py, exact/modes.py, waves/measures.py: sizes of docstrings.",
         along="1",
         at=(1.0,),
         error=methods_error,
