@@ -1,6 +1,7 @@
 """Nothing is missed and nothing counted twice, whatever stands on the beam."""
 
 import numpy as np
+import pytest
 from exact_reference import a_root_lies_within
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -9,6 +10,7 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.elements import linear as elements
+from verify.errors import InputError
 from verify.exact import roots
 from verify.exact.buckling import buckling_load
 from verify.exact.lineup import line_up
@@ -136,3 +138,26 @@ def test_a_root_is_found_by_its_minor_as_soon_as_it_is_alone_whichever_it_is():
         root = roots.nth_root(lambda value, asked=asked: asked.append(value) or say(value), wanted)
         assert abs(root - known) < 1e-12 * known
         assert len(set(asked)) < 36
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("ends", [("clamped", "free"), ("pinned", "guided")])
+def test_the_largest_trial_is_counted_by_the_phase_of_its_waves_and_a_larger_one_refused(ends, theory):
+    """Over pi: that of bending waves; far above the cut-off those of shear and of turning, each by its own speed."""
+    sections = Section(length=0.3, thickness=0.012), Section(length=0.53, thickness=0.05, density=4100.0)
+    beam = replace(WHOLE, supports=ends, section=sections)
+    largest = roots.LARGEST_TRIAL
+    omega = largest**2 * beam.wave_constant / LENGTH**2
+    turns = 0.0
+    for piece in beam.pieces:
+        bending = np.sqrt(piece.rotary_inertia / piece.bending_stiffness)
+        shear = np.sqrt(piece.mass_per_length / piece.shear_stiffness)
+        waves = {
+            "euler-bernoulli": np.sqrt(omega * np.sqrt(piece.mass_per_length / piece.bending_stiffness)),
+            "rayleigh": omega * bending,
+            "timoshenko": omega * (bending + shear),
+        }
+        turns += waves[theory] * piece.length / np.pi
+    assert modes_below(beam, largest, theory) == pytest.approx(turns, rel=1e-11)
+    with pytest.raises(InputError, match=r"^beta_length = 2e\+30"):
+        modes_below(beam, 2.0 * largest, theory)

@@ -11,8 +11,8 @@ from verify.exact.minors import Found, trial
 from verify.models.places import as_typed
 from verify.options import THEORIES
 
-LARGEST_TRIAL = 1e60
-"""Beta L: its fourth power and the squares of that are numbers too."""
+LARGEST_TRIAL = 1e30
+"""Beta L: its fourth power, and the squares of what shear and turning make of that, are numbers too."""
 _DIGITS = 4e-16
 """Relative, where a search ends."""
 
