@@ -185,7 +185,7 @@ ROWS: tuple[Row, ...] = (
         title="The surface under a motor's feet on links in large motion: heights, rates, speed along, where it ends",
         why="motor/on_chain.py: the line through joints in the middle of every step, to rounding.",
         along="m",
-        at=(0.13, 0.4, 0.7),
+        at=(0.13, 0.287, 0.4, 0.44, 0.7),
         promise=1e-12,
         error=under_feet_error,
     ),

@@ -243,7 +243,7 @@ STANDS = Slider(
 def repeated_error(steps: float) -> float:
     """Of a foot that a small wave moves on its spring and dashpot: height, rate, multipliers, over steps^-2."""
     from verify.motor.case import MotorCase
-    from verify.motor.shooting import periodic
+    from verify.motor.shooting import _size, periodic
 
     small = tuple(replace(one, amplitude=1e-3 * one.amplitude) for one in FORCES)
     case = MotorCase(
@@ -264,7 +264,9 @@ def repeated_error(steps: float) -> float:
     rates = np.roots([mass, DAMPED, STIFF])
     own = np.sort_complex(np.exp(rates / HERTZ))
     apart = abs(np.sort_complex(found.multipliers) - own).max()
-    return float(max(*off, apart, found.missed, float(not found.stable)))
+    sized = _size(found.run) / abs(exact[0]) / np.array([1.0, omega, 1.0, omega])
+    wrong = not found.stable or abs(sized - 1.0).max() > 1e-3
+    return float(max(*off, apart, found.missed, float(wrong)))
 
 
 def each_alone_error(speed: float) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.beam import PointForce
 from verify.models.compiling import Call
-from verify.motor.records import LANDS, LEAVES
+from verify.motor.records import EVENT_X, LANDS, LEAVES
 from verify.slider import Contact, Slider
 from verify.stress.kind import Floor, Row
 from verify.stress.references.beams import STRIP
@@ -150,6 +150,7 @@ def thrown_error(number: float) -> float:
     if [int(kind) for kind in found[:, 1]] != [kind for _, kind in own.events]:
         return 1.0
     off = [abs(omega * t + own.lead - theta) for (t, *_), (theta, _) in zip(found, own.events, strict=True)]
+    off.append(float(abs(run.events[:, EVENT_X]).max(initial=0.0)))  # it stays at its place
     return float(max(*off, 0.0, *_off(run, own)))
 
 

@@ -192,7 +192,34 @@ def left_error(number: float) -> float:
         given: Any = SimpleNamespace(edges=np.array(edges) - 0.3)
         stage: Any = SimpleNamespace(dt=0.01, ends=(LEFT_BEAM, "came to a step"), edges=np.array([0.12, 0.41]))
         wrong += _gone(given, stage, riding) != why
-    return float(wrong)
+    return float(wrong + sum(_told_otherwise()))
+
+
+def _told_otherwise() -> Iterator[bool]:
+    """Of which of several sliders left their ground: True where others are told, or one that is alone."""
+    from verify.models.underfoot import LEFT_BEAM
+    from verify.motor import records
+    from verify.motor.feet import Placed, feet_of
+    from verify.motor.outcome import _who_left
+
+    stage: Any = SimpleNamespace(dt=0.01, ends=(LEFT_BEAM, "came to a step"), edges=np.array([0.0, 0.41]))
+    for travelled, stopped, said in (
+        ((0.2,), LEFT_BEAM, ()),
+        ((0.0, 0.2), LEFT_BEAM, ("of 2 sliders number 2 left the beam, and the runs of all end there",)),
+        ((-0.4, 0.2), LEFT_BEAM, ("all 2 sliders left the beam, and their runs end there",)),
+        ((-0.4, 0.0, 0.2), LEFT_BEAM, ("of 3 sliders numbers 1 and 3 left the beam, and the runs of all end there",)),
+        ((0.0, 0.0), LEFT_BEAM, ()),
+        ((0.0, 0.2), END, ()),
+    ):
+        placed = tuple(Placed(replace(RIDER, foot=()), 0.3, 0.0) for _ in travelled)
+        feet = feet_of(placed)
+        feet.body[:, records.X] = travelled
+        riding, ended, plan = (
+            SimpleNamespace(start=0.3, feet=feet),
+            SimpleNamespace(stopped=stopped),
+            SimpleNamespace(stages=[stage], placed=placed),
+        )
+        yield _who_left(plan, riding, ended) != said  # type: ignore[arg-type]
 
 
 def _loops() -> Iterator[Call]:

@@ -1,6 +1,7 @@
 """Motions in time and sliders that are refused, before anything moves."""
 
 from math import nan, pi
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ from verify.beam import Beam, PointForce
 from verify.models.underfoot import check_one_ground
 from verify.motion.free_vibration import Shape, free_vibration
 from verify.motion.simulate import simulate
-from verify.motor.combine import check_combines
+from verify.motor.combine import check_combines, check_together
+from verify.motor.feet import Placed
+from verify.motor.going_on import check_runs
 from verify.slider import Contact, Foot, Slider
 from verify.stress.kind import Row
 from verify.stress.references.beams import STEPPED, STRIP, held
@@ -58,6 +61,38 @@ def between(**more: Any) -> Ask:
     """A slider between two beams that feel it."""
     own = {"preload": 2.0, "coupling": "two-way", "contact": Contact(stiffness=1e5), "foot": (Foot(mirrored=True),)}
     return lambda: check_combines("segment", "rest", replace(LIGHT, **(own | more)))
+
+
+TOUCHING = replace(LIGHT, contact=Contact(stiffness=1e5))
+HARD = replace(LIGHT, contact=Contact(), coupling="one-way")
+MIRRORED: dict[str, Any] = {"gravity": 0.0, "preload": 2.0, "coupling": "two-way", "foot": (Foot(mirrored=True),)}
+
+
+def together(*others: Slider, first: Slider = TOUCHING) -> Ask:
+    """Sliders on one beam."""
+    return lambda: check_together("segment", "rest", (first, *others))
+
+
+def beside(**more: Any) -> Ask:
+    """A slider, and one with other figures."""
+    return together(replace(TOUCHING, **more))
+
+
+def steadily(*sliders: Slider) -> Ask:
+    """Sliders on a steady beam."""
+    return lambda: check_together("segment", "steady", sliders)
+
+
+def after(*places: float | None, count: int = 6, on: Beam = STRIP, **more: Any) -> Ask:
+    """Sliders at 0.1 m and 0.2 m that go on from runs of sliders put on at places, the last of which ended otherwise.
+
+    By `more`: at another time, or with other motions of the beam, (2,).
+    """
+    still = {"beam": STRIP, "model": "segment", "count": 6, "time": 0.5, "q": np.zeros(2), "rates": np.zeros(2)}
+    ends = [still] * (len(places) - 1) + [still | more] * bool(places)
+    runs: Any = [SimpleNamespace(state=SimpleNamespace(**end), start=at) for end, at in zip(ends, places, strict=True)]
+    request: Any = SimpleNamespace(beam=on, model="segment", count=count)
+    return lambda: check_runs(runs, request, (Placed(TOUCHING, 0.1), Placed(TOUCHING, 0.2)))
 
 
 def apart(*places: float) -> Ask:
@@ -134,6 +169,22 @@ ROWS: tuple[Row, ...] = (
         Case("slider.gravity = 9.81 with slider.foot.mirrored", between(), between(gravity=0.0)),
         Case("slider.preload_stiffness = 7.0 with", between(gravity=0.0, preload_stiffness=7.0)),
         Case("slider.position = 0.5 m stands on another", apart(0.2, 0.5), apart(0.2, 0.39)),
+        Case("sliders is empty", lambda: check_together("segment", "rest", ()), together()),
+        Case("sliders: some are between two beams", beside(**MIRRORED), together(first=replace(TOUCHING, **MIRRORED))),
+        Case(
+            "slider.law differs among sliders on one beam, ['coulomb', 'tanh']", beside(law="coulomb"), beside(mu=0.7)
+        ),
+        Case("slider.slope differs", beside(slope=7.0), beside(position=0.2)),
+        Case("slider.coupling differs", beside(coupling="two-way"), beside(preload=2.0)),
+        Case("sliders: a hard contact is of one", steadily(HARD, HARD), steadily(HARD)),
+        Case("continue_from has 1 runs for 2 sliders", after(0.1), after(0.1, 0.2)),
+        Case("continue_from has 3 runs for 2 sliders", after(0.1, 0.2, 0.3), after()),
+        Case("continue_from is of a slider that was put on at 0.3 m", after(0.1, 0.3), after(None, 0.2)),
+        Case("continue_from is of model = 'segment', count = 6", after(0.1, 0.2, count=7)),
+        Case("continue_from is of another beam", after(0.1, 0.2, on=STEPPED)),
+        Case("continue_from holds runs that end at", after(0.1, 0.2, time=0.6), after(0.1, 0.2, time=0.5)),
+        Case("continue_from holds runs under which", after(0.1, 0.2, q=np.ones(2)), after(0.1, 0.2, q=np.zeros(2))),
+        Case("continue_from holds runs under which", after(0.1, 0.2, rates=np.ones(2))),
         Case("slider.mass = 0.0", slider(mass=0.0), slider(mass=1e-9)),
         Case("slider.mu = 0.0", slider(mu=0.0), slider(mu=1e-9)),
         Case("slider.slope = 0.0", slider(slope=0.0), slider(slope=1e-9)),

@@ -23,6 +23,7 @@ from verify.models.fields import HarmonicField
 from verify.models.naming import Among
 from verify.motion.free_vibration import free_vibration
 from verify.motion.simulate import simulate
+from verify.options import Support
 from verify.patience import PATIENCE_S
 from verify.stress.kind import Row
 from verify.stress.references.beams import STEPPED, STRIP, held
@@ -117,6 +118,45 @@ def counted(model: str, count: int | None) -> Ask:
 def named(model: str, **more: bool) -> Ask:
     """A model that has modes."""
     return lambda: Among("solve_modes", **more).check(model)
+
+
+def law(supports: tuple[Support, Support], **settings: Any) -> Ask:
+    """The leading law of nine segments."""
+    from verify.quantities.kind import DiscreteAtSize
+    from verify.quantities.modes import _check_law
+
+    return lambda: _check_law(DiscreteAtSize(model="segment", mode=1, count=9, **settings), held(*supports))
+
+
+def sized(model: str, **settings: Any) -> Ask:
+    """A mode of a model of nine parts."""
+    from verify.quantities.kind import AtSize
+
+    return lambda: AtSize(model=model, mode=1, count=9, **settings)
+
+
+def planned(*settings: tuple[str, str]) -> Ask:
+    """The exact strip on its second mode, before it is solved."""
+    from verify.quantities.beforehand import _check_closed_form
+
+    return lambda: _check_closed_form(case(beam=STRIP, frequency_hz=mode(2), settings=settings))
+
+
+def ordered(of: str) -> Ask:
+    """An order of convergence in a window that holds a force."""
+    from verify.quantities.beforehand import _check_window
+    from verify.quantities.wave_arguments import WaveOrder
+
+    given: Any = {"model": "fem", "counts": (40, 80, 160), "of": of, "window": (0.01, 0.6)}
+    return lambda: _check_window(WaveOrder(**given), case())
+
+
+def placed(x: float) -> Ask:
+    """A figure at a place of a metre."""
+    from verify.quantities.catalogue import _check_places
+    from verify.quantities.wave_arguments import AxisRatio
+
+    return lambda: _check_places(AxisRatio(x=x), 1.0)
 
 
 def two(backward: complex) -> TwoWaves:
@@ -257,6 +297,15 @@ ROWS: tuple[Row, ...] = (
             lambda: free_vibration(STRIP, lambda x: x * (STRIP.length - x), 0.01, model="analytic", modes=5),
         ),
         Case("position = ", lambda: beam_impedance(STRIP, HERTZ, 0.0, "clamped", turning=True)),
+        Case("frequency_hz = ", planned(), planned(("theory", "rayleigh"))),
+        Case("window = [0.01, 0.6]", ordered("axis_ratio"), ordered("deflection")),
+        Case("x = 1.000000000002", placed(1.0 + 2e-12), placed(1.0 + 5e-13)),
+        Case("x = -2e-12", placed(-2e-12), placed(-5e-13)),
+        Case("wall = 'half'", law(("clamped", "free"), wall="half"), law(("pinned", "pinned"), wall="half")),
+        Case("theory = 'rayleigh'", law(("pinned", "pinned"), theory="rayleigh")),
+        Case("grading = 2.0", law(("pinned", "pinned"), grading=2.0), law(("clamped", "free"), joints="printed")),
+        Case("wall = 'half' is a setting of model = segment", sized("fem", wall="half"), sized("segment", wall="half")),
+        Case("joints = 'printed' is a setting of", sized("fem", joints="printed"), sized("mean", wall="half")),
     ),
     refusals(
         "refused-sizes-and-chains",
