@@ -61,9 +61,9 @@ def _calls() -> list[tuple[Any, tuple[Any, ...]]]:
     from verify.chain import warm as chain
     from verify.motion import warm as motion
     from verify.motor import warm as motor
-    from verify.stress.motion.friction import one_step
+    from verify.stress.motion.friction import one_step, spans
 
-    return [*motion.calls(), *chain.calls(), *motor.calls(), *one_step()]
+    return [*motion.calls(), *chain.calls(), *motor.calls(), *one_step(), *spans()]
 
 
 def _compile_all() -> None:
