@@ -25,12 +25,14 @@ from time import perf_counter
 from typing import NamedTuple
 
 from benchmarks.fault_kinds import Fault, drawn
+from verify.files import write_whole
 
 ROOMS = ("models", "segments", "elements", "exact", "judge", "contact", "waves", "chain", "motion")
 GATES = "verify/scenes"
+COMPILER = "verify.models.kernels"
 TOLD = "GATES_SECONDS"
 """The variable of the environment that names the file to which times of gates go."""
-ALONE = {"OPENBLAS_NUM_THREADS": "1", "VERIFY_JOBS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+ALONE = {"PYTEST_ADDOPTS": "", "OPENBLAS_NUM_THREADS": "1", "VERIFY_JOBS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
 WAITED = 90.0
 """Seconds beside thrice what its gates take, after which a fault is held for one that does not end: noticed."""
 
@@ -80,22 +82,21 @@ def pytest_sessionfinish() -> None:
 
 
 def _forget() -> None:
-    """Empty what functions of the models keep; those that compile or list keep theirs."""
+    """Empty what functions of the suite keep; those that compile keep theirs."""
     import functools
     import gc
 
     for one in gc.get_objects():
-        if isinstance(one, functools._lru_cache_wrapper):
-            room = one.__module__.split(".")[:2]
-            if room[0] == "verify" and room[1:] and room[1] in ROOMS and "kernel" not in one.__module__:
-                one.cache_clear()
+        own = isinstance(one, functools._lru_cache_wrapper) and one.__module__.startswith("verify.")
+        if own and one.__module__ != COMPILER:
+            one.cache_clear()
 
 
 # --- Outside ----------------------------------------------------------------------------------------------------------
 
 
 def _pytest(tree: Path, gates: Iterable[str], before: tuple[str, ...], waited: float | None, **environment: str) -> str:
-    """The first gate that is red in a tree; empty where all hold. Raises RuntimeError where pytest cannot run."""
+    """The first gate that is red in a tree, or how pytest ends otherwise; empty where all hold."""
     words = [sys.executable, "-m", *before, "pytest", "-x", "-q", "-p", "no:cacheprovider", *gates]
     given = os.environ | ALONE | {"PYTHONPATH": str(tree)} | environment
     try:
@@ -174,8 +175,11 @@ def all_met(root: Path, faults: list[tuple[str, Fault]], jobs: int) -> list[Met]
             print(_line(found), file=sys.stderr, flush=True)
             return found
 
-        with ThreadPoolExecutor(jobs) as crew:
+        crew = ThreadPoolExecutor(jobs)
+        try:
             return list(crew.map(one, faults))
+        finally:
+            crew.shutdown(cancel_futures=True)
 
 
 def _line(found: Met) -> str:
@@ -215,13 +219,21 @@ def main() -> None:
     root = Path(__file__).resolve().parents[1]
     for room in asked.rooms:
         if not (root / "verify" / room).is_dir():
-            parser.error(f"{room} is no folder of verify")
+            parser.error(f"{room} is no folder of verify: give one of {', '.join(ROOMS)} or another")
+    for name in ("number", "jobs"):
+        if getattr(asked, name) < 1:
+            parser.error(f"--{name} = {getattr(asked, name)}: give at least 1")
     files = [file for room in asked.rooms for file in (root / "verify" / room).glob("*.py")]
     sources = {str(file.relative_to(root)): file.read_bytes() for file in files if file.name != "__init__.py"}
-    found = all_met(root, drawn(sources, asked.number, asked.seed, asked.kernels), asked.jobs)
+    try:
+        found = all_met(root, drawn(sources, asked.number, asked.seed, asked.kernels), asked.jobs)
+    except RuntimeError as error:
+        sys.exit(str(error))
+    except KeyboardInterrupt:
+        sys.exit("interrupted: nothing is written")
     if asked.json:
         rows = [{"module": one.module, "gate": one.gate, **vars(one.fault)} for one in found]
-        asked.json.write_text(json.dumps(rows, indent=1))
+        write_whole(asked.json, json.dumps(rows, indent=1), "--json")
     print(table(found))
 
 

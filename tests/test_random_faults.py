@@ -5,6 +5,7 @@ from collections import Counter
 import pytest
 
 from benchmarks.fault_kinds import Fault, drawn, faults_of
+from benchmarks.random_faults import Met, Recorded, meeting, met, table
 
 SOURCE = b'''"""Words - not faults."""
 
@@ -80,3 +81,50 @@ def test_a_seed_draws_the_same_faults_of_the_asked_kind_one_a_line(kernels):
     assert len(set(lines)) == len(lines)
     for module, fault in found:
         compile(fault.planted(sources[module]), module, "exec")
+
+
+def test_a_fault_meets_the_gates_that_run_its_line_the_quickest_first_and_in_a_kernel_all():
+    first, *_, last = faults_of(SOURCE)
+    inside = next(fault for fault in faults_of(SOURCE) if fault.old == "rise / height")
+    known = Recorded({"slow": 3.0, "quick": 0.5, "other": 0.1}, {"a.py": {inside.line: {"slow", "quick"}, 3: {"slow"}}})
+    assert meeting("a.py", inside, known) == ["quick", "slow"]
+    assert (first.function, meeting("a.py", first, known)) == ("", ["quick", "slow"])
+    assert (last.in_kernel, meeting("a.py", last, known)) == (True, ["other", "quick", "slow"])
+    assert meeting("b.py", inside, known) == []
+
+
+def test_a_planted_fault_is_noticed_by_the_gate_that_it_turns_red_and_taken_out_again(tmp_path):
+    source = b"def half(x):\n    return 0.5 * x if x > 0.0 else 0.0\n"
+    gate = "from lever import half\n\n\ndef test_half():\n    assert half(3.0) == 1.5\n"
+    (tmp_path / "lever.py").write_bytes(source)
+    (tmp_path / "test_lever.py").write_text(gate)
+    known = Recorded({"test_lever.py::test_half": 0.01}, {"lever.py": {2: {"test_lever.py::test_half"}}})
+    became = {
+        (fault.old, fault.new): met(tmp_path, "lever.py", fault, known, str(tmp_path / "kept")).gate
+        for fault in faults_of(source)
+        if fault.kind in ("thousandth", "comparison")
+    }
+    assert became == {
+        ("0.5", "0.5005"): "test_lever.py::test_half",
+        ("x > 0.0", "(x >= 0.0)"): "",
+        ("x > 0.0", "(x < 0.0)"): "test_lever.py::test_half",
+    }
+    assert (tmp_path / "lever.py").read_bytes() == source
+
+
+def test_the_table_counts_by_room_and_lists_what_no_gate_notices():
+    faults = faults_of(SOURCE)[:3]
+    found = [
+        Met("verify/waves/a.py", faults[0], "g"),
+        Met("verify/waves/a.py", faults[1], ""),
+        Met("v/chain/b.py", faults[2], "g"),
+    ]
+    told = table(found).splitlines()
+    assert [line.split()[:4] for line in told[:3]] == [
+        ["chain", "1", "of", "1"],
+        ["waves", "1", "of", "2"],
+        ["together", "2", "of", "3"],
+    ]
+    assert len(told) == 4
+    assert told[3].startswith("UNNOTICED")
+    assert "verify/waves/a.py:5 : 0.25 -> 0.25025" in told[3]

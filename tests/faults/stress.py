@@ -84,7 +84,6 @@ from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
 from verify.motor import figures as motor_figures
 from verify.motor import gripping as motor_gripping
-from verify.motor import resting as motor_resting
 from verify.motor import stepping as motor_stepping
 from verify.segments import attached, crowded, links, loaded
 from verify.segments import in_time as segments_in_time
@@ -528,7 +527,12 @@ def friction_of_a_step_a_billionth_larger(patch):
 
 def sliders_that_stick_a_little_late(patch):
     true = friction_kernels.coulomb_span
-    patch.setattr(friction_kernels, "coulomb_span", lambda *given: ((1.0 + 1e-9) * true(*given)[0], *true(*given)[1:]))
+
+    def late(*given):
+        used, *rest = true(*given)
+        return (1.0 + 1e-9) * used, *rest
+
+    patch.setattr(friction_kernels, "coulomb_span", late)
 
 
 def feet_without_their_preload_spring(patch):
@@ -547,8 +551,8 @@ def blows_that_throw_a_little_higher(patch):
 
 
 def contacts_a_little_softer(patch):
-    true = motor_resting.contact_rate
-    patch.setattr(motor_resting, "contact_rate", lambda *given: (1.0 - 1e-9) * true(*given))
+    true = resting.contact_rate
+    patch.setattr(resting, "contact_rate", lambda *given: (1.0 - 1e-9) * true(*given))
 
 
 def ways_a_little_shorter(patch):

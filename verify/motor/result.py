@@ -83,7 +83,7 @@ class MotorState(Value, frozen=True, eq=False, kw_only=True):
     feet: Array
     """(feet, 4): height, its rate, pitch, its rate."""
     touch: Array
-    """(points, 14), as the compiled loop keeps them: forces, speeds and stretch of the last mid-step."""
+    """(points, 19), as the compiled loop keeps them: forces, speeds and stretch of the last mid-step."""
 
 
 class MotorRun(Ride, frozen=True, eq=False, kw_only=True):

@@ -265,8 +265,7 @@ def repeated_error(steps: float) -> float:
     own = np.sort_complex(np.exp(rates / HERTZ))
     apart = abs(np.sort_complex(found.multipliers) - own).max()
     sized = _size(found.run) / abs(exact[0]) / np.array([1.0, omega, 1.0, omega])
-    wrong = not found.stable or abs(sized - 1.0).max() > 1e-3
-    return float(max(*off, apart, found.missed, float(wrong)))
+    return float(max(*off, apart, found.missed, abs(sized - 1.0).max(), float(not found.stable)))
 
 
 def each_alone_error(speed: float) -> float:

@@ -59,11 +59,11 @@ def way_error(left: float) -> float:
     Points count by their stiffness; none takes up more than the whole way, and which way it does so is all one.
     """
     from verify.motor.gripping import grips, taken_up
-    from verify.motor.records import EVENT_KIND, EVENT_POINT, STRETCH
+    from verify.motor.records import EVENT_KIND, EVENT_POINT, STRETCH, TOUCH
 
     slider = replace(UNLIKE, contact=LAYER)
     stiff = grips(slider)
-    before, after, event = np.zeros((len(stiff), 14)), np.zeros((len(stiff), 14)), np.zeros((2, 4))
+    before, after, event = np.zeros((len(stiff), TOUCH)), np.zeros((len(stiff), TOUCH)), np.zeros((2, 4))
     before[:, STRETCH] = np.linspace(-3e-5, 2e-5, len(stiff))
     after[:, STRETCH] = before[:, STRETCH] + np.resize(WAYS, len(stiff))
     event[:, EVENT_KIND], event[:, EVENT_POINT] = (LEAVES, LEAVES + 1.0), (left, left + 1.0)
