@@ -186,16 +186,16 @@ def _compiles(source: bytes) -> bool:
     return True
 
 
-def drawn(sources: dict[str, bytes], number: int, seed: int, kernels: bool = False) -> list[tuple[str, Fault]]:
+def drawn(sources: dict[str, bytes], number: int, seed: int, kernels: bool | None = None) -> list[tuple[str, Fault]]:
     """So many of (module, fault): modules by how much they hold, kinds by the root of how often they occur, one a line.
 
-    The same seed draws the same faults from the same sources. `kernels`: in compiled functions alone, else none there.
+    The same seed draws the same faults from the same sources. `kernels`: in compiled functions alone, or none there.
     """
     chance, left = random.Random(seed), dict[str, dict[str, list[Fault]]]()
     for module, source in sorted(sources.items()):
         kinds = defaultdict[str, list[Fault]](list)
         for fault in faults_of(source):
-            if fault.in_kernel == kernels:
+            if kernels in (None, fault.in_kernel):
                 kinds[fault.kind].append(fault)
         for faults in kinds.values():
             chance.shuffle(faults)

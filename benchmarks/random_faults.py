@@ -1,12 +1,14 @@
 """How many small faults, drawn at random from the suite's own rooms, its packaged gates notice.
 
-    python -m benchmarks.random_faults [ROOM ...] [--number 60] [--seed 1] [--kernels] [--jobs 2] [--json FILE]
+    python -m benchmarks.random_faults [ROOM ...] [--number 60] [--seed 1] [--kernels | --no-kernels]
+                                       [--tests FILE ...] [--recorded FILE] [--jobs 2] [--json FILE]
 
 A room is a folder of `verify` (default: the models, waves, contact, motion, chain and judge). Each fault changes one
 expression of a copy of the package: a sign, an operator, a comparison, a constant by a thousandth, a refusal that is
-dropped. First the lines that each gate runs are recorded; then each fault meets the gates that run its line, the
-quickest first, until one is red. A fault in a kernel meets all, with nothing compiled before. What none notices is
-listed: it changes no figure, or a gate is missing. Nothing in the checkout is written to.
+dropped. First the lines that each gate runs are recorded; then each fault meets the gates that run its line, one in a
+kernel those that run a line from which it is called, the quickest first, until one is red; then the tests that do, if
+any are asked. What none notices is listed: it changes no figure, or a gate is missing. Nothing in the checkout is
+written to.
 """
 
 import argparse
@@ -16,34 +18,27 @@ import shutil
 import subprocess
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from hashlib import sha256
 from pathlib import Path
 from queue import Queue
 from tempfile import TemporaryDirectory
-from time import perf_counter
 from typing import NamedTuple
 
 from benchmarks.fault_kinds import Fault, drawn
+from benchmarks.kernel_callers import Line, Name, callers
+from benchmarks.recorded_lines import Recorded, read_recorded, recorded, run_pytest
 from verify.files import write_whole
 
 ROOMS = ("models", "segments", "elements", "exact", "judge", "contact", "waves", "chain", "motion")
 GATES = "verify/scenes"
-COMPILER = "verify.models.kernels"
-TOLD = "GATES_SECONDS"
-"""The variable of the environment that names the file to which times of gates go."""
-ALONE = {"PYTEST_ADDOPTS": "", "OPENBLAS_NUM_THREADS": "1", "VERIFY_JOBS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+ROOT = Path(__file__).resolve().parents[1]
+LEFT = shutil.ignore_patterns(".git", ".*_cache", ".hypothesis", "__pycache__", "*.egg-info")
+"""What a copy of a checkout does without."""
 WAITED = 90.0
 """Seconds beside thrice what its gates take, after which a fault is held for one that does not end: noticed."""
-
-
-class Recorded(NamedTuple):
-    """What the gates did without a fault."""
-
-    seconds: dict[str, float]
-    """By gate."""
-    run: dict[str, dict[int, set[str]]]
-    """Gates by module and line."""
+MOST = 400.0
+"""Seconds of tests that a fault meets at most: what none of these notices is told as unnoticed."""
 
 
 class Met(NamedTuple):
@@ -52,126 +47,123 @@ class Met(NamedTuple):
     module: str
     fault: Fault
     gate: str
-    """The first that noticed it; empty where none did."""
+    """The first gate that noticed it; empty where none did."""
+    test: str = ""
+    """The first test that noticed what no gate did; empty where none did or was asked."""
 
 
-# --- What runs inside pytest while lines are recorded -----------------------------------------------------------------
+class Known(NamedTuple):
+    """What is known before a fault is planted."""
 
-_seconds: dict[str, float] = {}
-
-
-def pytest_runtest_setup(item: object) -> None:
-    """Lines that run from here on are this gate's, also those whose answers an earlier gate has left behind."""
-    import coverage
-
-    _forget()
-    measured = coverage.Coverage.current()
-    if measured is not None:
-        measured.switch_context(item.nodeid)  # type: ignore[attr-defined]
-    _seconds[item.nodeid] = perf_counter()  # type: ignore[attr-defined]
+    recorded: Recorded
+    callers: dict[Name, set[Line]]
 
 
-def pytest_runtest_teardown(item: object) -> None:
-    """How long it took."""
-    _seconds[item.nodeid] = perf_counter() - _seconds[item.nodeid]  # type: ignore[attr-defined]
+def _runs(module: str, fault: Fault, known: Known) -> set[str]:
+    """What runs the lines of a fault: in a kernel, what runs the lines from which it is called."""
+    if fault.in_kernel:
+        return known.recorded.running(known.callers.get((module, fault.function.split(".")[0]), ()))
+    lines = range(fault.line, fault.last_line + 1) if fault.function else (0,)
+    return known.recorded.running((module, line) for line in lines)
 
 
-def pytest_sessionfinish() -> None:
-    """Leave the times to whoever asked."""
-    Path(os.environ[TOLD]).write_text(json.dumps(_seconds))
+def meeting(module: str, fault: Fault, known: Known) -> tuple[list[str], list[str]]:
+    """The gates that run the lines of a fault, and the tests that do as far as `MOST` goes; the quickest first."""
+    seconds = known.recorded.seconds
+    ordered = sorted(_runs(module, fault, known), key=lambda one: (seconds[one], one))
+    tests, left = list[str](), MOST
+    for one in ordered:
+        left -= 0.0 if one.startswith(GATES) else seconds[one]
+        if left >= 0.0 and not one.startswith(GATES):
+            tests.append(one)
+    return [one for one in ordered if one.startswith(GATES)], tests
 
 
-def _forget() -> None:
-    """Empty what functions of the suite keep; those that compile keep theirs."""
-    import functools
-    import gc
-
-    for one in gc.get_objects():
-        own = isinstance(one, functools._lru_cache_wrapper) and one.__module__.startswith("verify.")
-        if own and one.__module__ != COMPILER:
-            one.cache_clear()
-
-
-# --- Outside ----------------------------------------------------------------------------------------------------------
-
-
-def _pytest(tree: Path, gates: Iterable[str], before: tuple[str, ...], waited: float | None, **environment: str) -> str:
-    """The first gate that is red in a tree, or how pytest ends otherwise; empty where all hold."""
-    words = [sys.executable, "-m", *before, "pytest", "-x", "-q", "-p", "no:cacheprovider", *gates]
-    given = os.environ | ALONE | {"PYTHONPATH": str(tree)} | environment
+def _noticed(tree: Path, which: list[str], known: Known, compiled: str) -> str:
+    """The first of these that is red in a tree, or how pytest ends otherwise; empty where all hold."""
+    if not which:
+        return ""
+    waited = WAITED + 3.0 * sum(known.recorded.seconds[one] for one in which)
     try:
-        run = subprocess.run(words, cwd=tree, env=given, capture_output=True, text=True, timeout=waited, check=False)
+        status, red = run_pytest(tree, ("-x", *which), waited=waited, NUMBA_CACHE_DIR=compiled)
     except subprocess.TimeoutExpired:
         return "does not end"
-    red = [line.split()[1] for line in run.stdout.splitlines() if line.startswith(("FAILED ", "ERROR "))]
-    return (*red, f"pytest ends with {run.returncode}")[0] if run.returncode else ""
+    return (*red, f"pytest ends with {status}")[0] if status else ""
 
 
-def recorded(tree: Path, compiled: str) -> Recorded:
-    """Run all gates once and keep which ran what. Raises RuntimeError where one is red."""
-    import coverage
-
-    with TemporaryDirectory() as folder:
-        lines, told = Path(folder, "lines"), Path(folder, "seconds.json")
-        before = ("coverage", "run", "--source=verify", f"--data-file={lines}", "-m")
-        plugin = {TOLD: str(told), "NUMBA_CACHE_DIR": compiled}
-        red = _pytest(tree, ("-p", "benchmarks.random_faults", GATES), before, None, **plugin)
-        if red:
-            raise RuntimeError(f"without a fault {red}: mend that first")
-        data, run = coverage.CoverageData(basename=str(lines)), dict[str, dict[int, set[str]]]()
-        data.read()
-        for file in data.measured_files():
-            contexts = data.contexts_by_lineno(file)
-            run[str(Path(file).relative_to(tree))] = {line: set(gates) - {""} for line, gates in contexts.items()}
-        return Recorded(json.loads(told.read_text()), run)
-
-
-def meeting(module: str, fault: Fault, known: Recorded) -> list[str]:
-    """The gates that run the lines of a fault, the quickest first; all of them for one in a kernel."""
-    lines = known.run.get(module, {})
-    if fault.in_kernel:
-        gates = set(known.seconds)
-    elif not fault.function:
-        gates = set().union(*lines.values())
-    else:
-        gates = set().union(*(lines.get(line, set()) for line in range(fault.line, fault.last_line + 1)))
-    return sorted(gates, key=lambda gate: (known.seconds[gate], gate))
-
-
-def met(tree: Path, module: str, fault: Fault, known: Recorded, compiled: str) -> Met:
-    """Plant a fault in a tree, see what gates say, and take it out again."""
-    gates, place = meeting(module, fault, known), tree / module
-    if not gates:
-        return Met(module, fault, "")
+def met(tree: Path, module: str, fault: Fault, known: Known, compiled: str) -> Met:
+    """Plant a fault in a tree, see what gates say, then tests, and take it out again."""
+    gates, tests = meeting(module, fault, known)
+    place = tree / module
     source = place.read_bytes()
-    waited = WAITED + 3.0 * sum(known.seconds[gate] for gate in gates)
     try:
         place.write_bytes(fault.planted(source))
         with TemporaryDirectory() as empty:
             kept = empty if fault.in_kernel or "kernels" in module else compiled
-            return Met(module, fault, _pytest(tree, gates, (), waited, NUMBA_CACHE_DIR=kept))
+            gate = _noticed(tree, gates, known, kept)
+            return Met(module, fault, gate, "" if gate else _noticed(tree, tests, known, kept))
     finally:
         place.write_bytes(source)
 
 
-def all_met(root: Path, faults: list[tuple[str, Fault]], jobs: int) -> list[Met]:
+def _recorded(trees: list[Path], tests: list[str], compiled: str) -> Recorded:
+    """What gates and tests run, on all copies at once. Raises RuntimeError where a gate is red."""
+    files = [str(file.relative_to(trees[0])) for one in tests for file in _files(trees[0] / one)]
+    parts = [(GATES, *files[:: len(trees)]), *(files[i :: len(trees)] for i in range(1, len(trees)))]
+    with ThreadPoolExecutor(len(trees)) as crew:
+        found = list(
+            crew.map(
+                lambda given: recorded(given[0], given[1], compiled) if given[1] else None,
+                zip(trees, parts, strict=True),
+            )
+        )
+    known, red = Recorded({}, {}), list[str]()
+    for one in filter(None, found):
+        known, red = known.beside(one[0]), red + one[1]
+    if gates := [one for one in red if one.startswith(GATES)]:
+        raise RuntimeError(f"without a fault {gates[0]} is red: mend that first")
+    for one in red:
+        print(f"red without a fault, and left out: {one}", file=sys.stderr)
+    return known
+
+
+def _files(place: Path) -> list[Path]:
+    return sorted(place.rglob("test_*.py")) if place.is_dir() else [place]
+
+
+def _known(root: Path, trees: list[Path], tests: list[str], compiled: str, kept: Path | None) -> Known:
+    """What runs what, from a file that keeps it for these sources and tests, or by running them."""
+    sources = {str(file.relative_to(root)): file.read_bytes() for file in (root / "verify").rglob("*.py")}
+    stamp = sha256(b"".join([*sources.values(), *(one.encode() for one in tests)])).hexdigest()
+    if kept and kept.exists() and (found := read_recorded(kept, stamp)):
+        return Known(found, callers(sources))
+    found = _recorded(trees, tests, compiled)
+    if kept:
+        write_whole(kept, found.written(stamp), "--recorded")
+    return Known(found, callers(sources))
+
+
+def all_met(
+    root: Path, faults: list[tuple[str, Fault]], tests: list[str], jobs: int, kept: Path | None = None
+) -> list[Met]:
     """Each of them, on so many copies of a checkout at once; what is done is told on standard error."""
-    trees: Queue[Path] = Queue()
     with TemporaryDirectory() as folder, TemporaryDirectory() as compiled:
-        for number in range(jobs):
-            tree = Path(folder, str(number))
-            for part in ("verify", "benchmarks"):
-                shutil.copytree(root / part, tree / part, ignore=shutil.ignore_patterns("__pycache__"))
-            trees.put(tree)
-        known = recorded(Path(folder, "0"), compiled)
-        print(f"{len(known.seconds)} gates, {sum(known.seconds.values()):.0f} s", file=sys.stderr)
+        trees = [Path(folder, str(number)) for number in range(jobs)]
+        for tree in trees:
+            shutil.copytree(root, tree, ignore=LEFT)
+        known = _known(root, trees, tests, compiled, kept)
+        seconds = known.recorded.seconds.values()
+        print(f"{len(seconds)} gates and tests, {sum(seconds):.0f} s", file=sys.stderr)
+        free: Queue[Path] = Queue()
+        for tree in trees:
+            free.put(tree)
 
         def one(given: tuple[str, Fault]) -> Met:
-            tree = trees.get()
+            tree = free.get()
             try:
                 found = met(tree, *given, known, compiled)
             finally:
-                trees.put(tree)
+                free.put(tree)
             print(_line(found), file=sys.stderr, flush=True)
             return found
 
@@ -185,11 +177,17 @@ def all_met(root: Path, faults: list[tuple[str, Fault]], jobs: int) -> list[Met]
 def _line(found: Met) -> str:
     fault = found.fault
     old, new = (" ".join(text.split())[:50] for text in (fault.old, fault.new))
-    return f"{found.gate or 'UNNOTICED':40s} {found.module}:{fault.line} {fault.function}: {old} -> {new}"
+    by = found.gate or found.test or "UNNOTICED"
+    return f"{by:40s} {found.module}:{fault.line} {fault.function}: {old} -> {new}"
 
 
-def table(found: list[Met]) -> str:
-    """Noticed of all, by room and together, then what is left."""
+def _share(n: int, total: int) -> str:
+    """So many of all, and by how much a draw of that size scatters."""
+    return f"{n:4d} of {total:4d}  {n / total:.1%}, scatter {(n * (total - n) / total**3) ** 0.5:.1%}"
+
+
+def table(found: list[Met], tests: bool) -> str:
+    """Noticed of all by gates, by room and together, and by tests too where they were asked; then what is left."""
     all_, noticed = Counter[str](), Counter[str]()
     left = defaultdict[str, list[str]](list)
     for one in found:
@@ -198,43 +196,61 @@ def table(found: list[Met]) -> str:
         noticed[room] += bool(one.gate)
         if not one.gate:
             left[room].append(_line(one))
-    rows = [f"{room:12s} {noticed[room]:4d} of {n:4d}" for room, n in sorted(all_.items())]
-    n, total = noticed.total(), all_.total()
-    share = f"{n / total:.1%}, scatter {(n * (total - n) / total**3) ** 0.5:.1%}" if total else ""
-    return "\n".join(
-        [*rows, f"{'together':12s} {n:4d} of {total:4d}  {share}", *(line for r in left.values() for line in r)]
-    )
+    rows = [f"{room:20s} {noticed[room]:4d} of {n:4d}" for room, n in sorted(all_.items())]
+    for kind, own in (("kernels", True), ("other functions", False)):
+        of_kind = [one for one in found if one.fault.in_kernel == own]
+        rows += [f"{kind:20s} {_share(sum(bool(one.gate) for one in of_kind), len(of_kind))}"] if of_kind else []
+    if found:
+        rows.append(f"{'together':20s} {_share(noticed.total(), len(found))}")
+    if found and tests:
+        rows.append(f"{'by gates or tests':20s} {_share(sum(bool(one.gate or one.test) for one in found), len(found))}")
+    return "\n".join([*rows, *(line for r in left.values() for line in r)])
 
 
-def main() -> None:
-    """Read the command line, draw, plant, tell."""
+def _asked() -> argparse.Namespace:
+    """What the command line asks."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rooms", nargs="*", default=ROOMS, metavar="ROOM")
     parser.add_argument("--number", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--kernels", action="store_true", help="faults in compiled functions, and in these alone")
+    parser.add_argument(
+        "--kernels", action=argparse.BooleanOptionalAction, help="faults in compiled functions alone, or in none"
+    )
+    parser.add_argument(
+        "--tests", nargs="+", default=[], metavar="FILE", help="files or folders of tests for what no gate sees"
+    )
+    parser.add_argument("--recorded", type=Path, help="a file that keeps which gate and test runs which line")
     parser.add_argument("--json", type=Path, help="a file for what became of each")
     asked = parser.parse_args()
-    root = Path(__file__).resolve().parents[1]
     for room in asked.rooms:
-        if not (root / "verify" / room).is_dir():
+        if not (ROOT / "verify" / room).is_dir():
             parser.error(f"{room} is no folder of verify: give one of {', '.join(ROOMS)} or another")
+    for one in asked.tests:
+        if not (ROOT / one).exists() or not (ROOT / one).resolve().is_relative_to(ROOT / "tests"):
+            parser.error(f"--tests: {one} is no file or folder of tests/ (from where the checkout lies)")
     for name in ("number", "jobs"):
         if getattr(asked, name) < 1:
             parser.error(f"--{name} = {getattr(asked, name)}: give at least 1")
-    files = [file for room in asked.rooms for file in (root / "verify" / room).glob("*.py")]
-    sources = {str(file.relative_to(root)): file.read_bytes() for file in files if file.name != "__init__.py"}
+    return asked
+
+
+def main() -> None:
+    """Read the command line, draw, plant, tell."""
+    asked = _asked()
+    files = [file for room in asked.rooms for file in (ROOT / "verify" / room).glob("*.py")]
+    sources = {str(file.relative_to(ROOT)): file.read_bytes() for file in files if file.name != "__init__.py"}
     try:
-        found = all_met(root, drawn(sources, asked.number, asked.seed, asked.kernels), asked.jobs)
+        faults = drawn(sources, asked.number, asked.seed, asked.kernels)
+        found = all_met(ROOT, faults, asked.tests, asked.jobs, asked.recorded)
     except RuntimeError as error:
         sys.exit(str(error))
     except KeyboardInterrupt:
         sys.exit("interrupted: nothing is written")
     if asked.json:
-        rows = [{"module": one.module, "gate": one.gate, **vars(one.fault)} for one in found]
+        rows = [{"module": one.module, "gate": one.gate, "test": one.test, **vars(one.fault)} for one in found]
         write_whole(asked.json, json.dumps(rows, indent=1), "--json")
-    print(table(found))
+    print(table(found, bool(asked.tests)))
 
 
 if __name__ == "__main__":

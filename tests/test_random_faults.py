@@ -1,11 +1,15 @@
 """What a random fault is, and that a draw of them is fair and repeats."""
 
+import shutil
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
 from benchmarks.fault_kinds import Fault, drawn, faults_of
-from benchmarks.random_faults import Met, Recorded, meeting, met, table
+from benchmarks.kernel_callers import callers
+from benchmarks.random_faults import MOST, Known, Met, meeting, met, table
+from benchmarks.recorded_lines import Recorded, read_recorded, recorded
 
 SOURCE = b'''"""Words - not faults."""
 
@@ -83,48 +87,113 @@ def test_a_seed_draws_the_same_faults_of_the_asked_kind_one_a_line(kernels):
         compile(fault.planted(sources[module]), module, "exec")
 
 
-def test_a_fault_meets_the_gates_that_run_its_line_the_quickest_first_and_in_a_kernel_all():
+GATE, SLOW_GATE = "verify/scenes/quick.toml::a", "verify/scenes/slow.toml::b"
+TEST, LONG_TEST = "tests/test_lift.py::test_rise", "tests/test_lift.py::test_long"
+
+
+def test_a_fault_meets_what_runs_its_line_the_quickest_first_and_tests_as_far_as_time_goes():
     first, *_, last = faults_of(SOURCE)
     inside = next(fault for fault in faults_of(SOURCE) if fault.old == "rise / height")
-    known = Recorded({"slow": 3.0, "quick": 0.5, "other": 0.1}, {"a.py": {inside.line: {"slow", "quick"}, 3: {"slow"}}})
-    assert meeting("a.py", inside, known) == ["quick", "slow"]
-    assert (first.function, meeting("a.py", first, known)) == ("", ["quick", "slow"])
-    assert (last.in_kernel, meeting("a.py", last, known)) == (True, ["other", "quick", "slow"])
-    assert meeting("b.py", inside, known) == []
+    lines = {inside.line: {SLOW_GATE, GATE, TEST, LONG_TEST}, 3: {SLOW_GATE}}
+    recorded = Recorded({SLOW_GATE: 3.0, GATE: 0.5, TEST: 2.0, LONG_TEST: MOST}, {"a.py": lines})
+    known = Known(recorded, {("a.py", "press"): {("b.py", 7), ("a.py", 3)}})
+    assert meeting("a.py", inside, known) == ([GATE, SLOW_GATE], [TEST])
+    assert (first.function, meeting("a.py", first, known)) == ("", ([GATE, SLOW_GATE], [TEST]))
+    assert (last.in_kernel, meeting("a.py", last, known)) == (True, ([SLOW_GATE], []))
+    assert meeting("b.py", inside, known) == ([], [])
 
 
-def test_a_planted_fault_is_noticed_by_the_gate_that_it_turns_red_and_taken_out_again(tmp_path):
+def test_what_a_file_of_tests_shares_all_of_them_run():
+    known = Recorded({TEST: 1.0, LONG_TEST: 2.0, GATE: 0.1}, {"a.py": {4: {"tests/test_lift.py"}, 5: {GATE}}})
+    assert known.running([("a.py", 4)]) == {TEST, LONG_TEST}
+    assert known.running([("a.py", 0)]) == {TEST, LONG_TEST, GATE}
+    assert known.running([("a.py", 6), ("b.py", 4)]) == set()
+
+
+def test_what_was_recorded_is_kept_as_long_as_its_stamp_holds(tmp_path):
+    known = Recorded({TEST: 1.25, GATE: 0.1}, {"a.py": {4: {"tests/test_lift.py"}, 5: {GATE, TEST}}})
+    (tmp_path / "kept").write_text(known.written("now"))
+    assert read_recorded(tmp_path / "kept", "now") == known
+    assert read_recorded(tmp_path / "kept", "then") is None
+    other = Recorded({SLOW_GATE: 3.0}, {"a.py": {5: {SLOW_GATE}}, "b.py": {1: {SLOW_GATE}}})
+    both = known.beside(other)
+    assert both.run == {
+        "a.py": {4: {"tests/test_lift.py"}, 5: {GATE, TEST, SLOW_GATE}},
+        "b.py": {1: {SLOW_GATE}},
+    }
+    assert both.seconds == {TEST: 1.25, GATE: 0.1, SLOW_GATE: 3.0}
+
+
+def test_a_kernel_is_reached_from_the_lines_of_python_that_call_those_above_it():
+    sources = {
+        "a/kernels.py": b"@part()\ndef low(x):\n    return x\n\n@lean()\ndef high(x):\n    return low(x)\n",
+        "a/use.py": b"from a import kernels as k\n\ndef run(x):\n    return k.high(x)\n",
+        "a/table.py": b"from a.kernels import high as up\nTABLE = {1: up}\n",
+    }
+    found = callers(sources)
+    assert found["a/kernels.py", "high"] == {("a/use.py", 4), ("a/table.py", 0)}
+    assert found["a/kernels.py", "low"] == found["a/kernels.py", "high"]
+
+
+def test_lines_are_recorded_by_the_test_that_runs_them_and_what_is_red_is_told(tmp_path):
+    shutil.copytree(Path(__file__).parents[1] / "benchmarks", tmp_path / "benchmarks")
+    (tmp_path / "verify").mkdir()
+    for one in ("__init__.py", "pytest_plugin.py"):  # in place of the package, which pytest knows by its plugin
+        (tmp_path / "verify" / one).write_text("")
+    (tmp_path / "verify" / "lever.py").write_text(
+        "from functools import cache\n\n\n@cache\ndef half(x):\n    return 0.5 * x\n"
+    )
+    (tmp_path / "test_lever.py").write_text(
+        "import pytest\nfrom verify.lever import half\n\n\n@pytest.fixture(scope='module')\ndef shared():\n    return half(5.0)\n\n\n"
+        "def test_red(shared):\n    assert half(3.0) == 1.0\n\n\ndef test_half():\n    assert half(3.0) == 1.5\n"
+    )
+    found, red = recorded(tmp_path, ["test_lever.py"], str(tmp_path / "kept"))
+    assert red == ["test_lever.py::test_red"]
+    assert set(found.seconds) == {"test_lever.py::test_half"}
+    assert found.run["verify/lever.py"][6] == {"test_lever.py", "test_lever.py::test_red", "test_lever.py::test_half"}
+
+
+def test_a_planted_fault_is_noticed_by_the_gate_or_test_that_it_turns_red_and_taken_out_again(tmp_path):
     source = b"def half(x):\n    return 0.5 * x if x > 0.0 else 0.0\n"
-    gate = "from lever import half\n\n\ndef test_half():\n    assert half(3.0) == 1.5\n"
     (tmp_path / "lever.py").write_bytes(source)
-    (tmp_path / "test_lever.py").write_text(gate)
-    known = Recorded({"test_lever.py::test_half": 0.01}, {"lever.py": {2: {"test_lever.py::test_half"}}})
+    for name, given, right in (("verify/scenes/test_gate.py", 3.0, 1.5), ("test_lever.py", -3.0, 0.0)):
+        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
+        (tmp_path / name).write_text(
+            f"from lever import half\n\n\ndef test_half():\n    assert half({given}) == {right}\n"
+        )
+    gate, test = "verify/scenes/test_gate.py::test_half", "test_lever.py::test_half"
+    known = Known(Recorded({gate: 0.02, test: 0.01}, {"lever.py": {2: {gate, test}}}), {})
     became = {
-        (fault.old, fault.new): met(tmp_path, "lever.py", fault, known, str(tmp_path / "kept")).gate
+        (fault.old, fault.new): met(tmp_path, "lever.py", fault, known, str(tmp_path / "kept"))[2:]
         for fault in faults_of(source)
         if fault.kind in ("thousandth", "comparison")
+        or (fault.kind == "constant" and fault.old == "0.0" and fault.line == 2)
     }
-    assert became == {
-        ("0.5", "0.5005"): "test_lever.py::test_half",
-        ("x > 0.0", "(x >= 0.0)"): "",
-        ("x > 0.0", "(x < 0.0)"): "test_lever.py::test_half",
-    }
+    assert became[("0.5", "0.5005")] == (gate, "")
+    assert became[("x > 0.0", "(x >= 0.0)")] == ("", "")
+    assert became[("x > 0.0", "(x < 0.0)")] == (gate, "")
+    assert became[("0.0", "1.0")] == ("", test)
     assert (tmp_path / "lever.py").read_bytes() == source
 
 
-def test_the_table_counts_by_room_and_lists_what_no_gate_notices():
-    faults = faults_of(SOURCE)[:3]
+def test_the_table_counts_by_room_and_kind_and_lists_what_no_gate_notices():
+    faults = faults_of(SOURCE)
     found = [
         Met("verify/waves/a.py", faults[0], "g"),
-        Met("verify/waves/a.py", faults[1], ""),
-        Met("v/chain/b.py", faults[2], "g"),
+        Met("verify/waves/a.py", faults[1], "", "t"),
+        Met("v/chain/b.py", faults[-1], ""),
     ]
-    told = table(found).splitlines()
-    assert [line.split()[:4] for line in told[:3]] == [
-        ["chain", "1", "of", "1"],
-        ["waves", "1", "of", "2"],
-        ["together", "2", "of", "3"],
+    told = table(found, tests=True).splitlines()
+    assert [" ".join(line.split()).split("  ")[0].split("%")[0] for line in told[:6]] == [
+        "chain 0 of 1",
+        "waves 1 of 2",
+        "kernels 0 of 1 0.0",
+        "other functions 1 of 2 50.0",
+        "together 1 of 3 33.3",
+        "by gates or tests 2 of 3 66.7",
     ]
-    assert len(told) == 4
-    assert told[3].startswith("UNNOTICED")
-    assert "verify/waves/a.py:5 : 0.25 -> 0.25025" in told[3]
+    assert len(told) == 8
+    assert told[6].startswith("t ")
+    assert told[7].startswith("UNNOTICED")
+    assert "verify/waves/a.py:5 : 0.25 -> 0.25025" in told[6] or "verify/waves/a.py" in told[6]
+    assert not any("by gates or tests" in line for line in table(found, tests=False).splitlines())

@@ -1,0 +1,164 @@
+"""Which gate or test runs which line of the suite, and how long each takes.
+
+Inside pytest this module is a plugin: `pytest -p benchmarks.recorded_lines` under `coverage run` names the lines after
+the test that runs them. Outside, `recorded` runs it and reads what it left.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import pytest
+
+COMPILER = "verify.models.kernels"
+TOLD = "GATES_SECONDS"
+"""The variable of the environment that names the file to which times go."""
+ALONE = {"OPENBLAS_NUM_THREADS": "1", "VERIFY_JOBS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+GIVEN = "PYTEST_ADDOPTS"
+
+
+class Recorded(NamedTuple):
+    """What gates and tests did without a fault."""
+
+    seconds: dict[str, float]
+    """By gate or test, of those that hold."""
+    run: dict[str, dict[int, set[str]]]
+    """Gates and tests by module and line; a file of tests where all of it shares what ran the line."""
+
+    def running(self, lines: Iterable[tuple[str, int]]) -> set[str]:
+        """Those that run one of these (module, line); all that run a module where the line is nought."""
+        found = set[str]()
+        for module, line in lines:
+            run = self.run.get(module, {})
+            found |= run.get(line, set()) if line else set().union(*run.values())
+        shared = tuple(f"{one}::" for one in found - self.seconds.keys())
+        return {one for one in self.seconds if one in found or (shared and one.startswith(shared))}
+
+    def beside(self, other: "Recorded") -> "Recorded":
+        """Both."""
+        run = {module: dict(lines) for module, lines in self.run.items()}
+        for module, lines in other.run.items():
+            own = run.setdefault(module, {})
+            for line, which in lines.items():
+                own[line] = own.get(line, set()) | which
+        return Recorded(self.seconds | other.seconds, run)
+
+    def written(self, stamp: str) -> str:
+        """As a file of its own, which holds as long as a stamp does."""
+        number = {
+            one: i
+            for i, one in enumerate(
+                sorted(set(self.seconds).union(*(s for r in self.run.values() for s in r.values())))
+            )
+        }
+        run = {
+            module: {line: [number[one] for one in which] for line, which in lines.items()}
+            for module, lines in self.run.items()
+        }
+        return json.dumps({"stamp": stamp, "names": list(number), "seconds": self.seconds, "run": run})
+
+
+def read_recorded(kept: Path, stamp: str) -> Recorded | None:
+    """What a file has kept; nothing where it is of another stamp."""
+    data = json.loads(kept.read_bytes())
+    if data["stamp"] != stamp:
+        return None
+    run = {
+        module: {int(line): {data["names"][i] for i in which} for line, which in lines.items()}
+        for module, lines in data["run"].items()
+    }
+    return Recorded(data["seconds"], run)
+
+
+# --- What runs inside pytest ------------------------------------------------------------------------------------------
+
+_seconds: dict[str, float] = {}
+
+
+def _switch(context: str) -> None:
+    import coverage
+
+    if (measured := coverage.Coverage.current()) is not None:
+        measured.switch_context(context)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Lines that run from here on are this test's, also those whose answers an earlier one has left behind."""
+    _forget()
+    _switch(item.nodeid)
+    _seconds[item.nodeid] = perf_counter()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_fixture_setup(fixturedef: Any, request: Any) -> Iterator[None]:
+    """What a file shares, all its tests run."""
+    if fixturedef.scope == "function":
+        return (yield)
+    own = request._pyfuncitem.nodeid
+    _switch(own.split("::")[0])
+    try:
+        return (yield)
+    finally:
+        _switch(own)
+
+
+def pytest_runtest_teardown(item: pytest.Item) -> None:
+    """How long it took."""
+    _seconds[item.nodeid] = perf_counter() - _seconds[item.nodeid]
+
+
+def pytest_sessionfinish() -> None:
+    """Leave the times to whoever asked."""
+    Path(os.environ[TOLD]).write_text(json.dumps(_seconds))
+
+
+def _forget() -> None:
+    """Empty what functions of the suite and of its tests keep; those that compile keep theirs."""
+    import functools
+
+    root = os.environ["PYTHONPATH"]
+    for module in list(sys.modules.values()):
+        if (getattr(module, "__file__", None) or "").startswith(root) and module.__name__ != COMPILER:
+            for one in list(vars(module).values()):
+                if isinstance(one, functools._lru_cache_wrapper):
+                    one.cache_clear()
+
+
+# --- Outside ----------------------------------------------------------------------------------------------------------
+
+
+def run_pytest(
+    tree: Path, words: Iterable[str], before: tuple[str, ...] = (), waited: float | None = None, **environment: str
+) -> tuple[int, list[str]]:
+    """How pytest ends in a tree, and what is red. Raises subprocess.TimeoutExpired."""
+    command = [sys.executable, "-m", *before, "pytest", "-q", "-p", "no:cacheprovider", *words]
+    given = os.environ | ALONE | {GIVEN: "", "PYTHONPATH": str(tree)} | environment
+    run = subprocess.run(command, cwd=tree, env=given, capture_output=True, text=True, timeout=waited, check=False)
+    lines = [line for line in run.stdout.splitlines() if line.startswith(("FAILED ", "ERROR "))]
+    return run.returncode, [line.split(" ", 1)[1].split(" - ")[0] for line in lines]
+
+
+def recorded(tree: Path, asked: Iterable[str], compiled: str) -> tuple[Recorded, list[str]]:
+    """Run files or folders of gates or tests once: what ran what, and which are red."""
+    import coverage
+
+    with TemporaryDirectory() as folder:
+        lines, told = Path(folder, "lines"), Path(folder, "seconds.json")
+        before = ("coverage", "run", "--source=verify", f"--data-file={lines}", "-m")
+        environment = {TOLD: str(told), "NUMBA_CACHE_DIR": compiled}
+        status, red = run_pytest(tree, ("-p", __name__, *asked), before, **environment)
+        if not told.exists():
+            raise RuntimeError(f"pytest ends with {status} before any test")
+        data, run = coverage.CoverageData(basename=str(lines)), dict[str, dict[int, set[str]]]()
+        data.read()
+        for file in data.measured_files():
+            contexts = data.contexts_by_lineno(file)
+            run[str(Path(file).relative_to(tree))] = {line: set(which) - {""} for line, which in contexts.items()}
+        seconds = {one: took for one, took in json.loads(told.read_text()).items() if one not in red}
+        return Recorded(seconds, run), red
