@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.chain import bending, dynamics, problems, ride, splitting, stepping, stretching, warm
+from verify.chain import bending, departure, dynamics, problems, ride, splitting, stepping, stretching, warm
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.chain.work import check_kept, refuse_work
 from verify.models.compiling import Call
@@ -72,6 +72,18 @@ def split(times: Sequence[float] = TIMES, dashpots: bool = False, step: float = 
     return ask
 
 
+def pulled(newton: float) -> Ask:
+    """With links that stretch, driven so hard for 0.3 s that they may turn right over."""
+
+    def ask() -> object:
+        driven = departure.Driven(
+            beam=CANTILEVER, forces=FORCES, frequency_hz=HERTZ, count=LINKS, x=0.365, times=np.linspace(0.0, 0.3, 101)
+        )
+        return departure.elastic_chain(driven, newton)
+
+    return ask
+
+
 def linear(*times: float) -> Ask:
     """One point by linear flow alone."""
     basis = splitting.modal_basis
@@ -111,6 +123,7 @@ def _loops() -> Iterator[Call]:
     from verify.motion.warm import on_chain
 
     yield from warm.rigid()
+    yield from warm.stretching()
     yield from on_chain("tanh")
 
 
@@ -242,6 +255,7 @@ ROWS: tuple[Row, ...] = (
         Case("chain.axial_spring = ", stretched(of=build_system(STRIP, LINKS, immovable=True))),
         Case("chain: actuators", stretched(of=chain(actuators=(ACTUATOR,)))),
         Case("time = 1 s takes", stretched((0.0, 1.0), most=1e3)),
+        Case("step of the stretching chain = 9.8", pulled(300.0), pulled(100.0)),
         Case("step is missing", transient(method="rk4")),
         Case("step = 1e-06 is for", transient(step=1e-6)),
         Case("tolerance = 1e-09 is for", transient(method="linear", tolerance=1e-9), transient(method="linear")),
