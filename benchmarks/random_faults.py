@@ -7,8 +7,8 @@ A room is a folder of `verify` (default: the models, waves, contact, motion, cha
 expression of a copy of the package: a sign, an operator, a comparison, a constant by a thousandth, a refusal that is
 dropped. First the lines that each gate runs are recorded; then each fault meets the gates that run its line, one in a
 kernel those that run a line from which it is called, the quickest first, until one is red; then the tests that do, if
-any are asked. What none notices is listed: it changes no figure, or a gate is missing. Nothing in the checkout is
-written to.
+any are asked. What none notices is listed: a gate is missing, or `reasons.toml` says why none is. What changes nothing,
+by that file, is left out of the score. Nothing in the checkout is written to.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections import Counter, defaultdict
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from pathlib import Path
@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 from benchmarks.fault_kinds import Fault, drawn
 from benchmarks.kernel_callers import Line, Name, callers
+from benchmarks.reasons import KEPT, NOTHING, Key, Reason, kept_reasons, key_of
 from benchmarks.recorded_lines import Recorded, read_recorded, recorded, run_pytest
 from verify.files import write_whole
 
@@ -174,37 +175,48 @@ def all_met(
             crew.shutdown(cancel_futures=True)
 
 
-def _line(found: Met) -> str:
+def _line(found: Met, reasons: dict[Key, Reason] | None = None) -> str:
     fault = found.fault
     old, new = (" ".join(text.split())[:50] for text in (fault.old, fault.new))
     by = found.gate or found.test or "UNNOTICED"
-    return f"{by:40s} {found.module}:{fault.line} {fault.function}: {old} -> {new}"
+    why = (reasons or {}).get(key_of(found.module, fault))
+    told = f"  ({why.changes}: {why.why})" if why else ""
+    return f"{by:40s} {found.module}:{fault.line} {fault.function}: {old} -> {new}{told}"
 
 
-def _share(n: int, total: int) -> str:
+def _share(name: str, n: int, total: int) -> str:
     """So many of all, and by how much a draw of that size scatters."""
-    return f"{n:4d} of {total:4d}  {n / total:.1%}, scatter {(n * (total - n) / total**3) ** 0.5:.1%}"
+    return f"{name:20s} {n:4d} of {total:4d}  {n / total:.1%}, scatter {(n * (total - n) / total**3) ** 0.5:.1%}"
 
 
-def table(found: list[Met], tests: bool) -> str:
-    """Noticed of all by gates, by room and together, and by tests too where they were asked; then what is left."""
-    all_, noticed = Counter[str](), Counter[str]()
-    left = defaultdict[str, list[str]](list)
-    for one in found:
-        room = one.module.split("/")[1]
-        all_[room] += 1
-        noticed[room] += bool(one.gate)
-        if not one.gate:
-            left[room].append(_line(one))
-    rows = [f"{room:20s} {noticed[room]:4d} of {n:4d}" for room, n in sorted(all_.items())]
+def table(found: list[Met], tests: bool, reasons: dict[Key, Reason]) -> str:
+    """Noticed of all by gates, by room and together, and by tests too where they were asked; then what is left.
+
+    All: what is noticed, and what is not unless a reason says that it changes nothing.
+    """
+    none = {id(one) for one in found if not (one.gate or one.test) and _changes(one, reasons) == NOTHING}
+    counted = [one for one in found if id(one) not in none]
+    rooms, noticed = Counter(map(_room, counted)), Counter(_room(one) for one in counted if one.gate)
+    rows = [f"{room:20s} {noticed[room]:4d} of {n:4d}" for room, n in sorted(rooms.items())]
     for kind, own in (("kernels", True), ("other functions", False)):
-        of_kind = [one for one in found if one.fault.in_kernel == own]
-        rows += [f"{kind:20s} {_share(sum(bool(one.gate) for one in of_kind), len(of_kind))}"] if of_kind else []
-    if found:
-        rows.append(f"{'together':20s} {_share(noticed.total(), len(found))}")
-    if found and tests:
-        rows.append(f"{'by gates or tests':20s} {_share(sum(bool(one.gate or one.test) for one in found), len(found))}")
-    return "\n".join([*rows, *(line for r in left.values() for line in r)])
+        of_kind = [one for one in counted if one.fault.in_kernel == own]
+        rows += [_share(kind, sum(bool(one.gate) for one in of_kind), len(of_kind))] if of_kind else []
+    if counted:
+        rows.append(_share("together", noticed.total(), len(counted)))
+    if counted and tests:
+        rows.append(_share("by gates or tests", sum(bool(one.gate or one.test) for one in counted), len(counted)))
+    rows.append(f"{len(none)} more change nothing, as benchmarks/{KEPT.name} says")
+    left = sorted((one for one in found if not one.gate), key=_room)
+    return "\n".join([*rows, *(_line(one, reasons) for one in left)])
+
+
+def _room(one: Met) -> str:
+    return one.module.split("/")[1]
+
+
+def _changes(one: Met, reasons: dict[Key, Reason]) -> str:
+    why = reasons.get(key_of(one.module, one.fault))
+    return why.changes if why else ""
 
 
 def _asked() -> argparse.Namespace:
@@ -250,7 +262,7 @@ def main() -> None:
     if asked.json:
         rows = [{"module": one.module, "gate": one.gate, "test": one.test, **vars(one.fault)} for one in found]
         write_whole(asked.json, json.dumps(rows, indent=1), "--json")
-    print(table(found, bool(asked.tests)))
+    print(table(found, bool(asked.tests), kept_reasons()))
 
 
 if __name__ == "__main__":

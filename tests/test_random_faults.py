@@ -9,6 +9,7 @@ import pytest
 from benchmarks.fault_kinds import Fault, drawn, faults_of
 from benchmarks.kernel_callers import callers
 from benchmarks.random_faults import MOST, Known, Met, meeting, met, table
+from benchmarks.reasons import NOTHING, Reason, kept_reasons, key_of
 from benchmarks.recorded_lines import Recorded, read_recorded, recorded
 
 SOURCE = b'''"""Words - not faults."""
@@ -181,19 +182,42 @@ def test_the_table_counts_by_room_and_kind_and_lists_what_no_gate_notices():
     found = [
         Met("verify/waves/a.py", faults[0], "g"),
         Met("verify/waves/a.py", faults[1], "", "t"),
-        Met("v/chain/b.py", faults[-1], ""),
+        Met("verify/waves/a.py", faults[2], ""),
+        Met("verify/chain/b.py", faults[-1], ""),
     ]
-    told = table(found, tests=True).splitlines()
-    assert [" ".join(line.split()).split("  ")[0].split("%")[0] for line in told[:6]] == [
+    reasons = {key_of("verify/waves/a.py", faults[2]): Reason(NOTHING, "it is never read")}
+    reasons |= {key_of("verify/chain/b.py", faults[-1]): Reason("speed", "one round more")}
+    told = table(found, True, reasons).splitlines()
+    assert [" ".join(line.split()).split("%")[0] for line in told[:7]] == [
         "chain 0 of 1",
         "waves 1 of 2",
         "kernels 0 of 1 0.0",
         "other functions 1 of 2 50.0",
         "together 1 of 3 33.3",
         "by gates or tests 2 of 3 66.7",
+        "1 more change nothing, as benchmarks/reasons.toml says",
     ]
-    assert len(told) == 8
-    assert told[6].startswith("t ")
-    assert told[7].startswith("UNNOTICED")
-    assert "verify/waves/a.py:5 : 0.25 -> 0.25025" in told[6] or "verify/waves/a.py" in told[6]
-    assert not any("by gates or tests" in line for line in table(found, tests=False).splitlines())
+    assert [line.split()[0] for line in told[7:]] == ["UNNOTICED", "t", "UNNOTICED"]
+    assert told[7].endswith("(speed: one round more)")
+    assert told[9].endswith("(nothing: it is never read)")
+    assert not any("by gates or tests" in line for line in table(found, False, {}).splitlines())
+    assert "0 of    2" in table([found[2], found[3]], False, {})
+
+
+def test_every_reason_is_of_a_fault_that_the_sources_still_can_have():
+    reasons = kept_reasons()
+    root = Path(__file__).parents[1]
+    possible = {
+        module: {key_of(module, fault) for fault in faults_of((root / module).read_bytes())}
+        for module in {key[0] for key in reasons}
+    }
+    assert [key for key in reasons if key not in possible[key[0]]] == []
+    assert all(one.why for one in reasons.values())
+
+
+def test_a_reason_says_what_its_fault_changes(tmp_path):
+    (tmp_path / "r.toml").write_text(
+        '[[fault]]\nmodule="a.py"\nfunction="f"\nold="1"\nnew="2"\nchanges="colour"\nwhy="none"\n'
+    )
+    with pytest.raises(ValueError, match=r"r\.toml: changes = 'colour': give one of nothing, speed, margin"):
+        kept_reasons(tmp_path / "r.toml")

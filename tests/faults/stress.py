@@ -379,6 +379,11 @@ def splines_straight_at_their_ends(patch):
     patch.setattr(spline, "_at_end", lambda pieces, chords, ends, end: chords[:, 0])
 
 
+def whole_steps_a_millionth_longer(patch):
+    true = splitting._turns
+    patch.setattr(splitting, "_turns", lambda omega, times: true(omega, np.append(times[:-1], 1.000001 * times[-1])))
+
+
 def kicks_at_equal_distances(patch):
     for kicks in (1, 2, 3):
         patch.setitem(splitting.SCHEMES, kicks, ((1.0 / (kicks + 1),) * (kicks + 1), (1.0 / kicks,) * kicks))
@@ -1013,6 +1018,7 @@ FAULTS = {
         orders_of_gregory_alone: {"orders-as-told"},
         recursion_with_another_inertia_than_the_energy: {"shaken-at-two-points"},
         longer_steps_than_the_tolerance_takes: {"kept-between-steps"},
+        whole_steps_a_millionth_longer: {"kept-over-kicks"},
         modes_that_take_too_much_of_a_kick: {"energy-over-kicks"},
         curvatures_of_the_other_sign: {"curvatures"},
         links_a_little_steeper_than_they_are: {"edges-of-links"},

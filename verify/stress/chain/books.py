@@ -17,6 +17,8 @@ FINE = 0.025
 """Of the longest step of links that stretch: what RK4 takes off their waves is then nothing."""
 FEW = 4
 """Of its lowest modes."""
+NEAR = 1e-10
+"""Of a step: so far from its end the chain has moved by nothing that would be seen."""
 
 
 def kicks_error(kicks: float) -> float:
@@ -151,6 +153,33 @@ def kicks_energy_error(kicks: float) -> float:
     return float(abs(total / total[0] - 1.0).max())
 
 
+def kept_over_kicks_error(microseconds: float) -> float:
+    """Of states kept within steps of kicks: jumps to the ends of steps, and where the longest step has no mode that
+    turns by 2, angles against their rates; over the largest."""
+    from verify.chain.dynamics import at_rest
+    from verify.chain.splitting import modal_basis, simulate_modal
+    from verify.chain.system import build_system
+
+    step, forces = 1e-6 * microseconds, (PointForce(position=0.61, amplitude=800.0),)
+    system = build_system(CLAMPED, 8, forces, 37.0)
+    basis, begins = modal_basis(system), np.arange(round(0.02 / step))
+    times = step * np.append(
+        (begins[:, None] + np.array([0.0, NEAR, 0.29, 0.3, 0.31, 1.0 - NEAR])).ravel(), len(begins)
+    )
+    run = simulate_modal(basis, at_rest(system), times, step=step)
+    worst, within = 0.0, [one[:-1].reshape(len(begins), 6, -1) for one in (run.angles, run.rates)]
+    for one, kept in zip(within, (run.angles, run.rates), strict=True):
+        ends = np.concatenate([one[1:, 0], kept[-1:]])
+        worst = max(
+            worst, *(float(abs(a - b).max() / abs(kept).max()) for a, b in ((one[:, 1], one[:, 0]), (one[:, 5], ends)))
+        )
+    if step * basis.omega.max() > 2.0:
+        return worst
+    angles, rates = within
+    mean = (rates[:, 2] + 4.0 * rates[:, 3] + rates[:, 4]) / 6.0
+    return max(worst, float(abs((angles[:, 4] - angles[:, 2]) / (0.02 * step) - mean).max() / abs(rates).max()))
+
+
 def worst_frequency_error(n: float) -> float:
     """Of how much a chain under two loads feels a slider, against the larger of both alone, either given first."""
     from verify.chain.ride import coupling_on_chain
@@ -255,6 +284,16 @@ ROWS: tuple[Row, ...] = (
         promise=2.0,
         error=kept_between_error,
         kernels=warm.rigid,
+    ),
+    Floor(
+        id="kept-over-kicks",
+        title="States kept within steps of kicks: jumps at the ends of steps, and angles against their rates",
+        why="chain/splitting.py: what kicks add is spread by a cubic, in fast modes by a line; 1e-10 of a step is moved.",
+        along="microseconds",
+        at=(700, 1000),
+        promise=1e-9,
+        error=kept_over_kicks_error,
+        kernels=_kicked,
     ),
     Floor(
         id="felt-at-the-worst-frequency",
