@@ -21,6 +21,7 @@ from verify.chain.system import ChainSystem, build_system
 from verify.models.arrays import Array
 from verify.stress.chain.written_out import changed_beam
 from verify.stress.kind import Floor, Refusal, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import held
 
 LINKS = 7
@@ -98,7 +99,7 @@ def led_error(number: float) -> float:
     on = (system.nodes[:, None] > ends - 1e-9 * beam.length).sum(axis=1)  # the piece that begins where two meet
     bends = found.curvature * np.array([piece.bending_stiffness for piece in beam.pieces])[on]
     off += [abs(bends - moments).max() / abs(moments).max()]
-    return max(abs(float(one)) for one in off)
+    return largest(abs(float(one)) for one in off)
 
 
 def along_error(number: float) -> float:
@@ -128,7 +129,7 @@ def along_error(number: float) -> float:
             (np.cumsum(linear.angles, axis=1) @ row, np.cumsum(bent - linear.angles, axis=1) @ row) for row in reach
         )
     ]
-    return max(abs(found[0] / min(exact) - 1.0), abs(found[1] / max(exact) - 1.0))
+    return largest(abs(found[0] / min(exact) - 1.0), abs(found[1] / max(exact) - 1.0))
 
 
 def pushed(share: float) -> object:

@@ -12,6 +12,7 @@ from verify.models.arrays import Array
 from verify.motion.result import END
 from verify.stress.chain.written_out import _stepped, systems
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import held
 
 LINKS = 9
@@ -31,11 +32,11 @@ def all_modes_error(links: float) -> float:
         most = n - (ends[1] == "pinned")
         long, dense = modal_basis(system, n_modes=most), modal_basis(system)
         size = max(dense.omega)
-        worst = max(worst, float(abs(long.omega - dense.omega).max() / size), abs(long.tilt - dense.tilt))
+        worst = largest(worst, float(abs(long.omega - dense.omega).max() / size), abs(long.tilt - dense.tilt))
         signs = np.sign(np.sum(long.modes * dense.modes, axis=1))[:, None]
         for own, other in ((long.modes, dense.modes), (long.duals, dense.duals)):
-            worst = max(worst, float(abs(signs * own - other).max() / abs(other).max()))
-        worst = max(worst, float(abs(long.duals @ long.modes.T - np.eye(len(long.omega))).max()))
+            worst = largest(worst, float(abs(signs * own - other).max() / abs(other).max()))
+        worst = largest(worst, float(abs(long.duals @ long.modes.T - np.eye(len(long.omega))).max()))
     return worst
 
 
@@ -88,7 +89,7 @@ def stretched_error(turn: float) -> float:
     at = float(system.nodes[4] + 0.3 * system.lengths[4])
     across = 0.7 * joints[4, 1] + 0.3 * joints[5, 1]
     off = (motion.energies[0] / exact - 1.0, motion.deflection([at])[0, 0] - across)
-    return max(abs(float(one)) for one in off)
+    return largest(abs(float(one)) for one in off)
 
 
 def _done() -> Any:
@@ -120,12 +121,12 @@ def coil_error(turn: float) -> float:
         theta = angles + 0.2 + 1.1 * t
         reach = np.append(system.lengths[:6], 0.4 * system.lengths[6])
         exact = np.array([reach @ np.cos(theta[:7]), reach @ np.sin(theta[:7])])
-        worst = max(worst, float(abs(motion.points([at])[row, 0] - exact).max()))
+        worst = largest(worst, float(abs(motion.points([at])[row, 0] - exact).max()))
         state = motion.state(row)
-        worst = max(worst, float(abs(state.angles - relative).max()), abs(state.time - t))
+        worst = largest(worst, float(abs(state.angles - relative).max()), abs(state.time - t))
     energies = np.sum(motion.energies(), axis=0)
     missed = float(energies[1] - energies[0]) - 2.2 + 0.3
-    return max(worst, abs(float(motion.residual()[1]) - missed) / abs(missed), abs(float(motion.residual()[0])))
+    return largest(worst, abs(float(motion.residual()[1]) - missed) / abs(missed), abs(float(motion.residual()[0])))
 
 
 def turned_error(phase: float) -> float:
@@ -167,7 +168,7 @@ def turning_error(bend: float) -> float:
     further = np.array([centrifugal(system, theta + one)[0] - centrifugal(system, theta - one)[0] for one in moved])
     turned = np.array([momentum(theta + one) - momentum(theta - one) for one in moved]) / (2.0 * step)
     pairs = ((force, slopes), (stiffness, further / (2.0 * step)), (gyroscopic(system, theta), turned.T - turned))
-    return max(float(abs(found - exact).max() / abs(exact).max()) for found, exact in pairs)
+    return largest(float(abs(found - exact).max() / abs(exact).max()) for found, exact in pairs)
 
 
 # --- Steps ------------------------------------------------------------------------------------------------------------
@@ -190,7 +191,7 @@ def limit_error(damping: float) -> float:
     roots = np.roots([1.0, 2.0 * damping * omega, omega**2])
 
     def growth(h: float) -> float:
-        return float(max(abs(1.0 + w + w**2 / 2.0 + w**3 / 6.0 + w**4 / 24.0) for w in roots * h)) - 1.0
+        return float(largest(abs(1.0 + w + w**2 / 2.0 + w**3 / 6.0 + w**4 / 24.0) for w in roots * h)) - 1.0
 
     unit = 1.0 / float(abs(roots).max())
     exact = brentq(growth, 2.5 * unit, 3.0 * unit, xtol=1e-12 * unit)
@@ -200,7 +201,7 @@ def limit_error(damping: float) -> float:
     fastest = float(linearise(many, at_rest(many)).frequencies()[-1])
     state = ChainState(np.zeros(12), np.zeros(12))
     off = max(abs(highest_rate(many, state) / fastest - 1.0), abs(step_limit(many, state) * fastest / sqrt(8.0) - 1.0))
-    return max(worst, off)
+    return largest(worst, off)
 
 
 # --- Landing ----------------------------------------------------------------------------------------------------------
@@ -226,7 +227,7 @@ def landing_error(ratio: float) -> float:
     shaken = abs(1.0 - 0.7**2 / complex(1.0, 1.4 * ratio))
     pairs = [(contact_time(ratio), left), (restitution(ratio), speed), (lift_off_ratio(0.7, ratio), shaken)]
     pairs += [(damping_ratio_for(speed), ratio)] if ratio else []
-    return max(abs(found / exact - 1.0) for found, exact in pairs)
+    return largest(abs(found / exact - 1.0) for found, exact in pairs)
 
 
 ROWS: tuple[Row, ...] = (

@@ -21,6 +21,7 @@ from verify.motion.result import END
 from verify.segments.links import link_inertia
 from verify.stress.chain.beyond_buckling import LINKS, _at_the_clamp, _chain
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.limits.as_written import misplaced, taken
 from verify.stress.references.beams import STEPPED, held
 
@@ -133,7 +134,7 @@ def upright_error(links: float) -> float:
         )
         held_by = np.diag(gravity * lengths * (0.5 * masses + beyond))
         exact = eigh(held_by, _inertia(lengths, masses), eigvals_only=True)
-        worst = max(worst, float(abs(linearise(chain, at_rest(chain)).squares() / exact - 1.0).max()))
+        worst = largest(worst, float(abs(linearise(chain, at_rest(chain)).squares() / exact - 1.0).max()))
     return worst
 
 
@@ -149,7 +150,7 @@ def hinged_error(links: float) -> float:
     exact = 1.0 / np.linalg.eigvalsh(left / np.sqrt(np.outer(k, k)))[::-1]
     squares = linearise(system, at_rest(system)).squares()
     off = abs(squares[1:] / exact - 1.0)
-    return max(float(off[:4].max()), 1e-5 * float(off.max()), float(squares[0] != 0.0))
+    return largest(float(off[:4].max()), 1e-5 * float(off.max()), float(squares[0] != 0.0))
 
 
 # --- Places -----------------------------------------------------------------------------------------------------------
@@ -205,7 +206,7 @@ def kept_error(step: float) -> float:
     wrong = not run.times[-1] <= end < run.times[-1] + 0.005 + step or float(told[2]) != float(f"{step:.3g}")
     wrong |= run.angles.shape != (n, LINKS) or not np.isfinite(run.angles).all() or shorter.statistics.stopped != END
     off = float(abs(run.angles - shorter.angles).max()) / float(abs(shorter.angles).max())
-    return max(off, float(wrong), 1e-9 * abs(taken_s / end - 1.0))
+    return largest(off, float(wrong), 1e-9 * abs(taken_s / end - 1.0))
 
 
 def _loops() -> Iterator[Call]:

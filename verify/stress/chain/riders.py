@@ -16,6 +16,7 @@ from verify.models.compiling import Call
 from verify.slider import Contact, Foot, Slider
 from verify.stress.chain.written_out import changed_beam
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import held
 
 LINKS, PERIOD = 7, 0.02
@@ -84,7 +85,7 @@ def ridden_error(share: float) -> float:
     beside = size * np.cos(9.0 * swung.times / PERIOD)
     still = ride(swung.stretching(0.0 * beside), swung.beam, slider).surface_speed
     moved = ride(swung.stretching(beside), swung.beam, slider).surface_speed
-    return float(max(abs(still - found).max(), abs(moved - beside[::2] - found).max()) / size)
+    return float(largest(abs(still - found).max(), abs(moved - beside[::2] - found).max()) / size)
 
 
 def under_feet_error(place: float) -> float:
@@ -115,13 +116,13 @@ def under_feet_error(place: float) -> float:
         if len(given.edges) != last + 2 - first or abs(given.edges - nodes[first : last + 2]).max() > 1e-15:
             return 1.0
         along = swung.speeds[1::2, first : last + 2, 0]
-        worst = max(worst, float(abs(given.along - along).max() / abs(along).max()))
+        worst = largest(worst, float(abs(given.along - along).max() / abs(along).max()))
         for which, rows in enumerate((swung.places, swung.speeds)):
             line = contact_line(straight_chain(swung.system), rows[1::2, :, 1])
             for share in (0.0, 0.3, 0.9):
                 exact = np.stack([line(a + share * (b - a)) for a, b in pairwise(given.edges)], axis=1)
                 found = given.local[:, :, which] @ share ** np.arange(4.0)
-                worst = max(worst, float(abs(found - exact).max() / abs(exact).max()))
+                worst = largest(worst, float(abs(found - exact).max() / abs(exact).max()))
     return worst
 
 
@@ -151,7 +152,7 @@ def small_error(size: float) -> float:
     asked: dict[str, Any] = {"count": 7, "start": "rest", "samples": 6, "slider": slider, "step": 1e-5}
     bent, straight = (run_motor(beam, forces, 170.0, 0.6 / 170.0, model=one, **asked) for one in ("chain", "segment"))
     pairs = ((bent.height, straight.height), (bent.pitch, straight.pitch), (bent.pressures, straight.pressures))
-    return max(float(abs(one - other).max() / abs(other).max()) for one, other in pairs)
+    return largest(float(abs(one - other).max() / abs(other).max()) for one, other in pairs)
 
 
 def _given() -> Iterator[Call]:

@@ -17,6 +17,7 @@ from verify.models.arrays import Array
 from verify.models.compiling import Call
 from verify.stress.chain.written_out import accelerated, systems
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 
 SPRINGS = 8.0e4 * np.array([1.0, 0.7, 1.3, 0.9, 1.1, 0.8, 1.2])
 """EA of each link, newton."""
@@ -118,7 +119,7 @@ def stretched_error(number: float) -> float:
         pairs: list[tuple[Any, Any]] = [(run.displacements[i + 1], u), (run.velocities[i + 1], v)]
         pairs.append((run.deflection([x])[i + 1, 0], np.interp(x, rods.straight[:, 0], u[:, 1])))
         pairs.append((run.energies[i + 1], rods.energy(u, v)))
-        worst = max(worst, *(float(abs(a - b).max() / abs(b).max()) for a, b in map(np.atleast_1d, pairs)))
+        worst = largest(worst, *(float(abs(a - b).max() / abs(b).max()) for a, b in map(np.atleast_1d, pairs)))
     return worst
 
 
@@ -131,7 +132,7 @@ def angles_error(angle: float) -> float:
         n = np.arange(1.0, system.n_links + 1.0)
         state = ChainState(angle * np.cos(2.0 * n), 4.0 * np.cos(1.3 * n), 0.13)
         exact = accelerated(system, 0.13, state.angles, state.rates)
-        worst = max(worst, float(abs(accelerations(system, state) - exact).max() / abs(exact).max()))
+        worst = largest(worst, float(abs(accelerations(system, state) - exact).max() / abs(exact).max()))
     return worst
 
 

@@ -12,6 +12,7 @@ from verify.chain.result import ChainMotion
 from verify.chain.stepping import simulate, step_limit
 from verify.chain.system import ChainState, ChainSystem, build_system
 from verify.stress.kind import Floor, Refusal, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP
 
 LINKS = 100
@@ -70,7 +71,7 @@ def elastica(load: float) -> tuple[float, float]:
 def linear_tip_error(load: float) -> float:
     """The same of linear theory, w = P L^3 / 3 EI."""
     deflection, shortening = elastica(load)
-    return max(abs(load / 3.0 - deflection), shortening) / (load / (12.0 * LINKS**2))
+    return largest(abs(load / 3.0 - deflection), shortening) / (load / (12.0 * LINKS**2))
 
 
 @cache
@@ -101,7 +102,7 @@ def spun_error(turns: float) -> float:
     end = 2.0 * pi * turns / RATE
     motion = simulate(system, start, [end], method="rk4", step=0.5 * step_limit(system, start), ledger=False)
     angles = motion.angles[-1]
-    return max(float(abs(angles[0] / (RATE * end) - 1.0)), float(abs(angles[1:]).max()) / (RATE * end))
+    return largest(float(abs(angles[0] / (RATE * end) - 1.0)), float(abs(angles[1:]).max()) / (RATE * end))
 
 
 TOLERANCE = 1e-10
@@ -146,7 +147,7 @@ def _gain(motion: ChainMotion) -> float:
         return inf
     kinetic, elastic, _ = motion.energies()
     total = kinetic + elastic
-    return max(float(total[-1] / total[0]) - 1.0, 0.0)
+    return largest(float(total[-1] / total[0]) - 1.0, 0.0)
 
 
 def limit_error(n: float) -> float:

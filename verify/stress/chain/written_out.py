@@ -19,6 +19,7 @@ from verify.models.arrays import Array
 from verify.models.compiling import Call
 from verify.section import Section
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import held
 
 LINKS = 7
@@ -140,7 +141,7 @@ def acceleration_error(number: float) -> float:
     worst = float(abs(accelerations(system, state) - exact).max() / abs(exact).max())
     theta = hub(system, state.time)[0] + np.cumsum(state.angles)
     for reach, y, _ in held_at(system, state.time):
-        worst = max(worst, abs(float(reach @ np.sin(theta)) - y) / system.length)
+        worst = largest(worst, abs(float(reach @ np.sin(theta)) - y) / system.length)
     return worst
 
 
@@ -167,7 +168,7 @@ def energy_error(number: float) -> float:
     found, (places, rates) = energies(system, state), positions(system, state)
     off = max(abs(a - b) for a, b in zip(found, exact, strict=True)) / max(map(abs, exact))
     pairs = ((places, joints), (rates, speeds))
-    return max(off, *(float(abs(a - b).max() / abs(b).max()) for a, b in pairs))
+    return largest(off, *(float(abs(a - b).max() / abs(b).max()) for a, b in pairs))
 
 
 def rest_error(number: float) -> float:
@@ -181,7 +182,7 @@ def rest_error(number: float) -> float:
     bent = accelerated(system, 0.0, stirred(system).angles, still)
     theta = hub(system, 0.0)[0] + np.cumsum(rest.angles)
     gaps = [abs(float(reach @ np.sin(theta)) - y) / system.length for reach, y, _ in held_at(system, 0.0)]
-    return max([float(abs(left).max() / abs(bent).max()), *gaps])
+    return largest([float(abs(left).max() / abs(bent).max()), *gaps])
 
 
 def _constant(system: ChainSystem) -> ChainSystem:
@@ -285,13 +286,13 @@ def transient_error(number: float) -> float:
     worst = 0.0
     for motion in motions:
         for seen, true in ((motion.angles, exact[:, :n]), (motion.rates, exact[:, n:])):
-            worst = max(worst, float(abs(seen - true).max() / abs(true).max()))
+            worst = largest(worst, float(abs(seen - true).max() / abs(true).max()))
         x = np.array([0.13, 0.6])
         joints = np.array(
             [positions(system, ChainState(y[:n], y[n:], float(t)))[0] for y, t in zip(exact, times, strict=True)]
         )
         across = np.array([np.interp(x, system.nodes, one[:, 1]) for one in joints])
-        worst = max(worst, float(abs(motion.deflection(x.tolist()) - across).max() / abs(across).max()))
+        worst = largest(worst, float(abs(motion.deflection(x.tolist()) - across).max() / abs(across).max()))
     return worst
 
 

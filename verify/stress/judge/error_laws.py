@@ -6,6 +6,7 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.laws import exact_root
 from verify.stress.references.beams import held
 from verify.stress.references.decimals import cos, exp, sin
@@ -85,13 +86,13 @@ def law_error(mode: float) -> float:
         for model, count in (("segment", 2 * number + 9), ("segment", 47 * number), ("fem", 3 * number + 2)):
             own, walls = terms(model, pair, number, count)
             size = abs(own) + abs(walls)
-            worst = max(worst, abs(expected_error(model, beam, number, count) - own - walls) / size)
+            worst = largest(worst, abs(expected_error(model, beam, number, count) - own - walls) / size)
             for share, kept in ((0.33, True), (0.34, False), (-0.33, True), (-0.34, False)):
                 found = is_kept(model, beam, number, count, own + walls + share * size, 0.0)
-                worst = max(worst, float(found is not kept))
+                worst = largest(worst, float(found is not kept))
         edge = y / (2.5 if "free" in pair or "clamped" in pair else pi)
         spoken = (has_law(beam, number, int(edge) + 1), has_law(beam, number, int(edge)))
-        worst = max(worst, float(spoken != (True, False)))
+        worst = largest(worst, float(spoken != (True, False)))
     return worst
 
 

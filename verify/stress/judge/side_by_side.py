@@ -13,6 +13,7 @@ from verify.judge.workbench import Settings, Workbench, comparable, has_bracket
 from verify.section import Section
 from verify.stress.judge.sizes_chosen import pinned_error
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STEPPED, STRIP, held
 
 CLAMPED = held("clamped", "free")
@@ -93,8 +94,8 @@ def brackets_error(mode: float) -> float:
     wrong += comparable(CLAMPED, (9, 20), 3) != (["segment", "fem"], {})
     none, why = bench.error_or_why("segment", 5, 9)
     wrong += none is not None or "mode = 9" not in why
-    wrong += abs((bench.error_or_why("segment", n, number)[0] or 0.0) - pinned_error("segment", number, n)) > 1e-12
-    return max(worst, float(wrong))
+    wrong += not abs((bench.error_or_why("segment", n, number)[0] or 0.0) - pinned_error("segment", number, n)) <= 1e-12
+    return largest(worst, float(wrong))
 
 
 def chosen_error(mode: float) -> float:
@@ -106,7 +107,7 @@ def chosen_error(mode: float) -> float:
         errors = {n: abs(pinned_error(one.model, number, n)) for n in range(number + 1, 90)}
         exact = max((n for n, error in errors.items() if error > 0.01), default=number) + 1
         missed += abs(one.count - exact) + (one.lower != ()) + (one.run_time_s <= 0.0)
-        missed += abs(one.error - pinned_error(one.model, number, one.count)) > 1e-12
+        missed += not abs(one.error - pinned_error(one.model, number, one.count)) <= 1e-12
         missed += one.variant != Variant(one.model) or one.mode != number
     return missed
 
@@ -126,9 +127,10 @@ def edges_error(phase: float) -> float:
         asked = np.linspace(low, high, 9)
         found = land.quiet_point(asked, phase)
         wrong += bool(found.note) is (end is None)
-        wrong += abs(found.frequency_hz - (best if end is None else asked[end])) > (3.0 if end is None else 1e-9)
+        wrong += not abs(found.frequency_hz - (best if end is None else asked[end])) <= (3.0 if end is None else 1e-9)
         wrong += (
-            abs(found.reflection - float(land.over(np.array([found.frequency_hz]), np.array([phase]))[0][0, 0])) > 1e-9
+            not abs(found.reflection - float(land.over(np.array([found.frequency_hz]), np.array([phase]))[0][0, 0]))
+            <= 1e-9
         )
     near = np.linspace(best, best + 0.1, 3)
     fast = land.fast_point(near, phase, 0.9)

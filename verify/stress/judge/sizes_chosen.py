@@ -12,6 +12,7 @@ from verify.beam import PointForce
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STEPPED, STRIP, held
 
 MOST = 90
@@ -80,7 +81,7 @@ def scanned_error(mode: float) -> float:
     told = {(one.model, one.settings): (one.count, one.error) for one in choices}
     counts = [told["segment", (("wall", "half"),)][0], told["segment", ()][0], told["fem", ()][0]]
     missed += float(bool(left_out) or len(told) != 3 or sorted(counts, reverse=True)[0] != counts[0])
-    missed += sum(abs(error) > 0.01 for _, error in told.values())
+    missed += sum(not abs(error) <= 0.01 for _, error in told.values())
     return missed
 
 
@@ -125,7 +126,7 @@ def carried_error(count: float) -> float:
             turn = discrete_wavenumber(model, beam, int(count), hertz) * part
             left, above, below = (_node(model, turn * (1.0 + d), root) for d in (0.0, 1e-5, -1e-5))
             off = abs(left / ((above - below) / 2e-5))
-            worst = max(worst, off, turn.imag > 0.0, *_laden_turns(model, count, turn, hertz))
+            worst = largest(worst, off, turn.imag > 0.0, *_laden_turns(model, count, turn, hertz))
     return worst
 
 
@@ -187,7 +188,7 @@ def crossing_error(order: float) -> float:
     worst = abs(met.crossings[0] / exact - 1.0) + abs(met.spread - 0.08)
     for wanted in (0.7 * sizes[1] ** -order, 2.0 * sizes[0] ** -order):
         cost = 1e-4 * max(wanted ** (-1.0 / order), sizes[0])
-        worst = max(worst, abs((within(first, wanted) or 0.0) / cost - 1.0))
+        worst = largest(worst, abs((within(first, wanted) or 0.0) / cost - 1.0))
     unearned = (
         (first[:2], order, "sizes show no order"),
         ([Point(1.0 / n, 0.9, 1.0) for n in sizes], order, "are no answers"),
@@ -208,11 +209,11 @@ def guesses_error(mode: float) -> float:
     for model in ("segment", "fem"):
         own = {n: pinned_error(model, number, n) for n in range(number + 1, MOST)}
         pairs = ((expected_error(model, STRIP, number, n) - error, n) for n, error in own.items())
-        worst = max(worst, *(abs(off) * (number * pi / n) ** 4 for off, n in pairs))
+        worst = largest(worst, *(abs(off) * (number * pi / n) ** 4 for off, n in pairs))
         for asked in ASKED:
             exact = max((n for n, error in own.items() if abs(error) > asked), default=number) + 1
             if exact < MOST // 2:
-                worst = max(worst, float(abs(parts_from_here_on(model, STRIP, number, asked) - exact)))
+                worst = largest(worst, float(abs(parts_from_here_on(model, STRIP, number, asked) - exact)))
     return worst
 
 

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.stress.judge.sizes_chosen import pinned_error
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.lists.members import MEMBERS, turned_rate
 from verify.stress.references.beams import LADEN, STEPPED, STRIP, held
 
@@ -217,7 +218,7 @@ def beside_error(number: float) -> float:
         wrong += _dips(error, range(30, 32)) != _dip("fem", STRIP, range(30, 32), error, 40)
         lower = tuple(n for n in range(1, 31) if abs(pinned_error("fem", n, 32)) > error)
         wrong += _lower(bench, Variant("fem"), Enough(count=32, mode=31, known_by=""), error) != lower
-    return max(off, float(wrong))
+    return largest(off, float(wrong))
 
 
 ROWS: tuple[Row, ...] = (

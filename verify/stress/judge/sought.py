@@ -17,6 +17,7 @@ from verify.models.arrays import Array
 from verify.models.compiling import Call
 from verify.slider import Contact, Foot, Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.motion.sliders import BAR, FORCES, HERTZ, RATIO
 from verify.stress.references.beams import STRIP
 
@@ -176,11 +177,14 @@ def asked_error(parts: float) -> float:
     n, k = int(parts), pi / STRIP.length
     found, hertz = asked_of(f"{HERE}:Sines", STRIP, n, None), STRIP.wave_constant * k**2 / (2.0 * pi)
     wrong = (
-        abs(found.listed.frequencies_hz / (1.001 * hertz * np.arange(1.0, min(n, 10) + 1.0) ** 2) - 1.0).max() > 1e-13
+        not abs(found.listed.frequencies_hz / (1.001 * hertz * np.arange(1.0, min(n, 10) + 1.0) ** 2) - 1.0).max()
+        <= 1e-13
     )
     x = np.linspace(0.0, STRIP.length, 201)
     shapes = found.shapes
-    wrong |= shapes is None or abs(shapes.values - np.sin(np.outer(np.arange(1, min(n, 10) + 1), k * x))).max() > 1e-12
+    wrong |= (
+        shapes is None or not abs(shapes.values - np.sin(np.outer(np.arange(1, min(n, 10) + 1), k * x))).max() <= 1e-12
+    )
     wrong |= found.count != n or len(asked_of(f"{HERE}:Sines", STRIP, n, 2).listed.frequencies_hz) != 2
     plain = asked_of(f"{HERE}:Shapeless", STRIP, None, 4)
     wrong |= plain.shapes is not None or plain.count is not None or len(plain.listed.frequencies_hz) != 4
@@ -214,7 +218,9 @@ def shuffled_error(first: float) -> float:
     shapes = Shapes(x=x, values=np.vstack([np.zeros(len(x)), values, hump]))
     pairs, likeness, told = by_shape(STRIP, shapes, kept)
     wrong = pairs.entries.tolist() != [0, 1, 2, 3] or (pairs.modes + 1).tolist() != order.tolist()
-    wrong |= abs(likeness - 1.0).max() > 1e-9 or [one.words[:31] for one in told] != ["the shape of entry 6 is like no"]
+    wrong |= not abs(likeness - 1.0).max() <= 1e-9 or [one.words[:31] for one in told] != [
+        "the shape of entry 6 is like no"
+    ]
     words = [one.words for one in swapped(pairs)]
     wrong |= words != [f"modes {start}, {start + 1} are exchanged: by their shapes they are {start + 1}, {start}"]
     gone = [*range(1, start), start + 2]
@@ -265,7 +271,7 @@ def repeated_error(steps: float) -> float:
     own = np.sort_complex(np.exp(rates / HERTZ))
     apart = abs(np.sort_complex(found.multipliers) - own).max()
     sized = _size(found.run) / abs(exact[0]) / np.array([1.0, omega, 1.0, omega])
-    return float(max(*off, apart, found.missed, abs(sized - 1.0).max(), float(not found.stable)))
+    return float(largest(*off, apart, found.missed, abs(sized - 1.0).max(), float(not found.stable)))
 
 
 def each_alone_error(speed: float) -> float:
@@ -281,7 +287,7 @@ def each_alone_error(speed: float) -> float:
         alone = run_motor(BAR, FORCES, HERTZ, span, slider=slider, held_speed=held, **given)
         pairs = [(getattr(run, name), getattr(alone, name)) for name in ("travelled", "speed", "height", "pressures")]
         pairs += [(run.normal_force, alone.normal_force), (run.state.feet, alone.state.feet)]
-        worst = max(worst, *(float(abs(a - b).max() / (abs(b).max() or 1.0)) for a, b in pairs))
+        worst = largest(worst, *(float(abs(a - b).max() / (abs(b).max() or 1.0)) for a, b in pairs))
     try:
         run_motors(BAR, FORCES, HERTZ, span, sliders=(STANDS, other), held_speed=(speed,), **given)
     except InputError as error:

@@ -91,7 +91,7 @@ def _orders_error() -> int:
     )
     wrong = sum(words not in _said(ask) for ask, words in asks)
     middle = bracket(2.9, 3.1)
-    wrong += abs(middle.mean - 3.0) > 1e-15 or abs(middle.relative_width - 0.2 / 3.0) > 1e-15
+    wrong += not abs(middle.mean - 3.0) <= 1e-15 or not abs(middle.relative_width - 0.2 / 3.0) <= 1e-15
     return wrong
 
 
@@ -125,7 +125,9 @@ def costs_error(order: float) -> float:
     wrong |= observed(one, other, 0.0) is not None or too_few(2) != "2 sizes show no order"
     points = [Point(1.0 / n, error, n, 0.1 / n) for n, error in zip((10.0, 20.0, 40.0, 80.0), fine, strict=True)]
     least = converging(points, (order, order), 1e-30)
-    wrong |= not isinstance(least, Stretch) or least.span != (fine[-1], fine[0]) or abs(least.spread - 0.01) > 1e-15
+    wrong |= (
+        not isinstance(least, Stretch) or least.span != (fine[-1], fine[0]) or not abs(least.spread - 0.01) <= 1e-15
+    )
     return float(wrong)
 
 

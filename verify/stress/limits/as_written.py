@@ -168,7 +168,7 @@ def _sound(made: float, slider: Any = None, way: float = 0.0) -> bool:
     ledger = Ledger(work_in=-1.8, contact_on_beam=0.3 * made, normal_on_beam=0.7 * made, **rest)
     asked: Any = SimpleNamespace(slider=slider or SimpleNamespace(normal="massless"))
     found = excess_of(ledger, 1.2, way, asked, MODELS["analytic"].time_basis(STRIP, None, 80, "spline"))
-    return found is None or abs(found.made - made) > 1e-12 * made
+    return found is None or not abs(found.made - made) <= 1e-12 * made
 
 
 def _pressing(way: float) -> tuple[float, bool, Callable[[float], bool]]:

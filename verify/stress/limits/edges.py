@@ -11,6 +11,7 @@ from verify.beam import PointForce
 from verify.errors import InputError
 from verify.models.compiling import Call
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.motion.braked import LOAD, MU, SPEED, STILL, let_go
 from verify.stress.motion.sliders import BAR, HERTZ
 from verify.stress.references.beams import STEPPED, STRIP, held
@@ -104,7 +105,7 @@ def followed_error(turn: float) -> float:
     exact = np.linalg.norm(free * each) / np.hypot(1.3, np.linalg.norm(free))
     worst = abs(missed(omegas, free, 1.3, dt) / exact - 1.0)
     alone = missed(omegas[2:], free[2:], 0.0, 1.0)
-    return float(max(worst, abs(alone - 1.0), missed(omegas, 0.0 * free, 0.0, dt)))
+    return float(largest(worst, abs(alone - 1.0), missed(omegas, 0.0 * free, 0.0, dt)))
 
 
 def ends_error(pull: float) -> float:
@@ -138,7 +139,7 @@ def lowest_error(count: float) -> float:
         wrong = not all(refused(partial(lowest_modes, system, k), f"1 to {most}") for k in (0, most + 1))
         exact = 2.0 * np.pi * np.asarray(solve_modes(held(*ends), 1, n).frequencies_hz)
         omega = lowest_modes(system, 1)[0] if ends != ("pinned", "free") else exact
-        worst = max(worst, float(wrong), float(abs(omega[0] / exact[0] - 1.0)))
+        worst = largest(worst, float(wrong), float(abs(omega[0] / exact[0] - 1.0)))
     return worst
 
 

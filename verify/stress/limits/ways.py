@@ -14,6 +14,7 @@ from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.section import Section
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import PLAIN
 from verify.stress.references.beams import STRIP, held
 
@@ -140,7 +141,7 @@ def shifts_error(modes: float) -> float:
             roots = values**0.25
             steps = np.diff(roots, axis=0, prepend=-roots[:1])
             off = abs(shifts - roots[:-1]) / np.minimum(steps[1:], steps[:-1])
-            worst = max(worst, float(off.max()), float(not settled.all()))
+            worst = largest(worst, float(off.max()), float(not settled.all()))
     return worst
 
 
@@ -182,12 +183,12 @@ def graded_error(parts: float) -> float:
             found = MODELS[model].solve_modes(beam, 3, n, theory=theory, grading=1.5, **more)
             scale = times * (np.arange(2.0, 5.0) * pi / n) ** 2
             off = abs(found.frequencies_hz / exact.frequencies_hz - 1.0)
-            worst = max(worst, float((off / scale).max() / OFF[model][0]))
+            worst = largest(worst, float((off / scale).max() / OFF[model][0]))
             for derivative in (0, 1):
                 one, other = found.shapes(AT, derivative), exact.shapes(AT, derivative)
                 one = one * np.sign((one * other).sum(axis=1))[:, None]
                 off = abs(one - other).max(axis=1) / abs(other).max(axis=1)
-                worst = max(worst, float((off / scale).max() / OFF[model][1 + derivative]))
+                worst = largest(worst, float((off / scale).max() / OFF[model][1 + derivative]))
     return worst
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
 from verify.stress.references.lists import FREE, clamp_giving, data_of, family_of, fit_of, told_of
 
@@ -243,13 +244,13 @@ def rows_error(factor: float) -> float:
     at = {0: 0, 1: 1, 2: 2, 4: 5}
     for i, row in enumerate(rows):
         wrong += (row.mode, row.entry, row.likeness) != (i + 1, i + 2, 0.9 if i == 2 else None)
-        worst = max(worst, abs(row.error - (listed[i] / true[i] - 1.0)), abs(row.given_hz / listed[i] - 1.0))
+        worst = largest(worst, abs(row.error - (listed[i] / true[i] - 1.0)), abs(row.given_hz / listed[i] - 1.0))
         wrong += (row.scaled_hz is None) is not (factor == 1.0) or (row.read_as is None) is not (i not in at)
         if i in at:
             beyond = max(abs(noise[i] - 1.0) - 1e-4, 0.0)
             read = listed[i] / factor / true[at[i]] - 1.0, noise[i] - 1.0, beyond
             given = row.read_error, row.difference, row.beyond
-            worst = max(worst, *(1.0 if a is None else abs(a - b) for a, b in zip(given, read, strict=True)))
+            worst = largest(worst, *(1.0 if a is None else abs(a - b) for a, b in zip(given, read, strict=True)))
             wrong += row.read_as != at[i] + 1
     said = [one.words for one in gaps_of(data, best, elastic)]
     wrong += said != ["modes 4, 5 are missing from the list", "entry 5 is none of the beam's bending modes"]
@@ -257,7 +258,7 @@ def rows_error(factor: float) -> float:
     told = [one.words for one in gaps_of(data_of(FREE, factor * own[:5] * noise, ()), apart, elastic)]
     wrong += [one.split(", and")[0] for one in told] != ["entry 5 is -0.0500 % off mode 4"]
     wrong += sum(_gated(best, rows, factor))
-    return float(max(worst, wrong))
+    return float(largest(worst, wrong))
 
 
 def _gated(best: Any, rows: Any, factor: float) -> Iterator[bool]:
@@ -265,13 +266,13 @@ def _gated(best: Any, rows: Any, factor: float) -> Iterator[bool]:
     from verify.identify.gates import judged
     from verify.identify.pairing import Found
 
-    largest = max(abs(row.error) for row in rows)
+    size = max(abs(row.error) for row in rows)
     mended = (Found(kind="unit", words="off"), Found(kind="leaving", words="so", wrong=False))
     for told, within, passed in (
         ((), None, [True, True]),
         (mended, None, [False, True]),
-        ((), 0.999 * largest, [True, True, False]),
-        ((), 1.001 * largest, [True, True, True]),
+        ((), 0.999 * size, [True, True, False]),
+        ((), 1.001 * size, [True, True, True]),
     ):
         yield [gate.passed for gate in judged(told_of(best), told, rows, within)] != passed
     for short, systematic in ((True, False), (False, True)):

@@ -15,6 +15,7 @@ from verify.attached import PointSpring
 from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.limits.as_written import misplaced
 from verify.stress.references.beams import held
 from verify.stress.references.lists import FREE, clamp_giving, data_of, family_of, fit_of, told_of
@@ -65,9 +66,9 @@ def soft_error(number: float) -> float:
     theories = [one.theory for one in {one.candidate for one in alone[0].fits} & {*family.values()}]
     wrong |= sorted(theories) != ["euler-bernoulli"] * (6 if every else 3) + ["rayleigh"] * (3 if every else 0)
     wrong |= len(theories) != len(alone[0].fits)
-    wrong |= abs(frequencies_of(data_of(beam, hertz, ()), mine[0]) / hertz - 1.0).max() > 1e-9
+    wrong |= not abs(frequencies_of(data_of(beam, hertz, ()), mine[0]) / hertz - 1.0).max() <= 1e-9
     clamp, rotational = mine[0].clamp, stiffness * beam.bending_stiffness / beam.length
-    return max(abs(clamp.stiffness / stiffness - 1.0), abs(clamp.rotational / rotational - 1.0), float(wrong))
+    return largest(abs(clamp.stiffness / stiffness - 1.0), abs(clamp.rotational / rotational - 1.0), float(wrong))
 
 
 def _read_otherwise(told: Any, mine: Any, unit: float) -> bool:
@@ -75,7 +76,7 @@ def _read_otherwise(told: Any, mine: Any, unit: float) -> bool:
     cost = 9.0 + 5.0 * (unit != 1.0)
     wrong = (told.reading.factor, told.reading.cost, told.reading.aligned, mine.factor) != (unit, cost, False, unit)
     wrong |= not (told.best.residual <= 1e-9 and mine.residual <= 1e-9)
-    return bool(wrong or abs(mine.score - MODES * log(1e-9) - cost) > 1.0)
+    return bool(wrong or not abs(mine.score - MODES * log(1e-9) - cost) <= 1.0)
 
 
 def weight_error(place: float) -> float:
@@ -93,11 +94,11 @@ def weight_error(place: float) -> float:
     data = data_of(PROPPED, np.array(at[0]), ())
     logs = np.array([0.01, -0.02, 0.015, 0.004, -0.03])
     one = _fit(data, family_of(None)["half"], 14, ("right",), compliance, logs)
-    worst = max(worst, abs(one.weight / float(np.linalg.norm(exact)) - 1.0))
-    wrong = abs(one.differences - np.expm1(logs)).max() > 1e-15 or one.count != 14 or one.factor != 1.0
-    wrong |= abs(one.residual / float(np.sqrt(np.mean(logs**2))) - 1.0) > 1e-12
-    wrong |= abs(one.score - MODES * log(one.residual) - 9.0) > 1e-6 or one.clamp is None
-    return max(worst, float(wrong))
+    worst = largest(worst, abs(one.weight / float(np.linalg.norm(exact)) - 1.0))
+    wrong = not abs(one.differences - np.expm1(logs)).max() <= 1e-15 or one.count != 14 or one.factor != 1.0
+    wrong |= not abs(one.residual / float(np.sqrt(np.mean(logs**2))) - 1.0) <= 1e-12
+    wrong |= not abs(one.score - MODES * log(one.residual) - 9.0) <= 1e-6 or one.clamp is None
+    return largest(worst, float(wrong))
 
 
 # --- One cause or another ---------------------------------------------------------------------------------------------

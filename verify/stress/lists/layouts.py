@@ -12,6 +12,7 @@ import numpy as np
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.limits.as_written import misplaced, taken
 from verify.stress.references.beams import STRIP
 
@@ -148,13 +149,13 @@ def gone_through_error(number: float) -> float:
         wrong += enough != first or smaller != dip or set(does) != {*sizes, *beside}
     wrong += [_walk(n) for n in (7, 60, 150, 1500, 2500)] != [7, 60, 100, 66, 40]
     costs = ((50, False, 3750.0), (150, False, 3000.0), (2500, False, 5000.0), (2500, True, 15e4), (150, True, 18e3))
-    wrong += sum(abs(_ahead(failed, uneven) / told - 1.0) > 1e-12 for failed, uneven, told in costs)
+    wrong += sum(not abs(_ahead(failed, uneven) / told - 1.0) <= 1e-12 for failed, uneven, told in costs)
     last, tried = walked(lambda count: count not in (12, 17), 11, {9: False, 11: False, 14: True})
     wrong += last != 17 or list(tried) != [9, 11, *range(12, 35)]
     laden: Any = SimpleNamespace(added=("section", "mass"))
     stepped: Any = SimpleNamespace(added=("section",))
-    wrong += abs(_part_s(laden, 30) / (1e-4 + 7.0 * 1.5e-6 * 30) - 1.0) > 1e-12
-    wrong += abs(_part_s(stepped, 30) / (1e-4 + 1.5e-6 * 30) - 1.0) > 1e-12
+    wrong += not abs(_part_s(laden, 30) / (1e-4 + 7.0 * 1.5e-6 * 30) - 1.0) <= 1e-12
+    wrong += not abs(_part_s(stepped, 30) / (1e-4 + 1.5e-6 * 30) - 1.0) <= 1e-12
     return float(wrong)
 
 
@@ -184,7 +185,7 @@ def constants_error(number: float) -> float:
     limit, hump = error_laws.MEAN_LIMIT, error_laws._HERMITE_HUMP
     ends = [_links(limit * (1.0 + side)) + 3.0 * _herm(limit * (1.0 + side)) for side in (-1e-10, 1e-10)]
     slopes = [_herm(hump + side + 1e-5) - _herm(hump + side - 1e-5) for side in (-2e-5, 2e-5)]
-    return max(worst, float(ends[0] * ends[1] >= 0.0), float(slopes[0] <= 0.0 or slopes[1] >= 0.0))
+    return largest(worst, float(ends[0] * ends[1] >= 0.0), float(slopes[0] <= 0.0 or slopes[1] >= 0.0))
 
 
 ROWS: tuple[Row, ...] = (

@@ -14,6 +14,7 @@ from verify.attached import PointSpring
 from verify.beam import Beam
 from verify.stress.judge.sizes_chosen import turned_error
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.motion.told_of_runs import timoshenko_rate
 from verify.stress.references.beams import STRIP, held
 from verify.stress.references.textbook import assembled
@@ -81,7 +82,9 @@ def member_error(number: float) -> float:
     errors = {n: abs(turned_rate(model, mass, 5.0 * pi / n) / (5.0 * pi / n) ** 2 - 1.0) for n in range(6, 200)}
     wrong += needed["count"] != max((n for n, error in errors.items() if error > 0.01), default=5) + 1
     for row, given, exact in zip(found["modes"], hertz, EXACT, strict=True):
-        wrong += abs(row["error"] - (given / exact - 1.0)) > 1e-12 or abs(row["exact_hz"] / exact - 1.0) > 1e-12
+        wrong += (
+            not abs(row["error"] - (given / exact - 1.0)) <= 1e-12 or not abs(row["exact_hz"] / exact - 1.0) <= 1e-12
+        )
     return float(wrong)
 
 
@@ -101,7 +104,7 @@ def _in_radians() -> Any:
     hertz = listed("fem", "consistent", 11)
     text = "\n".join(f"{n},{2.0 * pi * one:.17g}" for n, one in enumerate(hertz, start=1))
     found = told_of(f"mode,omega [rad/s]\n{text}", count=11)
-    wrong = found["unit"] != "rad/s" or abs(found["modes"][7]["frequency_hz"] / hertz[7] - 1.0) > 1e-12
+    wrong = found["unit"] != "rad/s" or not abs(found["modes"][7]["frequency_hz"] / hertz[7] - 1.0) <= 1e-12
     return found, ["wrong"] * wrong, {"model": "fem", "mass": "consistent", "count": 11}
 
 
@@ -114,7 +117,7 @@ def _another_unit() -> Any:
 def _scaled() -> Any:
     """By one factor."""
     found = told_of(lines(1.013 * one for one in EXACT), count=11)
-    wrong = abs(found["factor"] - 1.013) > 1e-9
+    wrong = not abs(found["factor"] - 1.013) <= 1e-9
     return found, ["scale"] + ["wrong"] * wrong, {"model": "analytic"}
 
 
@@ -145,7 +148,9 @@ def _soft() -> Any:
     hertz = Elements(soft, np.linspace(0.0, beam.length, count + 1)).hertz(MODES)
     found = told_of(lines(hertz), beam, count=count, kind="elements")
     clamps = [one["clamp"] for one in found["causes"]]
-    wrong = clamps[0] is None or abs(clamps[0]["k_r_L_over_EI"] / 50.0 - 1.0) > 1e-6 or clamps[0]["ends"] != ["left"]
+    wrong = (
+        clamps[0] is None or not abs(clamps[0]["k_r_L_over_EI"] / 50.0 - 1.0) <= 1e-6 or clamps[0]["ends"] != ["left"]
+    )
     own = {"model": "fem", "mass": "consistent", "count": count}
     return found, ["clamp", "twin"] + ["wrong"] * wrong, own
 
@@ -226,7 +231,7 @@ def orders_error(number: float) -> float:
         coarse, fine = (abs(float(frequencies_hz(one, beam, n, 2)[-1]) / exact - 1.0) for n in (40, 80))
         order = float(np.log2(coarse / fine))
         crossed = one.wall in ("gregory", "five-joint") and one.mass == "links"
-        worst = max(worst, max(3.0 - order, 0.0) if crossed else abs(order - (one.order or 0)))
+        worst = largest(worst, max(3.0 - order, 0.0) if crossed else abs(order - (one.order or 0)))
     return worst
 
 
@@ -268,7 +273,7 @@ def shapes_error(unlike: float) -> float:
     likeness = squares[0] ** 2 / squares[1] / squares[2]
     exact = [(likeness, np.sqrt(1.0 - likeness)), (1.0, 0.0), (1.0, 0.0)]
     off = [max(abs(row.likeness - a), abs(row.error - b)) for row, (a, b) in zip(found.rows, exact, strict=True)]
-    return float(max(*off, wrong))
+    return float(largest(*off, wrong))
 
 
 ROWS: tuple[Row, ...] = (

@@ -16,6 +16,7 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import LADEN, PLAIN, STEPPED, STRIP, held
 
 # --- Sizes ------------------------------------------------------------------------------------------------------------
@@ -149,13 +150,13 @@ def shearing_error(parts: float) -> float:
         k, m = _rod(beam, n, wall)
         kept = [i for i in range(2 * n + 1) if i != 0 and not (rule == "rigid" and i == n + 1)]
         own = eigh(k[np.ix_(kept, kept)], np.diag(m[kept]), eigvals_only=True)[:4]
-        worst = max(worst, float(abs(rod(beam, n, 4, wall=rule) / np.sqrt(own) * 2.0 * pi - 1.0).max()))
+        worst = largest(worst, float(abs(rod(beam, n, 4, wall=rule) / np.sqrt(own) * 2.0 * pi - 1.0).max()))
     loose = replace(beam, supports=("pinned", "pinned"))
     k, m = _rod(loose, n, np.inf)
     kept = [i for i in range(2 * n + 1) if i not in (0, n)]
     own = eigh(k[np.ix_(kept, kept)], np.diag(m[kept]), eigvals_only=True)[:4]
-    worst = max(worst, float(abs(rod(loose, n, 4, wall="half") / np.sqrt(own) * 2.0 * pi - 1.0).max()))
-    return max(worst, float(sum(_unsaid())))
+    worst = largest(worst, float(abs(rod(loose, n, 4, wall="half") / np.sqrt(own) * 2.0 * pi - 1.0).max()))
+    return largest(worst, float(sum(_unsaid())))
 
 
 def _unsaid() -> Iterator[bool]:
@@ -251,7 +252,7 @@ def _feet() -> Iterator[float]:
         driven = sin(psi) + load * psi  # of load + cos s over what runs faster, the other half line braked
         yield abs(foot_force(load, r) - (2.0 * driven / (pi * load) - 1.0))
         s = (np.arange(4000) + 0.5) * pi / 4000.0
-        yield max(
+        yield largest(
             abs(float((load + np.cos(s)) @ np.sign(np.cos(s) - r)) / load / 4000.0 - foot_force(load, r)) - 1e-3, 0.0
         )
 

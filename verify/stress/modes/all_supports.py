@@ -14,6 +14,7 @@ from verify.chain import warm
 from verify.models.arrays import Array
 from verify.models.compiling import Call
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import States
 from verify.stress.modes.laws import SUPPORTS, exact_root
 from verify.stress.references.beams import PLAIN, STRIP, held
@@ -50,7 +51,7 @@ def all_shapes_error(mode: float) -> float:
                 exact = own @ _waves(y, x, derivative) * (y / beam.length) ** derivative
                 found = mode_shape(beam, int(mode), x * beam.length, derivative)
                 off = min(abs(found - exact).max(), abs(found + exact).max())
-                worst = max(worst, float(off / abs(exact).max()))
+                worst = largest(worst, float(off / abs(exact).max()))
     return worst
 
 
@@ -79,7 +80,7 @@ def all_loads_error(size: float) -> float:
         for ends in {pair, pair[::-1]}:
             for name in ("analytic", "fem", "segment") if not factor else ("analytic",):
                 load = MODELS[name].buckling_load(replace(beam, supports=ends), 9 if name != "analytic" else None)
-                worst = max(worst, abs(load / unit - factor))
+                worst = largest(worst, abs(load / unit - factor))
     return worst
 
 
@@ -102,7 +103,7 @@ def slow_sweep_error(loss: float) -> float:
             for derivative in range(3):
                 exact = np.array([states.read(under, float(at), derivative) for at in x])
                 off = abs(sweep.field(i).shapes(x, derivative) - exact).max() / abs(exact).max()
-                worst = max(worst, float(off))
+                worst = largest(worst, float(off))
     return worst
 
 
@@ -125,7 +126,7 @@ def slipping_error(count: float) -> float:
         coarse, fine = (solve_modes(beam, 2, size, theory="timoshenko").frequencies_hz / exact for size in (n, 2 * n))
         levers = solve_modes(beam, 2, 2 * n, theory="timoshenko", attachment="lever").frequencies_hz / exact
         off = (4.0 * fine - coarse) / 3.0 - 1.0, 1e-3 * (levers - 1.0)
-        worst = max(worst, *(float(abs(one).max()) for one in off))
+        worst = largest(worst, *(float(abs(one).max()) for one in off))
     return worst
 
 
@@ -169,19 +170,19 @@ def feet_error(span: float) -> float:
     under = np.maximum(middle - span, 0.0)
     worst = abs(height_swing(span) - float(np.ptp(np.cos(under))))
     for r in (-1.4, -0.3, 0.0, 0.4, 0.97, 1.6):
-        worst = max(worst, abs(short_foot_force(span, r) - float(np.sign(np.cos(under) - r).mean())))
+        worst = largest(worst, abs(short_foot_force(span, r) - float(np.sign(np.cos(under) - r).mean())))
         half = (np.arange(STRIPS) + 0.5) / STRIPS
         for phi in (0.4, 1.9, 3.0):
             press = np.cos(half * phi) - cos(phi)
             ways = np.sign(np.cos(half * phi) - r)
             given = float(press @ ways / press.sum())
-            worst = max(worst, abs(force(phi, r) - given))
+            worst = largest(worst, abs(force(phi, r) - given))
             power = float(press @ (ways * np.cos(half * phi)) / press.sum())
             if 0.0 <= r < 1.0 and power > 0.05:
-                worst = max(worst, abs(efficiency(phi, r) - r * given / power))
-    worst = max(worst, abs(dead_band(span) - short_foot_force(span, 0.0)))
-    worst = max(worst, abs(short_foot_speed(span) - (sin(span) if span < 0.5 * pi else 1.0)))
-    return max(worst, abs(half_space_force(0.4, 3.0) + 1.0), abs(half_space_force(0.4, -0.2) - 1.0))
+                worst = largest(worst, abs(efficiency(phi, r) - r * given / power))
+    worst = largest(worst, abs(dead_band(span) - short_foot_force(span, 0.0)))
+    worst = largest(worst, abs(short_foot_speed(span) - (sin(span) if span < 0.5 * pi else 1.0)))
+    return largest(worst, abs(half_space_force(0.4, 3.0) + 1.0), abs(half_space_force(0.4, -0.2) - 1.0))
 
 
 # --- Chains -----------------------------------------------------------------------------------------------------------
@@ -237,7 +238,7 @@ def kicked_error(modes: float) -> float:
     found = run.deflection(system.nodes[1:-1].tolist())
     moving = link * np.cumsum(np.cumsum(run.rates, axis=1), axis=1)
     pairs = ((found, heights[:, 1:-1]), (moving, speeds[:, 1:]))
-    return max(float(abs(seen - exact).max() / abs(exact).max()) for seen, exact in pairs)
+    return largest(float(abs(seen - exact).max() / abs(exact).max()) for seen, exact in pairs)
 
 
 def drift_error(periods: float) -> float:

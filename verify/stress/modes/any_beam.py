@@ -19,6 +19,7 @@ from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import phasor
 from verify.section import Piece, Section
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 
 HELD = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Which of w, psi, M, V an end sets to zero."""
@@ -232,7 +233,7 @@ def fields_error(number: float) -> float:
             for derivative in range(3):
                 exact = np.array([states.read(under, float(x), derivative) for x in PLACES])
                 off = [abs(field.shapes(PLACES, derivative) - exact).max() for field in fields]
-                worst = max(worst, float(max(off) / abs(exact).max()))
+                worst = largest(worst, float(largest(off) / abs(exact).max()))
     return worst
 
 
@@ -265,7 +266,7 @@ def frequencies_error(number: float) -> float:
         within = next(
             (part for part in (1e-13, 1e-12, 1e-11, 1e-10) if sign(hertz * (1 - part)) != sign(hertz * (1 + part))), 1.0
         )
-        missed = max(missed, within)
+        missed = largest(missed, within)
     return missed
 
 
@@ -295,7 +296,7 @@ def shapes_error(number: float) -> float:
         for derivative in range(2):
             exact = np.array([states.read(own, float(x), derivative).real for x in PLACES])
             found = mode_shape(beam, mode, PLACES, derivative, theory)
-            worst = max(worst, float(abs(np.sign(found @ exact) * found - exact).max() / abs(exact).max()))
+            worst = largest(worst, float(abs(np.sign(found @ exact) * found - exact).max() / abs(exact).max()))
     return worst
 
 

@@ -9,6 +9,7 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.stress.kind import Floor, Refusal, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
 from verify.stress.references.decimals import PI
 from verify.stress.references.extended import Divided
@@ -54,7 +55,7 @@ def grounded_error(ratio: float) -> float:
             else:
                 bare = 2 * PI * Decimal(dispersion_frequency_hz(model, STRIP, 2, count))
             exact = (bare * bare + added).sqrt() / (2 * PI)
-            worst = max(worst, abs(float(Decimal(frequency(model, beam, 2, count)) / exact - 1)))
+            worst = largest(worst, abs(float(Decimal(frequency(model, beam, 2, count)) / exact - 1)))
     return worst
 
 
@@ -72,7 +73,7 @@ def nearly_rigid_error(ratio: float) -> float:
         exact = [(((root / Decimal(beam.length)) ** 2 * own) ** 2 + added).sqrt() / (2 * PI) for root in roots]
         for model in ("segment", "fem"):
             found = MODELS[model].solve_modes(beam, 3, 2000).frequencies_hz
-            worst = max(worst, *(abs(float(Decimal(float(f)) / e - 1)) for f, e in zip(found, exact, strict=True)))
+            worst = largest(worst, *(abs(float(Decimal(float(f)) / e - 1)) for f, e in zip(found, exact, strict=True)))
     return worst
 
 
@@ -125,7 +126,7 @@ def compressed_error(gap: float) -> float:
             error = abs(float(Decimal(frequency(model, beam, 1, None)) / _under_tension(beam, 1) - 1))
         else:
             error = judged(model, beam, divided, 1, N)
-        worst = max(worst, gap * error)
+        worst = largest(worst, gap * error)
     return worst
 
 

@@ -11,6 +11,7 @@ from verify.beam import Beam, PointForce
 from verify.errors import ResonanceError
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import ANY, FORCES, MASSES, PLAIN, SECTIONS
 from verify.stress.references.beams import COUPLE, STRIP, held
 
@@ -54,10 +55,10 @@ def bodies_error(share: float) -> float:
                 for power in powers:
                     joints, *exact = _read(j, near, power)
                     seen = weights @ (joints if reads == 1 else np.diff(joints))
-                    worst = max(worst, abs(float(seen) - exact[reads - 1]) / max(near, 1.0) ** power)
+                    worst = largest(worst, abs(float(seen) - exact[reads - 1]) / max(near, 1.0) ** power)
             if near > 2.0 and (support not in MIRRORED or not reached):
                 g = np.append(0.0, h) - np.append(h, 0.0)
-                worst = max(worst, *(abs(float(a @ bends @ b)) for a, b in ((f, f), (g, g), (f, g))))
+                worst = largest(worst, *(abs(float(a @ bends @ b)) for a, b in ((f, f), (g, g), (f, g))))
     return worst
 
 
@@ -73,12 +74,12 @@ def unlike_error(share: float) -> float:
         at = float(nodes[link] + share * (nodes[link + 1] - nodes[link]))
         turned = felt_at(chain, [at], "reciprocal")[1][0]
         tilts = np.diff((nodes - 0.1) ** 2) / np.diff(nodes)
-        worst = max(worst, abs(float(turned @ tilts) / (2.0 * (at - 0.1)) - 1.0))
+        worst = largest(worst, abs(float(turned @ tilts) / (2.0 * (at - 0.1)) - 1.0))
         (weights,), (turned,) = felt_at(chain, [at], "lever")
-        worst = max(worst, abs(float(weights @ nodes) / at - 1.0), abs(float(turned[link]) - 1.0))
+        worst = largest(worst, abs(float(weights @ nodes) / at - 1.0), abs(float(turned[link]) - 1.0))
         (weights,), (turned,) = felt_at(chain, [float(nodes[link])], "lever")
-        off = max(abs(turned[link - 1 : link + 1] - 0.5))
-        worst = max(worst, float(off), abs(float(weights[link]) - 1.0), abs(float(turned.sum()) - 1.0))
+        off = float(abs(turned[link - 1 : link + 1] - 0.5).max())
+        worst = largest(worst, float(off), abs(float(weights[link]) - 1.0), abs(float(turned.sum()) - 1.0))
     return worst
 
 
@@ -108,7 +109,7 @@ def matrices_error(number: float) -> float:
     off = abs(pencil.strain_matrix() @ motion - strains).max() / abs(strains).max()
     assert pencil.masses is not None
     carried = (motion.T @ (pencil.mass_matrix() @ motion)).item()
-    return max(float(off), float(abs(carried / pencil.masses(motion)[0] - 1.0)))
+    return largest(float(off), float(abs(carried / pencil.masses(motion)[0] - 1.0)))
 
 
 def rider_error(hertz: float) -> float:
@@ -141,7 +142,7 @@ def rider_error(hertz: float) -> float:
         given = 0.3 * slider.normal_force * half**2 * omega * abs(turns)
         sizes = (given / (half * omega * abs(slope)), 0.004 * omega**2 * abs(alone[0]))
         pairs = zip((found.friction_size, found.normal_size), sizes, strict=True)
-        worst = max(worst, *(abs(one / exact - 1.0) for one, exact in pairs))
+        worst = largest(worst, *(abs(one / exact - 1.0) for one, exact in pairs))
     return worst
 
 
@@ -163,12 +164,12 @@ def flutter_error(gyration: float) -> float:
             try:
                 found = one.squares() / scale**2
             except InputError as error:
-                worst = max(worst, float(stands or "flutters at" not in str(error)))
+                worst = largest(worst, float(stands or "flutters at" not in str(error)))
                 continue
             total = a + b + g**2
             root = sqrt(max(total**2 - 4.0 * a * b, 0.0))
             exact = 0.5 * np.array([total - root, total + root])
-            worst = max(worst, float(not stands), float(abs(found / exact - 1.0).max()))
+            worst = largest(worst, float(not stands), float(abs(found / exact - 1.0).max()))
     return worst
 
 
@@ -218,16 +219,16 @@ def wavenumber_error(hertz: float) -> float:
             lossy = replace(beam, loss_factor=loss)
             k = wavenumber(lossy, hertz, theory)
             rates = np.linalg.eigvals(States(lossy, theory, (2.0 * pi * hertz) ** 2).rates[0]) / lossy.length
-            worst = max(
+            worst = largest(
                 worst,
                 float(abs(rates + 1j * k).min() / abs(k)),
                 float(k.imag > 0.0 or k.real < 0.0 or not (k.real or beam.foundation > 1.0)),
             )
             own, told = wavenumber(beam, hertz), travelling_wavenumber(lossy, hertz)
             travels = beam.mass_per_length * (2.0 * pi * hertz) ** 2 > beam.foundation
-            worst = max(worst, float(told is not None) if not travels else abs((told or 0.0) / own - 1.0))
+            worst = largest(worst, float(told is not None) if not travels else abs((told or 0.0) / own - 1.0))
     reach = min(sqrt(bare.wave_constant / (2.0 * pi * hertz)), bare.length)
-    return max(worst, abs(unit_response(bare, hertz) / (reach**3 / bare.bending_stiffness) - 1.0))
+    return largest(worst, abs(unit_response(bare, hertz) / (reach**3 / bare.bending_stiffness) - 1.0))
 
 
 def reciprocal_error(hertz: float) -> float:
@@ -248,7 +249,7 @@ def reciprocal_error(hertz: float) -> float:
     for stage in stages:
         for at in (0.05, 0.29, 0.57):
             read = stage.rows(np.array([at]))[:, 0]
-            worst = max(worst, float(abs(stage.load_rows(at) - read).max() / abs(read).max()))
+            worst = largest(worst, float(abs(stage.load_rows(at) - read).max() / abs(read).max()))
     return worst
 
 

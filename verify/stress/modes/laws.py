@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from verify.attached import PointMass
 from verify.beam import Beam, PointForce
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STEPPED, STRIP, held
 from verify.stress.references.decimals import PI
 from verify.stress.references.decimals import cos as cosine
@@ -59,7 +60,7 @@ def all_roots_error(mode: float) -> float:
     worst = 0.0
     for pair in SUPPORTS:
         exact = exact_root(pair, int(mode))
-        worst = max(
+        worst = largest(
             worst, *(abs(float(Decimal(wavenumber_length(p, int(mode))) / exact - 1)) for p in (pair, pair[::-1]))
         )
     return worst
@@ -75,7 +76,7 @@ def many_exact_error(n: float) -> float:
     for row, beam in zip(found, beams, strict=True):
         for mode, hertz in enumerate(row, start=1):
             exact = exact_root(beam.supports, mode) ** 2 * Decimal(beam.wave_constant) / Decimal(beam.length) ** 2
-            worst = max(worst, abs(float(2 * PI * Decimal(float(hertz)) / exact - 1)))
+            worst = largest(worst, abs(float(2 * PI * Decimal(float(hertz)) / exact - 1)))
     return worst
 
 
@@ -94,7 +95,7 @@ def spline_error(pieces: float) -> float:
     x, worst = np.linspace(0.0, 1.0, 41)[:-1], 0.0
     for derivative in range(4):
         exact = powers.deriv(derivative)(x) if derivative else powers(x)
-        worst = max(worst, float(abs(found(x, derivative)[0] - exact).max()))
+        worst = largest(worst, float(abs(found(x, derivative)[0] - exact).max()))
     return worst / float(nodes.size) ** 2
 
 
@@ -116,13 +117,13 @@ def curvature_error(parts: float) -> float:
     ):
         modes = MODELS[model].solve_modes(beam, 2, n, **settings)
         even = np.linspace(0.0, beam.length, len(modes.points))
-        worst = max(worst, float(abs(modes.points - even).max()) * n / beam.length)
+        worst = largest(worst, float(abs(modes.points - even).max()) * n / beam.length)
         for mode, (found, sampled) in enumerate(zip(modes.curvatures(), modes.sampled(), strict=True), start=1):
             k = mode * pi / STRIP.length
             size = sqrt(2.0 / (STRIP.mass_per_length * STRIP.length))
             exact = -size * k**2 * np.sin(k * modes.curvature_points)
             off = abs(found - exact).max() / k**2, abs(sampled - size * np.sin(k * even)).max()
-            worst = max(worst, float(max(off)) / size / ((mode * pi / n) ** 2 / 12.0))
+            worst = largest(worst, float(largest(off)) / size / ((mode * pi / n) ** 2 / 12.0))
     return worst
 
 
@@ -139,7 +140,7 @@ def edges_error(links: float) -> float:
     rises = np.diff(joints) * n / STRIP.length
     size = places[0] / exact[0]
     off = [places / size - exact, (slopes / size - rises) * STRIP.length, bends / size]
-    return max(float(abs(one).max()) for one in off)
+    return largest(float(abs(one).max()) for one in off)
 
 
 def seen_error(places: float) -> float:
@@ -155,7 +156,7 @@ def seen_error(places: float) -> float:
     power = STRIP.bending_stiffness * k**3 * omega * apart
     crests = -omega * STRIP.surface_distance * k * apart / size
     pairs = ((found.reflection, backward / forward), (found.energy_flux, power), (found.crest_speed, crests))
-    return max(abs(value / exact - 1.0) for value, exact in pairs)
+    return largest(abs(value / exact - 1.0) for value, exact in pairs)
 
 
 def map_error(phase: float) -> float:
@@ -173,7 +174,7 @@ def map_error(phase: float) -> float:
     for i, frequency in enumerate(hertz):
         measured = measure(solve_harmonic(beam, forces, float(frequency)), window)
         for name, one in zip(FIGURES, found, strict=True):
-            worst = max(worst, abs(float(one[i, 0]) / getattr(measured, name) - 1.0))
+            worst = largest(worst, abs(float(one[i, 0]) / getattr(measured, name) - 1.0))
     return worst
 
 
@@ -205,7 +206,9 @@ def contact_error(load: float) -> float:
     layer = 2.0 * _integral(pressure, min(acos(r), phi)) / whole - 1.0
     driven = asin(min(sin(0.5 * acos(r)) / sqrt(load), 1.0))
     space = 2.0 * _integral(lambda t: cos(t) ** 2, driven) / (0.25 * pi) - 1.0
-    return max(abs(whole / (pi * load) - 1.0), abs(foot_force(load, r) - layer), abs(half_space_force(load, r) - space))
+    return largest(
+        abs(whole / (pi * load) - 1.0), abs(foot_force(load, r) - layer), abs(half_space_force(load, r) - space)
+    )
 
 
 def bounce_error(restitution: float) -> float:
@@ -215,7 +218,9 @@ def bounce_error(restitution: float) -> float:
     square, worst = restitution**2, 0.0
     for ratio, edge in zip(bouncing_limits(restitution), (1.0, -1.0), strict=True):
         multipliers = bounce_in_step(ratio, restitution).multipliers
-        worst = max(worst, abs(sum(multipliers) - edge * (1.0 + square)), abs(multipliers[0] * multipliers[1] - square))
+        worst = largest(
+            worst, abs(sum(multipliers) - edge * (1.0 + square)), abs(multipliers[0] * multipliers[1] - square)
+        )
     return worst
 
 
@@ -247,7 +252,7 @@ def order_error(count: float) -> float:
     for model, beam, settings in RULES:
         bench = Workbench(beam)
         errors = [bench.frequency_error(model, size, 2, tuple(settings.items())) for size in counts]
-        worst = max(worst, abs(observed_order(counts, errors) - (MODELS[model].order(beam, **settings) or 0)))
+        worst = largest(worst, abs(observed_order(counts, errors) - (MODELS[model].order(beam, **settings) or 0)))
     return worst
 
 

@@ -14,6 +14,7 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.section import Section
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP
 from verify.stress.references.decimals import PI
 from verify.stress.references.extended import hermite, links, relative_error
@@ -69,7 +70,7 @@ def many_error(model: str, made: Callable[[int, int], Beam]) -> Callable[[float]
             with localcontext() as context:
                 context.prec = 50
                 omegas = [2 * PI * Decimal(float(one)) for one in hertz[i]]
-            worst = max(worst, *(relative_error(bands, mode, omega) for mode, omega in enumerate(omegas, start=1)))
+            worst = largest(worst, *(relative_error(bands, mode, omega) for mode, omega in enumerate(omegas, start=1)))
         return worst
 
     return error
@@ -122,7 +123,7 @@ def cost_error(order: float) -> float:
     found = crossing(one, other)
     met = found.crossings if isinstance(found, Crossing) else ()
     costs = one.seconds(wanted) / 20.0, other.seconds(wanted) / 20.0
-    return max(*(abs(cost - 1.0) for cost in costs), abs(met[0] / wanted - 1.0) if len(met) == 1 else float("inf"))
+    return largest(*(abs(cost - 1.0) for cost in costs), abs(met[0] / wanted - 1.0) if len(met) == 1 else float("inf"))
 
 
 COUNTS = (9.0, 40.0, 130.0)

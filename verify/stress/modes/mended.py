@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
 
 CLAMPED = replace(held("clamped", "free"), tension=40.0)
@@ -40,9 +41,9 @@ def mended_error(count: float) -> float:
     """
     n = int(count)
     worst = max(abs(_mode_error(i, n)) for i in range(len(MENDED))) / 0.012
-    worst = max(worst, *(_turned_round(i, n) for i in range(len(MENDED))))
+    worst = largest(worst, *(_turned_round(i, n) for i in range(len(MENDED))))
     orders = [log2(_mode_error(i, n) / _mode_error(i, 2 * n)) for i in range(2)]
-    return max(worst, *(abs(order) / 0.3 for order in orders))
+    return largest(worst, *(abs(order) / 0.3 for order in orders))
 
 
 def _turned_round(number: int, n: int) -> float:
@@ -54,7 +55,7 @@ def _turned_round(number: int, n: int) -> float:
     off = float(abs(there.frequencies_hz / here.frequencies_hz - 1.0).max()) / 1e-12
     slopes, others = here.shapes(x, 1), -there.shapes(beam.length - x, 1)
     sides = np.sign((slopes * others).sum(axis=1))[:, None]
-    return max(off, float(abs(slopes - sides * others).max() / abs(slopes).max()) / 1e-9)
+    return largest(off, float(abs(slopes - sides * others).max() / abs(slopes).max()) / 1e-9)
 
 
 def _mode_error(number: int, n: int) -> float:
@@ -82,7 +83,7 @@ def readings_error(count: float) -> float:
         pairs += [(modes.curvatures()[1, 1:-1], mode_shape(beam, 2, middle, 2, theory))] if beam != HEAVY else []
         side = np.sign(pairs[0][0] @ pairs[0][1])
         for (found, exact), left in zip(pairs, (0.2 * mu**3, 0.8 * mu**3, 0.25 * mu**4), strict=False):
-            worst = max(worst, float(abs(side * found - exact).max() / abs(exact).max()) / left)
+            worst = largest(worst, float(abs(side * found - exact).max() / abs(exact).max()) / left)
     return worst
 
 

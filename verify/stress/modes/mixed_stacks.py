@@ -12,6 +12,7 @@ from verify.attached import PointMass
 from verify.beam import Beam
 from verify.stress.chain.written_out import changed_beam
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import BODY, FIRST, MASSES, PLAIN, SECTIONS, SPRINGS
 from verify.stress.references.beams import held
 from verify.stress.references.dense import Elements, Links, Written
@@ -72,7 +73,7 @@ def mixed_error(model: str) -> Callable[[float], float]:
             units = [one.wave_constant * (PARTS / one.length) ** 2 / (2.0 * pi) for one in group]
             for value, unit, one in zip(values.T, units, group, strict=True):
                 exact = MODELS[model].solve_modes(one, MODES, PARTS, **settings).frequencies_hz
-                worst = max(worst, float(abs(np.sqrt(value) * unit / exact - 1.0).max()))
+                worst = largest(worst, float(abs(np.sqrt(value) * unit / exact - 1.0).max()))
         return worst
 
     return error
@@ -150,8 +151,8 @@ def candidates_error(number: float) -> float:
         own = written(one)
         if own is not None:
             found, seen = frequencies_hz(one, beam, CANDIDATES, 4), seen + 1
-            worst = max(worst, float(abs(found / own.hertz(4) - 1.0).max()) if len(found) == 4 else 1.0)
-    return max(worst, float(seen != 1 + (len(WEIGHTS) if "clamped" in beam.supports else 1)))
+            worst = largest(worst, float(abs(found / own.hertz(4) - 1.0).max()) if len(found) == 4 else 1.0)
+    return largest(worst, float(seen != 1 + (len(WEIGHTS) if "clamped" in beam.supports else 1)))
 
 
 # --- Curvatures -------------------------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ from verify.attached import PointSpring
 from verify.beam import Beam, PointForce
 from verify.models.catalogue import MODELS
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import held
 from verify.stress.references.decimals import PI
 from verify.stress.references.extended import answered, hermite, links
@@ -38,7 +39,7 @@ def floating_error(softness: float) -> float:
     beam, sprung = about_its_pin(softness, 5.0), about_its_pin(softness, 3.0, 5.0)
     hertz = OMEGA * (softness * beam.bending_stiffness / beam.mass_per_length) ** 0.5 / beam.length**2 / (2.0 * pi)
     cases = [(beam, parts) for parts in PARTS] + [(sprung, PARTS[0])]
-    return max(_error(model, one, hertz, parts) for model in ("segment", "fem") for one, parts in cases)
+    return largest(_error(model, one, hertz, parts) for model in ("segment", "fem") for one, parts in cases)
 
 
 def _error(model: str, beam: Beam, hertz: float, parts: int) -> float:

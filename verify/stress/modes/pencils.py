@@ -13,6 +13,7 @@ from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STEPPED, STRIP, held
 from verify.stress.references.dense import Elements, Links
 
@@ -39,10 +40,10 @@ def lifted_error(part: float) -> float:
     bare = driven(replace(beam, foundation=0.0), PARTS, 1.0, "euler-bernoulli")[1].bending
     worst = abs(pencil.below - max(lifted - max(1e-6 * lifted, bare), 0.0)) / lifted
     values = np.linalg.eigvalsh(_dense(pencil))
-    worst = max(worst, float(pencil.below >= values[0]))
+    worst = largest(worst, float(pencil.below >= values[0]))
     for changes in ({"mass": (PointMass(position=0.2, mass=0.01),)}, {"tension": -0.1}):
-        worst = max(worst, abs(driven(replace(beam, **changes), PARTS, 1.0, "euler-bernoulli")[1].below))
-    return max(worst, abs(driven(beam, PARTS, 1.0, "rayleigh")[1].below))
+        worst = largest(worst, abs(driven(replace(beam, **changes), PARTS, 1.0, "euler-bernoulli")[1].below))
+    return largest(worst, abs(driven(beam, PARTS, 1.0, "rayleigh")[1].below))
 
 
 def _strains(pencil: Any) -> Array:
@@ -72,7 +73,7 @@ def on_ground_error(model: float) -> float:
     for row, beam in zip(np.asarray(found), ON_GROUND, strict=True):
         own = written(beam, np.linspace(0.0, beam.length, PARTS + 1))
         inverse = eigh(own.kept(own.mass), own.kept(own.bent + own.rest), eigvals_only=True)[:-6:-1]
-        worst = max(worst, float(abs(2.0 * np.pi * row * np.sqrt(inverse) - 1.0).max()))
+        worst = largest(worst, float(abs(2.0 * np.pi * row * np.sqrt(inverse) - 1.0).max()))
     return worst
 
 
@@ -141,7 +142,7 @@ def sharpened_error(number: float) -> float:
     told, found = sharpened(pencil, values, taken)
     off = exact.T @ mass @ found - np.eye(n)
     left = float(abs(off[low, low]).max()) / (1e3 * SMALL**2)
-    return max(left, float(abs(told[low] / values[low] - 1.0).max()) / (1e3 * SMALL**2))
+    return largest(left, float(abs(told[low] / values[low] - 1.0).max()) / (1e3 * SMALL**2))
 
 
 # --- Factors ----------------------------------------------------------------------------------------------------------
@@ -174,11 +175,11 @@ def factors_error(unknowns: float) -> float:
     for which, shift in enumerate(shifts[:, 0].tolist()):
         lines = _lower(factors, which)
         grown = lines**2 @ abs(factors.pivots[:, which])
-        worst = max(worst, float(abs(factors.grown[:, which] / grown - 1.0).max()))
+        worst = largest(worst, float(abs(factors.grown[:, which] / grown - 1.0).max()))
         load = np.sin(0.7 * at)[:, None, None] + np.zeros((n, 1, len(shifts)))
         solved = factors.solve(load)[:, 0, which]
         right = np.linalg.solve(stiff - shift * mass, load[:, 0, 0])
-        worst = max(worst, float(abs(solved - right).max() / abs(right).max()))
+        worst = largest(worst, float(abs(solved - right).max() / abs(right).max()))
     return worst
 
 
@@ -228,12 +229,12 @@ def moments_error(number: float) -> float:
         felt, turned = (stretch.seen(one[None]) for one in found)
         moments = crowded._moments(stretch, felt, turned)
         back = crowded._of_moments(stretch, moments, felt.shape[2])
-        worst = max(worst, *(float(abs(a - b).max()) for a, b in zip(back, (felt, turned), strict=True)))
+        worst = largest(worst, *(float(abs(a - b).max()) for a, b in zip(back, (felt, turned), strict=True)))
         for which in range(len(moments)):
             lever = _levers(stretch, which, felt[which], turned[which])
-            worst = max(worst, float(abs(moments[which].T - lever).max()))
+            worst = largest(worst, float(abs(moments[which].T - lever).max()))
         seen += stretch.rows.size
-    return max(worst, float(seen != len(places)))
+    return largest(worst, float(seen != len(places)))
 
 
 def _levers(stretch: Any, which: int, felt: Array, turned: Array) -> Array:

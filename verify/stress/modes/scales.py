@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.section import Section
 from verify.stress.kind import Figure, Floor, Refusal, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, root_of
 from verify.stress.references.judged import SMALL, N, divided, frequency, judged, lapack_error
 
@@ -31,7 +32,7 @@ def scale_error(change: Callable[[float], Beam]) -> Callable[[float], float]:
         for model, count in (("analytic", None), ("segment", N), ("fem", N)):
             here = root_of(beam, frequency(model, beam, MODE, count), beam.length)
             there = root_of(STRIP, frequency(model, STRIP, MODE, count), STRIP.length)
-            worst = max(worst, abs(here / there - 1.0))
+            worst = largest(worst, abs(here / there - 1.0))
         return worst
 
     return error

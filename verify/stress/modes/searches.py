@@ -7,6 +7,7 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 
 Figure = Callable[[float], float]
 ZEROS: tuple[tuple[Figure, float, float, float, float], ...] = (
@@ -66,7 +67,7 @@ def zeros_error(number: float) -> float:
         other, theirs = _listening(figure)
         found = zero_between(own, low, high, tolerance, relative)
         exact = brentq(other, low, high, xtol=tolerance, rtol=relative, maxiter=500)
-        worst = max(worst, _apart([*mine, found], [*theirs, exact]) / max(abs(low), abs(high)))
+        worst = largest(worst, _apart([*mine, found], [*theirs, exact]) / max(abs(low), abs(high)))
     try:
         zero_between(lambda x: x * x + 1.0, -1.0, 3.0, 1e-6, 1e-6)
     except ValueError as error:
@@ -75,7 +76,7 @@ def zeros_error(number: float) -> float:
 
 
 def _apart(one: list[float], other: list[float]) -> float:
-    return float(max(abs(a - b) for a, b in zip(one, other, strict=True))) if len(one) == len(other) else inf
+    return float(largest(abs(a - b) for a, b in zip(one, other, strict=True))) if len(one) == len(other) else inf
 
 
 def least_error(number: float) -> float:
@@ -90,15 +91,15 @@ def least_error(number: float) -> float:
         other, theirs = _listening(figure)
         x, value = least_between(own, low, high, tolerance)
         exact = minimize_scalar(other, bounds=(low, high), method="bounded", options={"xatol": tolerance})
-        worst = max(worst, _apart([*mine, x, value], [*theirs, float(exact.x), float(exact.fun)]) / (high - low))
+        worst = largest(worst, _apart([*mine, x, value], [*theirs, float(exact.x), float(exact.fun)]) / (high - low))
     for figure, low, high, tolerance, most in KNOWN:
         own, mine = _listening(figure)
         given = [(at, figure(at)) for at in (low, 0.4, high)]
         x, value = least_between(own, low, high, tolerance, given)
         near = minimize_scalar(figure, bounds=(low, high), method="bounded", options={"xatol": 1e-12})
-        wrong = abs(x - near.x) > 3.0 * tolerance + 3e-8 or value != figure(x) or len(mine) != most
-        worst = max(worst, float(wrong))
-    return max(worst, _gridded())
+        wrong = not abs(x - near.x) <= 3.0 * tolerance + 3e-8 or value != figure(x) or len(mine) != most
+        worst = largest(worst, float(wrong))
+    return largest(worst, _gridded())
 
 
 def _gridded() -> float:
@@ -112,7 +113,9 @@ def _gridded() -> float:
             return np.asarray(abs(x - at))
 
         found = least_over(corner, grid, 1e-10)
-        wrong |= abs(found.x - min(at, 3.0)) > 1e-8 or abs(found.value - value) > 1e-8 or found.at_edge is not edge
+        wrong |= (
+            not abs(found.x - min(at, 3.0)) <= 1e-8 or not abs(found.value - value) <= 1e-8 or found.at_edge is not edge
+        )
     return float(wrong)
 
 

@@ -10,6 +10,7 @@ from verify.beam import Beam
 from verify.models.catalogue import MODELS
 from verify.patience import patient
 from verify.stress.kind import Figure, Floor, Refusal, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
 from verify.stress.references.decimals import PI as _PI
 from verify.stress.references.decimals import cantilever_root, cos, exp, relative, sin
@@ -103,7 +104,7 @@ def shape_error(mode: float) -> float:
     x = np.array(PLACES)
     found = mode_shape(beam, int(mode), x) * np.sqrt(beam.mass_per_length * beam.length)
     exact = [_exact_shape(int(mode), float(place), beam.length) for place in x]
-    return max(abs(float(Decimal(float(a)) - b)) for a, b in zip(found, exact, strict=True)) / 2.0
+    return largest(abs(float(Decimal(float(a)) - b)) for a, b in zip(found, exact, strict=True)) / 2.0
 
 
 def _exact_shape(mode: int, x: float, length: float) -> Decimal:
@@ -124,7 +125,7 @@ def printed_shape_error(mode: float) -> float:
 
     y = float(cantilever_root(int(mode)))
     pairs = ((cantilever_shape(y, place), _exact_shape(int(mode), place, 1.0)) for place in PLACES)
-    return max(abs(a - float(b)) for a, b in pairs) / 2.0
+    return largest(abs(a - float(b)) for a, b in pairs) / 2.0
 
 
 GROUND = 1234.5
@@ -139,7 +140,7 @@ def counting_error(mode: float) -> float:
     from verify.exact.modes import exact_frequency_hz
 
     beams = replace(STRIP, foundation=GROUND), replace(STRIP, tension=1e7, foundation=1e11)
-    return max(relative(exact_frequency_hz(beam, int(mode)), _on_ground(beam, int(mode))) for beam in beams)
+    return largest(relative(exact_frequency_hz(beam, int(mode)), _on_ground(beam, int(mode))) for beam in beams)
 
 
 def _on_ground(beam: Beam, mode: int) -> Decimal:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 
 KERNEL = -np.abs(np.subtract.outer(np.arange(5.0), np.arange(5.0))) + 0.3 * np.eye(5)
 WEIGHTS = np.array(
@@ -33,7 +34,7 @@ def solved_error(number: float) -> float:
         found = np.array(_solved((rows[0], rows[1], rows[2], rows[3]), (right[0], right[1]))).T
         for x, (matrix, side) in zip(found, PAIRS[chosen], strict=True):
             exact = np.linalg.lstsq(np.reshape(matrix, (2, 2)), np.array(side), rcond=1e-9)[0]
-            worst = max(worst, float(abs(x - exact).max()))
+            worst = largest(worst, float(abs(x - exact).max()))
     for sign in (1.0, -1.0):
         kernel = sign * KERNEL
         found = _without_self(WEIGHTS, SHARES, kernel)
@@ -41,7 +42,7 @@ def solved_error(number: float) -> float:
             a, b, c = (one @ kernel @ other for one, other in ((shares, shares), (weights, shares), (weights, weights)))
             roots = np.roots([a, 2.0 * b, c]) if abs(a) >= 1e-12 else np.zeros(1)
             least = -b / a if abs(a) >= 1e-12 and np.iscomplex(roots).any() else float(min(roots.real, key=abs))
-            worst = max(worst, float(abs(own - weights - least * shares).max()))
+            worst = largest(worst, float(abs(own - weights - least * shares).max()))
     return worst
 
 
@@ -79,7 +80,7 @@ def wave_means_error(number: float) -> float:
     wrong |= plain is None or plain.layer_tangential_stiffness is not None
     pairs = by_number((2, 5, 9))
     wrong |= pairs.entries.tolist() != [0, 1, 2] or pairs.modes.tolist() != [1, 4, 8]
-    return float(max(off, float(wrong)))
+    return float(largest(off, float(wrong)))
 
 
 ROWS: tuple[Row, ...] = (

@@ -11,6 +11,7 @@ from verify.attached import PointSpring
 from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import PLAIN, SECTIONS
 
 PARTS, MODES, BEAMS = 13, 3, 5
@@ -41,7 +42,7 @@ def together_error(model: str) -> Callable[[float], float]:
         values, sure = lowest_of_each(_stack_of(model, several, settings), MODES)
         ratios = np.sqrt(values).T * _units(several) / exact
         left = float((~np.asarray(sure)).sum())
-        return max(float(abs(together / exact - 1.0).max()), float(abs(ratios - 1.0).max()), left)
+        return largest(float(abs(together / exact - 1.0).max()), float(abs(ratios - 1.0).max()), left)
 
     return error
 

@@ -15,6 +15,7 @@ from verify.beam import Beam, PointForce
 from verify.models.arrays import Array
 from verify.options import Attachment
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import ANY, FORCES, PLACES, PLAIN, SECTIONS
 from verify.stress.references.dense import Elements, Links, Reciprocal, Sheared
 
@@ -81,7 +82,7 @@ def modes_error(model: str) -> Callable[[float], float]:
         for grading in (1.0, 1.7):
             own, settings = written(model, int(number), grading)
             found = MODELS[model].solve_modes(own.beam, MODES, PARTS, **settings)
-            worst = max(worst, float(abs(found.frequencies_hz / own.hertz(MODES) - 1.0).max()))
+            worst = largest(worst, float(abs(found.frequencies_hz / own.hertz(MODES) - 1.0).max()))
             if model == "segment":
                 shapes, x = found.readings["raw"](), own.nodes
                 pairs = [(shapes, own.modes[1].T)]
@@ -91,9 +92,9 @@ def modes_error(model: str) -> Callable[[float], float]:
             for seen, every in pairs:
                 exact = every[own.beam.rigid_motions :][:MODES]
                 sides = np.sign(np.sum(pairs[0][0] * pairs[0][1][own.beam.rigid_motions :][:MODES], axis=1))[:, None]
-                worst = max(worst, float((abs(sides * seen - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
+                worst = largest(worst, float((abs(sides * seen - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
                 first = pairs[0][0][:, : len(x) // 2]
-                worst = max(worst, float((first[np.arange(MODES), (abs(first) > 1e-3).argmax(axis=1)] < 0.0).any()))
+                worst = largest(worst, float((first[np.arange(MODES), (abs(first) > 1e-3).argmax(axis=1)] < 0.0).any()))
         return worst
 
     return error
@@ -121,7 +122,7 @@ def fields_error(model: str) -> Callable[[float], float]:
                 for derivative in range(3):
                     exact = own.read(states, PLACES, derivative)
                     off = [abs(one.shapes(PLACES, derivative) - exact).max() for one in seen]
-                    worst = max(worst, float(max(off) / abs(exact).max()))
+                    worst = largest(worst, float(largest(off) / abs(exact).max()))
         return worst
 
     return error
@@ -152,18 +153,18 @@ def beside_ends_error(number: float) -> float:
             for derivative in range(3):
                 exact = own.read(states, x, derivative)
                 off = [abs(one.shapes(x, derivative) - exact).max() for one in seen]
-                worst = max(worst, float(max(off) / abs(exact).max()))
+                worst = largest(worst, float(largest(off) / abs(exact).max()))
     units = MODELS["segment"].unit_responses(beam, places, HERTZ, x, PARTS)
     for i, hertz in enumerate(HERTZ):
         for j, at in enumerate(places):
             exact = own.read(own.under(own.load([PointForce(position=at)]), float(hertz)), x, 0)
-            worst = max(worst, float(abs(units[i, j] - exact).max() / abs(exact).max()))
+            worst = largest(worst, float(abs(units[i, j] - exact).max() / abs(exact).max()))
     modes, rigid = MODELS["segment"].solve_modes(beam, MODES, PARTS), beam.rigid_motions
     for derivative in range(3):
         exact = own.read(own.modes[1][:, rigid : rigid + MODES], x, derivative).T
         found = modes.shapes(x, derivative)
         sides = np.sign(np.sum(found * exact, axis=1))[:, None]
-        worst = max(worst, float((abs(sides * found - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
+        worst = largest(worst, float((abs(sides * found - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
     return worst
 
 
@@ -179,7 +180,7 @@ def units_error(number: float) -> float:
             for j, at in enumerate(positions):
                 states = own.under(own.load([PointForce(position=at)]), float(hertz))
                 exact = own.read(states, PLACES, 0)
-                worst = max(worst, float(abs(found[i, j] - exact).max() / abs(exact).max()))
+                worst = largest(worst, float(abs(found[i, j] - exact).max() / abs(exact).max()))
     return worst
 
 
@@ -196,7 +197,7 @@ def thick_error(number: float) -> float:
     worst = float(abs(found.frequencies_hz / own.hertz(MODES) - 1.0).max())
     shapes, exact = found.shapes(PLACES, 0), own.read(own.modes[1][:, rigid : rigid + MODES], PLACES).T
     sides = np.sign(np.sum(shapes * exact, axis=1))[:, None]
-    worst = max(worst, float((abs(sides * shapes - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
+    worst = largest(worst, float((abs(sides * shapes - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
     for loss, ratio in ((0.0, 0.0), (LOSS, 0.0), (0.0, RATIO)):
         lossy = replace(beam, loss_factor=loss)
         own.beam = lossy
@@ -209,10 +210,10 @@ def thick_error(number: float) -> float:
             if i == ALONE:
                 seen.append(MODELS["fem"].solve_harmonic(lossy, FORCES, float(hertz), PARTS, **settings))
             off = [abs(one.shapes(PLACES, 0) - exact).max() for one in seen]
-            worst = max(worst, float(max(off) / abs(exact).max()))
+            worst = largest(worst, float(largest(off) / abs(exact).max()))
             if units is not None:
                 exact = own.read(own.under(own.load([PointForce(position=0.48)]), float(hertz)), PLACES)
-                worst = max(worst, float(abs(units[i, 0] - exact).max() / abs(exact).max()))
+                worst = largest(worst, float(abs(units[i, 0] - exact).max() / abs(exact).max()))
     return worst
 
 
@@ -225,7 +226,7 @@ def buckling_error(model: str) -> Callable[[float], float]:
         own, settings = written(model, int(number), tension=0.0)
         load = float(own.buckling(own.turned))
         pulled = replace(own.beam, tension=0.3 * load)
-        return max(
+        return largest(
             abs(MODELS[model].buckling_load(beam, PARTS, **settings) / load - 1.0) for beam in (own.beam, pulled)
         )
 
@@ -247,7 +248,7 @@ def stacked_error(model: str) -> Callable[[float], float]:
         alone = [MODELS[model].solve_modes(beam, 2, 20, **settings).frequencies_hz for beam in several]
         stack = _stacked(model, several, 20, "reciprocal" if number else "lever")
         left = sum(not sure for sure in lowest_of_each(stack, 2)[1])
-        return max(float(abs(together / np.array(alone) - 1.0).max()), float(left))
+        return largest(float(abs(together / np.array(alone) - 1.0).max()), float(left))
 
     return error
 

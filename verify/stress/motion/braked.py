@@ -19,6 +19,7 @@ from verify.models.time_basis import TimeBasis
 from verify.motor.result import MotorRun
 from verify.slider import Contact, Foot, Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.motion.sliders import BAR, FORCES, HERTZ, RATIO
 from verify.stress.references.dense import Elements
 
@@ -78,7 +79,7 @@ def braked_error(way: float) -> float:
         missed |= comes_to_speed(run, last, 1e6)
     height, rate = phase_portrait(run)
     off.append(float(abs(height + LOAD / 2.7e5).max() / (LOAD / 2.7e5) + abs(rate).max() / SPEED))
-    return max(*off, float(missed))
+    return largest(*off, float(missed))
 
 
 # --- At rest ----------------------------------------------------------------------------------------------------------
@@ -172,13 +173,13 @@ def sizes_error(part: float) -> float:
         found = run_motor(BAR, FORCES, HERTZ, 1e-5, slider=slider, step=1e-5, **given).coupling
         assert found is not None
         sizes = np.array([found.normal_size, found.friction_size])
-        worst = max(worst, float(abs(sizes / (load * exact) - 1.0).max()), float(found.two_way is (factor < 1.0)))
+        worst = largest(worst, float(abs(sizes / (load * exact) - 1.0).max()), float(found.two_way is (factor < 1.0)))
     for choice, across, along, felt in CHOICES:
         told = coupled(replace(slider, coupling=choice), across, along)
         wrong = told.two_way is not felt or (told.normal_size, told.friction_size) != (across, along)
-        worst = max(worst, float(wrong or told.forced is (choice == "auto")))
-        worst = max(worst, float(("friction" in in_words(told)) is (along is None)))
-    return max(worst, float("does not move" not in in_words(coupled(slider, np.inf, None))))
+        worst = largest(worst, float(wrong or told.forced is (choice == "auto")))
+        worst = largest(worst, float(("friction" in in_words(told)) is (along is None)))
+    return largest(worst, float("does not move" not in in_words(coupled(slider, np.inf, None))))
 
 
 CHOICES: tuple[tuple[Any, float, float | None, bool], ...] = (

@@ -9,6 +9,7 @@ from verify.models.arrays import Array
 from verify.models.fields import phasor
 from verify.motion.result import Ledger
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.motion.sliders import BAR, FORCES, HERTZ
 
 GROWN: tuple[tuple[float, tuple[float, ...]], ...] = ((1.1e-3, (0.0, 0.7, 0.5)), (0.6e-3, (1.2, -0.2)))
@@ -90,7 +91,7 @@ def booked_error(ratio: float) -> float:
         ledger, exact = run.ledger, _followed(ratio, hertz, seconds, grown)
         assert isinstance(ledger, Ledger)
         found = np.array([ledger.kinetic, ledger.elastic, ledger.work_in, ledger.damped])
-        worst = max(worst, float(abs(found - exact).max() / exact.max()), abs(ledger.residual) / float(exact.max()))
+        worst = largest(worst, float(abs(found - exact).max() / exact.max()), abs(ledger.residual) / float(exact.max()))
     return worst
 
 

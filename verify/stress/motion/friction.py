@@ -11,6 +11,7 @@ import numpy as np
 from verify.models.compiling import Call
 from verify.slider import GRAVITY
 from verify.stress.kind import Floor, Refusal, Row
+from verify.stress.largest import largest
 from verify.stress.references.decimals import asinh, exp, sinh
 
 SPEED = 0.1
@@ -44,14 +45,14 @@ def decay_error(mu: float, slope: float) -> float:
     worst = 0.0
     for part in READ:
         time = part * SPEED / (mu * GRAVITY)
-        worst = max(worst, abs(float(Decimal(free_decay(mu, slope, SPEED, time)) - _left(mu, slope, SPEED, time))))
+        worst = largest(worst, abs(float(Decimal(free_decay(mu, slope, SPEED, time)) - _left(mu, slope, SPEED, time))))
     return worst / SPEED
 
 
 def rk4_error(mu: float, slope: float) -> float:
     """The same by classical Runge-Kutta in as many steps."""
     times = [part * SPEED / (mu * GRAVITY) for part in READ]
-    return max(abs(_rk4(mu, slope, time) - float(_left(mu, slope, SPEED, time))) for time in times) / SPEED
+    return largest(abs(_rk4(mu, slope, time) - float(_left(mu, slope, SPEED, time))) for time in times) / SPEED
 
 
 def _rk4(mu: float, slope: float, time: float) -> float:
@@ -121,7 +122,7 @@ def step_error(tau: float) -> float:
                     for u in (exp(2 * Decimal(rho)), exp(2 * Decimal(end)))
                 ]
                 missed = float(parts[0] - parts[1] - Decimal(tau))
-            worst = max(worst, abs(missed * (tanh(end) + alpha)) / ((1.0 + abs(alpha)) * tau))
+            worst = largest(worst, abs(missed * (tanh(end) + alpha)) / ((1.0 + abs(alpha)) * tau))
     return worst
 
 
@@ -137,7 +138,7 @@ def belt_error(speed: float) -> float:
     worst = 0.0
     for times in (rigid_surface.stick_slip_times, belt.stick_slip_times):
         stick, slip = times(mass, stiffness, static, kinetic, speed)
-        worst = max(worst, abs(stick / exact_stick - 1.0), abs(slip / exact_slip - 1.0))
+        worst = largest(worst, abs(stick / exact_stick - 1.0), abs(slip / exact_slip - 1.0))
     return worst
 
 
@@ -168,8 +169,8 @@ def span_error(static: float) -> float:
         given = (0.0 if stuck else r, a0, a1)
         used, end, holds, kind = coulomb_span(*given, SLIDING, static, SPAN, bool(stuck))
         known, left, still = _stuck_span(a0, a1, static) if stuck else _slipping_span(*given, static)
-        worst = max(worst, abs(used - known) / SPAN, abs(end - left), float(holds != still))
-        worst = max(worst, float((kind == 0.0) != (used >= SPAN)))
+        worst = largest(worst, abs(used - known) / SPAN, abs(end - left), float(holds != still))
+        worst = largest(worst, float((kind == 0.0) != (used >= SPAN)))
     return worst
 
 

@@ -15,6 +15,7 @@ from verify.models.arrays import Array
 from verify.models.compiling import Call
 from verify.motion.records import SLIPS, STICKS, TURNS, Given, Law, Rider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 
 # --- Eq. (3) ----------------------------------------------------------------------------------------------------------
 
@@ -68,10 +69,10 @@ def tanh_error(pulls: tuple[float, ...], time: float) -> float:
             falls = (2 * end).exp()
             rate = (falls - 1) / (falls + 1) + a
             if abs(rate) < 1e-30:
-                worst = max(worst, abs(float(end - start)) / time if time < 50.0 else 0.0)
+                worst = largest(worst, abs(float(end - start)) / time if time < 50.0 else 0.0)
                 continue
             lack = _ahead(end, a) - _ahead(start, a) + Decimal(dt) * slope * full
-            worst = max(worst, abs(float(lack * rate)) / time)
+            worst = largest(worst, abs(float(lack * rate)) / time)
     return worst
 
 
@@ -135,7 +136,7 @@ def sprung_error(number: float) -> float:
     if n != len(exact) or events[:n, 1].tolist() != [kind for _, kind, _ in exact]:
         return 1.0
     off = abs(events[:n] - np.array(exact).reshape(n, 3)) * (OMEGA / (2.0 * pi), 0.0, 10.0)
-    return float(max(off.max(initial=0.0), abs(state[0] - end[0]) / 0.1, abs(state[1] - end[1]) / (0.1 * OMEGA)))
+    return float(largest(off.max(initial=0.0), abs(state[0] - end[0]) / 0.1, abs(state[1] - end[1]) / (0.1 * OMEGA)))
 
 
 def smooth_error(belt: float) -> float:
@@ -150,7 +151,7 @@ def smooth_error(belt: float) -> float:
     found = solve_ivp(flow, (0.0, 0.6), [0.1, 0.3], "DOP853", rtol=1e-10, atol=1e-13).y[:, -1]
     state = np.array([0.1, 0.3, 0.0])
     slide_on_belt(6000, 1e-4, law(None), belt, OMEGA**2, PULL, state, np.zeros((0, 3)))
-    return float(max(abs(state[0] - found[0]) / 0.1, abs(state[1] - found[1]) / (0.1 * OMEGA)))
+    return float(largest(abs(state[0] - found[0]) / 0.1, abs(state[1] - found[1]) / (0.1 * OMEGA)))
 
 
 # --- A surface that is given ------------------------------------------------------------------------------------------
@@ -233,7 +234,7 @@ def given_error(number: float) -> float:
     if sticks:  # what holds it on gives it its speed
         before = kept[KEPT // 12 - 1 :: KEPT // 12]
         pairs.append((rows[1:, 2], (rows[1:, 1] - before[:12, 1]) * KEPT / LONG))
-    return max(float(abs(a - b).max() / abs(b).max()) for a, b in pairs)
+    return largest(float(abs(a - b).max() / abs(b).max()) for a, b in pairs)
 
 
 def _belts() -> Iterator[Call]:

@@ -15,6 +15,7 @@ from verify.beam import PointForce
 from verify.models.arrays import Array
 from verify.models.fields import phasor
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import FORCES, MASSES, PLACES, PLAIN, SECTIONS, States
 from verify.stress.modes.written_out import PARTS, written
 from verify.stress.references.dense import Elements
@@ -100,8 +101,8 @@ def driven_error(number: float) -> float:
     books: Any = first.ledger
     energies = (0.5 * float(rates @ rates), 0.5 * float(moved.omegas**2 @ places**2))
     told = zip((books.kinetic, books.elastic, books.damped), (*energies, lost), strict=True)
-    worst = max(worst, *(abs(found / energy - 1.0) for found, energy in told))
-    return max(float(worst), _off(second.deflection, exact), float(abs(books.residual / books.work_in)))
+    worst = largest(worst, *(abs(found / energy - 1.0) for found, energy in told))
+    return largest(float(worst), _off(second.deflection, exact), float(abs(books.residual / books.work_in)))
 
 
 def _off(found: Any, exact: Any) -> float:
@@ -122,7 +123,7 @@ def soft_error(number: float) -> float:
     steady = simulate(own.beam, FORCES, HERTZ, SHORT, start="steady", **given)
     field = own.read(own.under(own.load(FORCES), HERTZ, RATIO), PLACES, 0)
     turned = (field * np.exp(2j * pi * HERTZ * steady.times)[:, None]).real
-    return max(_off(soft.deflection, np.concatenate(parts)), _off(steady.deflection, turned))
+    return largest(_off(soft.deflection, np.concatenate(parts)), _off(steady.deflection, turned))
 
 
 def released_error(number: float) -> float:
@@ -172,7 +173,7 @@ def released_error(number: float) -> float:
     pairs = [(found.deflection, now @ read.T), (found.velocity, speed @ read.T)]
     pairs += [(found.kinetic, 0.5 * (speed**2).sum(axis=1)), (found.elastic, 0.5 * now**2 @ omegas**2)]
     pairs += [(found.frequencies_hz, omegas / (2.0 * pi)), (abs(found.amplitudes), abs(q))]
-    return max(abs(found.unread / unread - 1.0), *(_off(a, b) for a, b in pairs))
+    return largest(abs(found.unread / unread - 1.0), *(_off(a, b) for a, b in pairs))
 
 
 def _drawn(corners: Array, given: Array, x: Array, turns: Array) -> Array:
@@ -196,7 +197,7 @@ def basis_error(derivative: float) -> float:
         own /= sqrt(states.inertia(own))
         exact = np.array([states.read(own, float(at), int(derivative)).real for at in x])
         found = basis.shapes(x, int(derivative))[mode]
-        worst = max(worst, _off(np.sign(found @ exact) * found, exact))
+        worst = largest(worst, _off(np.sign(found @ exact) * found, exact))
     return worst
 
 
@@ -214,7 +215,7 @@ def tail_error(hertz: float) -> float:
     loads = sum(phasor(one) * basis.shapes(np.array([one.position]), 0)[:, 0] for one in FORCES)
     for derivative in range(10):
         exact = np.array([states.read(under, float(at), derivative) for at in x])
-        worst = max(worst, _off(rest(x, derivative) + (loads / own) @ basis.shapes(x, derivative), exact))
+        worst = largest(worst, _off(rest(x, derivative) + (loads / own) @ basis.shapes(x, derivative), exact))
     return worst
 
 

@@ -17,6 +17,7 @@ from verify.models.modes import Modes
 from verify.section import Section
 from verify.slider import Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
 
 PARTS = 10
@@ -52,7 +53,7 @@ def turned_error(pieces: float) -> float:
     lines = free_vibration(beam, (corners, heights), 0.01, **given)
     drawn = free_vibration(beam, lambda x: np.interp(x, corners, heights), 0.01, **given)
     size = float(abs(lines.amplitudes).max())
-    return max(worst, found.unread, float(abs(drawn.amplitudes - lines.amplitudes).max()) / size)
+    return largest(worst, found.unread, float(abs(drawn.amplitudes - lines.amplitudes).max()) / size)
 
 
 # --- Steps of a surface -----------------------------------------------------------------------------------------------
@@ -84,7 +85,7 @@ def step_error(number: float) -> float:
         return float("inf")
     last, due = float(run.end.position or 0.0), (end - start) / speed
     off = abs(float(run.times[-1]) + (end - float(run.position[-1])) / speed - due)
-    return max(abs(last - end) / (abs(speed) * STEP), 1e9 * off / due)
+    return largest(abs(last - end) / (abs(speed) * STEP), 1e9 * off / due)
 
 
 def _loops() -> Iterator[Call]:

@@ -12,6 +12,7 @@ from verify.models.compiling import Call
 from verify.motion.result import Motion
 from verify.slider import Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP
 from verify.stress.references.decimals import PI, cos
 
@@ -134,7 +135,7 @@ def bounded_error(mu: float) -> float:
     push, time = slider.mu * slider.normal_force, float(run.times[-1])
     worst = float(abs(run.friction).max()) / push
     travel = float(abs(run.travelled).max()) / (0.5 * push / slider.mass * time**2)
-    return max(worst - 1.0, travel - 1.0, 0.0)
+    return largest(worst - 1.0, travel - 1.0, 0.0)
 
 
 def _loops() -> Iterator[Call]:

@@ -11,6 +11,7 @@ from verify.beam import PointForce
 from verify.models.arrays import Array
 from verify.slider import Contact, Foot, Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.limits.as_written import misplaced, taken
 from verify.stress.motion.sliders import BAR, FORCES, HERTZ
 from verify.stress.references.beams import STRIP
@@ -36,7 +37,7 @@ def phasors_error(samples: float) -> float:
         values = _series(times, hertz)
         begins = count - int(periods + 1e-9) * n
         values[:begins] += 1e3
-        worst = max(worst, float(abs(phasors(times, values, hertz) - SEEN).max()))
+        worst = largest(worst, float(abs(phasors(times, values, hertz) - SEEN).max()))
 
     def fine(step: float) -> bool:
         return taken(lambda: check_series(0.7 + step * np.arange(50.0), np.zeros((50, 2)), hertz))
@@ -47,7 +48,7 @@ def phasors_error(samples: float) -> float:
 
     wrong = misplaced(((0.5 / hertz, True, fine),))
     wrong += [long(n, n) for n in (7, 8, 9)] != [False, True, True] or long(8, 9) or not long(8, 4)
-    return max(worst, wrong)
+    return largest(worst, wrong)
 
 
 # --- Notes ------------------------------------------------------------------------------------------------------------

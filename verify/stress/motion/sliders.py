@@ -18,6 +18,7 @@ from verify.models.compiling import Call
 from verify.motion.result import Motion
 from verify.slider import Slider, changed
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.dense import CUBICS, Elements
 
 BAR = Beam(
@@ -290,7 +291,7 @@ def motion_error(number: float) -> float:
     ]
     if n not in (STICKS, *CHANGES):
         off.append(_off(_both(n, "friction"), [ridden.friction(y, seen) for y, seen in pairs]))
-    return max(off)
+    return largest(off)
 
 
 def forces_error(number: float) -> float:
@@ -301,7 +302,7 @@ def forces_error(number: float) -> float:
     times = np.concatenate([leg.times[1:] for leg in _legs(n)]) - 0.5 * STEP
     exact = np.array([ridden.forces(t, y, ridden.seen(y)) for t, y in zip(times, states, strict=True)])
     off = [_off(_both(n, "normal_force"), exact[:, 1])]
-    return max(*off, _off(_both(n, "friction"), exact[:, 0])) if n == STICKS else off[0]
+    return largest(*off, _off(_both(n, "friction"), exact[:, 0])) if n == STICKS else off[0]
 
 
 def books_error(number: float) -> float:
@@ -314,7 +315,7 @@ def books_error(number: float) -> float:
     works = dict(zip(BOOKS, y[2 * ridden.n + 2 :].tolist(), strict=True))
     works["slider"] = 0.5 * slider.mass * (float(y[2 * ridden.n + 1]) ** 2 - slider.speed**2)
     works["kinetic"], works["elastic"] = 0.5 * float(rates @ rates), 0.5 * float(ridden.squares @ places**2)
-    return float(max(abs(getattr(books, name) - works[name]) / works["work_in"] for name in works))
+    return float(largest(abs(getattr(books, name) - works[name]) / works["work_in"] for name in works))
 
 
 def margin_error(number: float) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 
 
 def tableau_error(order: float) -> float:
@@ -13,13 +14,13 @@ def tableau_error(order: float) -> float:
     worst = 0.0
     for tableau, reached in ((RK4, 4), (DORMAND_PRINCE, 5)):
         a, b, c = tableau.a[:-1], tableau.a[-1], tableau.c
-        worst = max(worst, float(abs(a.sum(axis=1) - c).max()), abs(tableau.order - reached))
+        worst = largest(worst, float(abs(a.sum(axis=1) - c).max()), abs(tableau.order - reached))
         for weights, exact in _conditions(a, c, min(int(order), reached)):
-            worst = max(worst, abs(float(b @ weights) - exact))
+            worst = largest(worst, abs(float(b @ weights) - exact))
         if len(tableau.weights):
             every, at_end = np.vstack([a, b]), np.append(c, 1.0)
             for weights, _ in _conditions(np.hstack([every, np.zeros((len(every), 1))]), at_end, min(int(order), 4)):
-                worst = max(worst, abs(float(tableau.weights @ weights)))
+                worst = largest(worst, abs(float(tableau.weights @ weights)))
     return worst
 
 

@@ -19,6 +19,7 @@ from verify.motor.records import STRETCH
 from verify.motor.result import MotorRun
 from verify.slider import Contact, Foot, Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.motion.sliders import BAR, FORCES, HERTZ, PARTS, RATIO
 from verify.stress.references.dense import CUBICS, Elements
 
@@ -207,7 +208,7 @@ def stood_error(number: float) -> float:
     n, feet, state = standing.n, standing.feet(y), run.state
     pairs = [(state.q, y[:n]), (state.rates, y[n : 2 * n]), (state.travelled, y[2 * n]), (state.speed, y[2 * n + 1])]
     pairs += zip(state.feet.T, feet.T, strict=True)
-    return max(_off(*pair) for pair in pairs)
+    return largest(_off(*pair) for pair in pairs)
 
 
 def works_error(number: float) -> float:
@@ -217,9 +218,9 @@ def works_error(number: float) -> float:
     (_, y), books = _followed(int(number)), _legs(int(number))[1].ledger
     felt = RUNS[int(number)][0].coupling == "two-way"
     exact = dict(zip(BOOKS, y[-len(BOOKS) :].tolist() if felt else y[-len(BOOKS) : -1].tolist(), strict=felt))
-    largest = max(map(abs, exact.values()))
-    off = [abs(getattr(books, name) - work) / (abs(work) + 0.01 * largest) for name, work in exact.items()]
-    return float(max(*off, abs(books.residual) / largest))
+    size = max(map(abs, exact.values()))
+    off = [abs(getattr(books, name) - work) / (abs(work) + 0.01 * size) for name, work in exact.items()]
+    return float(largest(*off, abs(books.residual) / size))
 
 
 def rest_error(share: float) -> float:
@@ -244,7 +245,7 @@ def rest_error(share: float) -> float:
     off += [abs(run.pressures[-1] - pressures).max() / pressures.max()]
     off += [abs(float(run.normal_force[-1]) / carried.sum() - 1.0), abs(float(run.friction[-1]) + slider.pull) / limit]
     off += [abs(float(run.stuck_share[-1]) - 1.0), abs(float(run.contact_share[-1]) - 1.0)]
-    return float(max(*off, abs(run.ledger.rubbed) / limit))
+    return float(largest(*off, abs(run.ledger.rubbed) / limit))
 
 
 def _loops() -> Iterator[Call]:

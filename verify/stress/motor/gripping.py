@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from verify.motor.records import LEAVES
 from verify.slider import Contact, Foot, Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 
 MASS, LIGHTEST, AT = 0.05, 0.004, 0.3
 """Of a slider and of its lighter foot, kg; where it stands, metres."""
@@ -40,7 +41,7 @@ def rate_error(number: float) -> float:
         given.get("damping", 0.0) / LIGHTEST,
     )
     found = contact_rate(Placed(replace(SLIDER, contact=Contact(**given)), AT), None)
-    return abs(found / known[int(number)] - 1.0) + float(max(known) != known[int(number)])
+    return abs(found / known[int(number)] - 1.0) + float(largest(known) != known[int(number)])
 
 
 UNLIKE = replace(

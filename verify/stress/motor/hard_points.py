@@ -11,6 +11,7 @@ from verify.models.compiling import Call
 from verify.motor.records import EVENT_X, LANDS, LEAVES
 from verify.slider import Contact, Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP
 
 if TYPE_CHECKING:
@@ -151,7 +152,7 @@ def thrown_error(number: float) -> float:
         return 1.0
     off = [abs(omega * t + own.lead - theta) for (t, *_), (theta, _) in zip(found, own.events, strict=True)]
     off.append(float(abs(run.events[:, EVENT_X]).max(initial=0.0)))  # it stays at its place
-    return float(max(*off, 0.0, *_off(run, own)))
+    return float(largest(*off, 0.0, *_off(run, own)))
 
 
 def _off(run: "MotorRun", own: Thrown) -> list[float]:
@@ -197,7 +198,7 @@ def stuck_error(ratio: float) -> float:
     taken = run.friction[1:] * np.diff(run.times) / MASS - np.diff(run.speed)
     off = [abs(run.speed - carried).max() / abs(along), abs(taken).max() / abs(along)]
     off.append(1.0 - min(run.stuck_share[1:].min(), run.contact_share.min()))
-    return float(max(*off, abs(run.ledger.rubbed) / (MASS * abs(along) ** 2)))
+    return float(largest(*off, abs(run.ledger.rubbed) / (MASS * abs(along) ** 2)))
 
 
 def _loops() -> Iterator[Call]:

@@ -149,7 +149,7 @@ def settling_error(number: float) -> float:
     window = motor.says(np.arange(found.periods - found.window, found.periods), 0.1).mean(axis=0)
     wrong += found.periods != 2 * found.window or found.periods % 1440 or bool(found.unsettled)
     own = (found.force, found.normal_force, found.contact_share, found.stuck_share, found.given, found.rubbed)
-    wrong += float(abs(np.array(own) / window - 1.0).max()) > 1e-12
+    wrong += not float(abs(np.array(own) / window - 1.0).max()) <= 1e-12
     early = at_speed(motor, 0.1, 720)
     wrong += early.periods != 720 or len(early.unsettled) != 4 or early.way != 1.0
     wrong += [one for one in motor.asked if abs(one[0] + 1.0 - one[1]) > 1e-9] != []
@@ -172,8 +172,8 @@ def free_error(speed: float) -> float:
     law = pushed(lambda n, v: np.full(len(n), tanh(9.0 * (speed - v))))
     motor: Any = Motor(law)
     found = no_load(motor)
-    wrong = abs(found.speed - speed) > 2e-6 * CREST or abs(found.spread) > 1e-12 * LOAD
-    wrong |= abs(stall(motor).force - MU * LOAD * tanh(9.0 * speed)) > 1e-12 or stall(motor).speed != 0.0
+    wrong = not abs(found.speed - speed) <= 2e-6 * CREST or not abs(found.spread) <= 1e-12 * LOAD
+    wrong |= not abs(stall(motor).force - MU * LOAD * tanh(9.0 * speed)) <= 1e-12 or stall(motor).speed != 0.0
     wrong |= [one.speed for one in force_speed(motor, (0.1, -0.2))] != [0.1, -0.2]
     wrong |= "does not change its way" not in _said(lambda: no_load(motor, 0.5 * abs(speed)))
     rough: Any = Motor(pushed(lambda n, v: 0.2 * np.sin(0.1 * n)))
@@ -195,7 +195,7 @@ def free_error(speed: float) -> float:
         (reversed_way(motor, before, 0.9, 200), -0.7, 0.9),
     ):
         part = (1.0 - exp(-1.0)) * (target + 0.7) / 1.7
-        wrong |= one.time is None or abs(one.time + 40.0 * np.log1p(-part) / HERTZ) > 1e-3 * one.time
+        wrong |= one.time is None or not abs(one.time + 40.0 * np.log1p(-part) / HERTZ) <= 1e-3 * one.time
         wrong |= (one.start_speed, one.end_speed) != (start, float(one.run.speed[-1])) or len(one.run.times) != 201
     return float(wrong or _driven_otherwise())
 
@@ -211,7 +211,7 @@ def _driven_otherwise() -> bool:
     case, x = MotorCase(beam=STRIP, forces=forces, frequency_hz=HERTZ, slider=SLIDER), np.array([0.1, 0.31, 0.6])
     moved, half, back = (one.field().deflection(x) for one in (case, case.driven(0.37), case.turned()))
     size = abs(moved).max()
-    return bool(max(abs(half - 0.37 * moved).max(), abs(back - moved.conj()).max()) > 1e-12 * size)
+    return bool(not max(abs(half - 0.37 * moved).max(), abs(back - moved.conj()).max()) <= 1e-12 * size)
 
 
 ROWS: tuple[Row, ...] = (

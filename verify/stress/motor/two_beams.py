@@ -17,6 +17,7 @@ from verify.motion.result import END
 from verify.section import Section
 from verify.slider import Contact, Foot, Slider
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.motion.braked import STILL
 from verify.stress.motion.sliders import BAR, FORCES, HERTZ, PARTS, RATIO
 from verify.stress.references.dense import Elements
@@ -84,7 +85,7 @@ def clasped_error(periods: float) -> float:
     start = float(abs(run.deflection[0] - bent).max()) / size + abs(float(run.normal_force[0]) / (2.0 * PRELOAD) - 1.0)
     later = float(abs(run.deflection - bent).max()) / size + float(abs(run.normal_force / (2.0 * PRELOAD) - 1.0).max())
     pressed = float(abs(run.pressures / (PRELOAD / 3.0) - 1.0).max())
-    return max(start, max(later, pressed) / 4e8, float(abs(run.height).max()) / size)
+    return largest(start, max(later, pressed) / 4e8, float(abs(run.height).max()) / size)
 
 
 # --- Grown and gone ---------------------------------------------------------------------------------------------------
@@ -113,10 +114,10 @@ def grown_error(periods: float) -> float:
         exact = _followed(RATIO, HERTZ, seconds, ((periods / HERTZ, (0.0, 0.0, 3.0, -2.0)),))[:2]
         state = run.state
         found = 0.5 * np.array([state.rates @ state.rates, (basis.omegas * state.q) @ (basis.omegas * state.q)])
-        worst = max(worst, float(abs(found - exact).max() / exact.max()))
-        worst = max(worst, abs(state.travelled / (SPEED * seconds) - 1.0), abs(state.time / seconds - 1.0))
+        worst = largest(worst, float(abs(found - exact).max() / exact.max()))
+        worst = largest(worst, abs(state.travelled / (SPEED * seconds) - 1.0), abs(state.time / seconds - 1.0))
     steps = first.statistics.steps + last.statistics.steps
-    return max(worst, float(steps < 1000.0 * (total + LEGS[1])), float(first.statistics.stopped != END))
+    return largest(worst, float(steps < 1000.0 * (total + LEGS[1])), float(first.statistics.stopped != END))
 
 
 WAYS = ((41.0, 0.097 - 0.0579 - 0.02025, "came to a step of beam.section at 0.097 m"), (-41.0, 0.0469, "left the beam"))

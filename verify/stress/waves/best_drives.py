@@ -12,6 +12,7 @@ from verify.device import Device
 from verify.models.arrays import ComplexArray
 from verify.stress.judge.sizes_chosen import turned_error
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import PLACES, PLAIN, States
 from verify.stress.references.beams import STRIP, held
 
@@ -36,10 +37,10 @@ def phases_error(limit: float) -> float:
     worst = float((part < WITHIN[0]).any() or (part > WITHIN[1]).any() or not np.isfinite(whole).all())
     for tried, inner, forward, backward in zip(whole, part, FORWARD, BACKWARD, strict=True):
         for phase in _best_phases(forward, backward, limit):
-            worst = max(worst, float(abs(np.exp(1j * tried) - np.exp(1j * phase)).min()))
+            worst = largest(worst, float(abs(np.exp(1j * tried) - np.exp(1j * phase)).min()))
             if WITHIN[0] < phase < WITHIN[1]:
-                worst = max(worst, float(abs(inner - phase).min()))
-        worst = max(worst, *(float(abs(inner - end).min()) for end in WITHIN))
+                worst = largest(worst, float(abs(inner - phase).min()))
+        worst = largest(worst, *(float(abs(inner - end).min()) for end in WITHIN))
     return worst
 
 
@@ -100,12 +101,12 @@ def turns_error(clamped: float) -> float:
         zero = brentq(law, 50.0, 400.0)
         top = brentq(lambda n: law(n + 0.01) - law(n - 0.01), 1.1 * zero, 900.0)
         falls, hump = last_hump("segment", held(*ends), 3)
-        return float(max(abs(falls / zero - 1.0), abs(hump / top - 1.0)))
+        return float(largest(abs(falls / zero - 1.0), abs(hump / top - 1.0)))
     cancel = brentq(lambda mu: turned_error("segment", mu) + 3.0 * turned_error("fem", mu), 1.5, 3.0, xtol=1e-14)
     top = brentq(lambda mu: turned_error("fem", mu + 1e-4) - turned_error("fem", mu - 1e-4), 2.7, 3.1)
     hump = last_hump("fem", STRIP, 7)[1]
     never = (*last_hump("fem", held("clamped", "free"), 2), *last_hump("segment", STRIP, 7))
-    return float(max(abs(MEAN_LIMIT / cancel - 1.0), abs(7.0 * pi / hump / top - 1.0), *never))
+    return float(largest(abs(MEAN_LIMIT / cancel - 1.0), abs(7.0 * pi / hump / top - 1.0), *never))
 
 
 # --- Devices against turning at the ends ------------------------------------------------------------------------------
@@ -138,7 +139,7 @@ def turned_ends_error(hertz: float) -> float:
         states = States(beam, "euler-bernoulli", omega**2, STOPS, resisted)
         under = states.under(PUSHED)
         exact = np.array([states.read(under, x, 0) for x in PLACES.tolist()])
-        worst = max(worst, float(abs(found.shapes(PLACES, 0) - exact).max() / abs(exact).max()))
+        worst = largest(worst, float(abs(found.shapes(PLACES, 0) - exact).max() / abs(exact).max()))
     return worst
 
 
@@ -172,14 +173,16 @@ def absorbers_error(hertz: float) -> float:
         beam = replace(STRIP, loss_factor=eta)
         end, alone = ending(beam, hertz, distance, support, turning=turning), _Alone(beam, hertz, distance, support)
         size = abs(end.own)
-        worst = max(worst, abs(alone.own(turning) / end.own - 1.0), alone.left(end.matched, turning))
+        worst = largest(worst, abs(alone.own(turning) / end.own - 1.0), alone.left(end.matched, turning))
         for impedance in (0.0j, (0.4 - 1.3j) * size, 2.1j * size, 1e7 * size + 0.0j):
-            worst = max(worst, abs(reflection(impedance, end) - alone.left(impedance, turning)))
+            worst = largest(worst, abs(reflection(impedance, end) - alone.left(impedance, turning)))
         resistance, left = best_dashpot(end)
         around = [alone.left(complex(part * resistance), turning) for part in (0.9, 1.0, 1.1)]
-        worst = max(worst, abs(left - around[1]), around[1] - min(*around, alone.left(0.0j, turning)))
+        worst = largest(worst, abs(left - around[1]), around[1] - min(*around, alone.left(0.0j, turning)))
         if not eta:
-            worst = max(worst, *(abs(each / end.matched - 1.0) for each in _matched(hertz, distance, support, turning)))
+            worst = largest(
+                worst, *(abs(each / end.matched - 1.0) for each in _matched(hertz, distance, support, turning))
+            )
     return worst
 
 

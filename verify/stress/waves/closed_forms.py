@@ -12,6 +12,7 @@ from verify.device import Device
 from verify.models.arrays import ComplexArray
 from verify.models.fields import phasor
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import PLACES, PLAIN, States
 from verify.stress.references.beams import STRIP
 from verify.waves.case import DrivenCase
@@ -35,7 +36,7 @@ def two_modes_error(mode: float) -> float:
     forward = size * sum(0.5j * share * np.exp(-1j * turn) for share, turn in zip(shares, turns, strict=True))
     backward = size * sum(-0.5j * share * np.exp(1j * turn) for share, turn in zip(shares, turns, strict=True))
     pairs = [*zip(found.local_waves(x), (forward, backward), strict=True), (found.deflection(x), forward + backward)]
-    return max(float(abs(a - b).max() / size) for a, b in pairs)
+    return largest(float(abs(a - b).max() / size) for a, b in pairs)
 
 
 def local_waves_error(hertz: float) -> float:
@@ -55,7 +56,9 @@ def local_waves_error(hertz: float) -> float:
         sent = 0.5j * size * np.sin(k * across) * np.exp(-1j * k * side * (x - away))
         waves = (sent, np.conj(sent))  # i e^{-iy} / 2 and -i e^{iy} / 2 of sin y
         exact = waves if side > 0.0 else waves[::-1]
-        worst = max(worst, *(abs(a[0] - b) / abs(sent) for a, b in zip(local_waves(field, [x]), exact, strict=True)))
+        worst = largest(
+            worst, *(abs(a[0] - b) / abs(sent) for a, b in zip(local_waves(field, [x]), exact, strict=True))
+        )
     return worst
 
 
@@ -69,9 +72,9 @@ def turning_error(phase: float) -> float:
     way = 1.0 if abs(found.waves.forward) > abs(found.waves.backward) else -1.0
     turns = "counter-clockwise" if way > 0.0 else "clockwise"
     right = (found.waves.direction == way, found.rotation == turns, found.energy_flux * way > 0.0)
-    least, mean, largest = found.signed_area_range
-    off = abs(found.signed_area_spread / ((largest - least) / abs(mean)) - 1.0)
-    return max(off, float(not all(right)), float(found.crest_speed * way > 0.0), float(mean * way > 0.0))
+    least, mean, most = found.signed_area_range
+    off = abs(found.signed_area_spread / ((most - least) / abs(mean)) - 1.0)
+    return largest(off, float(not all(right)), float(found.crest_speed * way > 0.0), float(mean * way > 0.0))
 
 
 # --- Power ------------------------------------------------------------------------------------------------------------
@@ -135,7 +138,7 @@ def devices_error(hertz: float) -> float:
     taken = {at: -0.5 * omega * resists[at][0].imag * square for at, square in moved.items() if resists[at][0]}
     pulls = [force for force in field.forces if force.position in resists and force != own]
     found = powers(field, pulls)
-    return max(worst, *(abs(value / taken[at.position] - 1.0) for at, value in zip(pulls, found, strict=True)))
+    return largest(worst, *(abs(value / taken[at.position] - 1.0) for at, value in zip(pulls, found, strict=True)))
 
 
 def _resists(one: Device, omega: float) -> tuple[complex, complex]:
@@ -159,7 +162,7 @@ def imposed_error(hertz: float) -> float:
     field = driven_field(lambda forces, f: solve_harmonic(beam, forces, f), drives, hertz, "displacement")
     units = held_units(partial(unit_responses, beam), places, beam, np.array([hertz, 77.0]), PLACES)
     together = units[0].T @ np.array([phasor(drive) for drive in drives])
-    return max(float(abs(found - exact).max() / abs(exact).max()) for found in (field.shapes(PLACES, 0), together))
+    return largest(float(abs(found - exact).max() / abs(exact).max()) for found in (field.shapes(PLACES, 0), together))
 
 
 @cache
@@ -212,7 +215,7 @@ def fastest_error(phase: float) -> float:
     best = float(np.where(gamma <= 0.2, abs(speed), 0.0).max())
     if found.reflection > 0.2 + 1e-9 or np.sign(found.phase_deg) != np.sign(phase):
         return 1.0
-    return max(best / abs(found.crest_speed) - 1.0, 0.0) * 1e6 + max(1.0 - best / abs(found.crest_speed), 0.0)
+    return largest(best / abs(found.crest_speed) - 1.0, 0.0) * 1e6 + max(1.0 - best / abs(found.crest_speed), 0.0)
 
 
 def quietest_error(phase: float) -> float:
@@ -232,8 +235,8 @@ def quietest_error(phase: float) -> float:
     slope = float(np.mean([abs(side[0, 0] - quiet.reflection) for side in sides]) / 0.5)
     off = max(abs(quiet.per_hertz / slope - 1.0), float(len(problems)), abs(fast.reflection - 0.2))
     here, told = driven_point(case), measures(driven(case, Workbench(case.beam)), None)
-    off = max(off, abs(here.reflection / told.reflection - 1.0), abs(here.crest_speed / told.crest_speed - 1.0))
-    return max(off, quiet.reflection / float(gamma.min()) - 1.0, 0.0)
+    off = largest(off, abs(here.reflection / told.reflection - 1.0), abs(here.crest_speed / told.crest_speed - 1.0))
+    return largest(off, quiet.reflection / float(gamma.min()) - 1.0, 0.0)
 
 
 def _case(phase: float) -> DrivenCase:

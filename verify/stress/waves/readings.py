@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
 
 PARTS, STEP = 11, 1e-6
@@ -38,7 +39,7 @@ def derivatives_error(derivative: float) -> float:
         for shapes in (modes.shapes, field.shapes):
             found, before = (shapes(PLACES + side * STEP, d - 1) for side in (1.0, -1.0))
             exact = (found - before) / (2.0 * STEP)
-            worst = max(worst, float(abs(shapes(PLACES, d) - exact).max() / abs(exact).max()))
+            worst = largest(worst, float(abs(shapes(PLACES, d) - exact).max() / abs(exact).max()))
     return worst
 
 
@@ -55,7 +56,7 @@ def free_error(number: float) -> float:
 
     bench, n = Workbench(FREE[int(number)]), 24
     errors = [abs(bench.frequency_error(model, n, mode)) for model in ("segment", "fem") for mode in (1, 3)]
-    return max(error / ((1 + mode) * pi / n) ** 4 for error, mode in zip(errors, (1, 3, 1, 3), strict=True))
+    return largest(error / ((1 + mode) * pi / n) ** 4 for error, mode in zip(errors, (1, 3, 1, 3), strict=True))
 
 
 def ellipses_error(places: float) -> float:
@@ -75,7 +76,9 @@ def ellipses_error(places: float) -> float:
     pairs = [(found.signed_area, area), (found.axis_ratio, np.tan(0.5 * np.arcsin(area / total)))]
     off = [float(abs(a - b).max() / abs(b).max()) for a, b in pairs]
     turned = np.deg2rad(found.tilt_deg) - tilt
-    return max(*off, float(abs(np.sin(turned)).max()), abs(found.ideal_axis_ratio / (k * STRIP.surface_distance) - 1.0))
+    return largest(
+        *off, float(abs(np.sin(turned)).max()), abs(found.ideal_axis_ratio / (k * STRIP.surface_distance) - 1.0)
+    )
 
 
 def gaps_error(share: float) -> float:
@@ -107,7 +110,7 @@ def lossy_error(parts: float) -> float:
         lossy = replace(beam, loss_factor=0.3)
         exact = solve_harmonic(lossy, forces, 31.0).deflection(PLACES)
         found = MODELS["segment"].solve_harmonic(lossy, forces, 31.0, int(parts), **given).deflection(PLACES)
-        worst = max(worst, float(abs(found - exact).max() / abs(exact).max()) * parts**2)
+        worst = largest(worst, float(abs(found - exact).max() / abs(exact).max()) * parts**2)
     return worst
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from verify.beam import PointForce
 from verify.device import Device
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP
 from verify.stress.references.decimals import DIGITS, PI, sin, sinh
 
@@ -40,7 +41,7 @@ def damped_error(dashpot: float) -> float:
             taken = resists * green(hertz, AT, STANDS) * green(hertz, STANDS, FROM) / (1 + (resists * own) ** 2)
             exact = complex(float(green(hertz, AT, FROM) - resists * own * taken), -float(taken))
         found = field_with_devices(solve_harmonic, STRIP, (PointForce(position=FROM),), hertz, devices)
-        worst = max(worst, abs(complex(found.shapes(np.array([AT]), 0)[0]) / exact - 1.0))
+        worst = largest(worst, abs(complex(found.shapes(np.array([AT]), 0)[0]) / exact - 1.0))
     return worst
 
 
@@ -58,7 +59,7 @@ def held_error(off: float) -> float:
             exact = float(green(hertz, AT, place) / green(hertz, place, place))
         drives = (PointForce(position=place),)
         found = driven_field(lambda forces, f: solve_harmonic(STRIP, forces, f), drives, hertz, "displacement")
-        worst = max(worst, abs(complex(found.shapes(np.array([AT]), 0)[0]) / exact - 1.0))
+        worst = largest(worst, abs(complex(found.shapes(np.array([AT]), 0)[0]) / exact - 1.0))
     return worst
 
 

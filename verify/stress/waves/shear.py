@@ -11,6 +11,7 @@ from verify.beam import Beam, PointForce
 from verify.device import Device
 from verify.models.arrays import ComplexArray
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.modes.any_beam import States
 
 if TYPE_CHECKING:
@@ -71,13 +72,13 @@ def turn_error(number: float, model: str) -> float:
         beam = replace(bar, supports=SUPPORTS[int(number)])
         deflection, turn, bend = states_of(beam)
         field = field_with_devices(solve, beam, FORCES, HERTZ, DEVICE)
-        worst = max(worst, float(abs(field.turn(PLACES) - turn).max() / abs(turn).max()))
+        worst = largest(worst, float(abs(field.turn(PLACES) - turn).max() / abs(turn).max()))
         off = abs(field.turns(PLACES, 1) - bend).max() / abs(bend).max()
-        worst = max(worst, float(off) / PARTS[model][2])
+        worst = largest(worst, float(off) / PARTS[model][2])
         exact = ellipse(-0.5 * 0.015 * turn, deflection)[0]
         found = ellipse(surface_motion(beam, field.turn(PLACES)), field.deflection(PLACES))[0]
         inside = abs(deflection) > 0.02 * abs(deflection).max()
-        worst = max(worst, float(abs(found - exact)[inside].max()))
+        worst = largest(worst, float(abs(found - exact)[inside].max()))
     return worst
 
 
@@ -97,8 +98,8 @@ def along_error(number: float) -> float:
         found = field.turns(PLACES, 0)
         size = np.vdot(turn, found) / np.vdot(turn, turn)
         bent = field.turns(PLACES, 1) / size
-        worst = max(worst, 150.0 * float(abs(found / size - turn).max() / abs(turn).max()))
-        worst = max(worst, 5.0 * float(abs(bent - bend).max() / abs(bend).max()))
+        worst = largest(worst, 150.0 * float(abs(found / size - turn).max() / abs(turn).max()))
+        worst = largest(worst, 5.0 * float(abs(bent - bend).max() / abs(bend).max()))
     return worst
 
 
@@ -115,7 +116,7 @@ def lost_error(loss_factor: float) -> float:
         beam = replace(bar, length=0.9, loss_factor=loss_factor, supports=("pinned", "clamped"))
         forces = (PointForce(position=0.04, amplitude=3.0), PointForce(position=0.86, amplitude=2.0, phase_deg=60.0))
         field = solve_harmonic(beam, forces, 47000.0, "timoshenko")
-        worst = max(worst, abs(power_imbalance(field, measures(field, None))))
+        worst = largest(worst, abs(power_imbalance(field, measures(field, None))))
     return worst
 
 

@@ -12,6 +12,7 @@ from verify.beam import PointForce
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.stress.kind import Floor, Row
+from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
 
 # --- Two waves --------------------------------------------------------------------------------------------------------
@@ -112,9 +113,9 @@ def measured_error(halves: float) -> float:
             (found.ideal_axis_ratio, k * STRIP.surface_distance),
             (measured_figure(field, window, k, "travelling_index"), found.travelling_index),
         ]
-        worst = max(worst, *(float(np.max(abs(np.asarray(a) - b)) / np.max(abs(np.asarray(b)))) for a, b in pairs))
-        worst = max(worst, abs(found.waves.backward - backward) / sizes[0] * (sizes[1] > 0.0), found.waves.residual)
-    return max(worst, float(not _standing(k, window, middle)))
+        worst = largest(worst, *(float(np.max(abs(np.asarray(a) - b)) / np.max(abs(np.asarray(b)))) for a, b in pairs))
+        worst = largest(worst, abs(found.waves.backward - backward) / sizes[0] * (sizes[1] > 0.0), found.waves.residual)
+    return largest(worst, float(not _standing(k, window, middle)))
 
 
 # --- Sweeps -----------------------------------------------------------------------------------------------------------
@@ -152,7 +153,7 @@ def swept_error(mode: float) -> float:
             said = _refusal(lambda: MODELS[model].solve_harmonic(STRIP, PUSH, own * (1.0 + part * 1e-9), count))  # noqa: B023
             wrong += f"of mode {n} of the {model} model" not in said or "frequency_hz = " not in said
             resonance = said.partition("model at ")[2].partition(" Hz")[0]
-            wrong += not resonance or abs(float(resonance) / own - 1.0) > 1e-12
+            wrong += not resonance or not abs(float(resonance) / own - 1.0) <= 1e-12
     return float(wrong)
 
 
@@ -183,7 +184,7 @@ def crowded_error(links: float) -> float:
         beam = replace(held(*pair), mass=bodies)
         exact, found = (MODELS[m].solve_modes(beam, 3, n).frequencies_hz for m in ("analytic", "segment"))
         off = abs(np.asarray(found) / np.asarray(exact) - 1.0)
-        worst = max(worst, float((off / (np.arange(2.0, 5.0) * pi / n) ** 4).max()))
+        worst = largest(worst, float((off / (np.arange(2.0, 5.0) * pi / n) ** 4).max()))
     return worst
 
 
