@@ -30,12 +30,13 @@ def _end(number: int, frame: FrameType | None) -> NoReturn:
 def put_off(answer: Answer) -> Answer:
     """The answer to a signal, heard again a little later where what it raises would be printed and lost.
 
-    That is where LLVM has what it compiled written down and where its objects are taken down: Python raises nothing
-    through the C that calls it there, and the run went on as if nobody had asked.
+    That is where LLVM has what it compiled written down and where its objects are taken down, and where a module that
+    sleeps is read because somebody imports it: Python raises nothing through the C that calls it there. The run went on
+    as if nobody had asked, and with half a module.
     """
 
     def heard(number: int, frame: FrameType | None) -> None:
-        if not _is_called_from_llvm(frame):
+        if not _is_lost(frame):
             answer(number, frame)
             return
         from threading import Timer, get_ident
@@ -55,10 +56,12 @@ def _ask(thread: int, number: int) -> None:
         signal.raise_signal(number)
 
 
-def _is_called_from_llvm(frame: FrameType | None) -> bool:
-    """Whether LLVM's binding is at work, here or in who called."""
+def _is_lost(frame: FrameType | None) -> bool:
+    """Whether LLVM's binding is at work, or the reading of a module that sleeps, here or in who called."""
     while frame is not None:
-        if frame.f_globals.get("__package__") == "llvmlite.binding":
+        of = frame.f_globals
+        sleeps = of.get("__name__") == "importlib.util" and frame.f_code.co_name == "__getattribute__"
+        if sleeps or of.get("__package__") == "llvmlite.binding":
             return True
         frame = frame.f_back
     return False

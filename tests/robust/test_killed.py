@@ -3,6 +3,7 @@
 import json
 import signal
 import sys
+from importlib.util import LazyLoader, module_from_spec, spec_from_file_location
 from pathlib import Path
 from random import Random
 from time import monotonic, sleep
@@ -126,7 +127,7 @@ def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path,
 LONG_S = 20.0
 
 
-def who_asks_while_llvm_writes(number):
+def who_asks_while_llvm_writes(number, folder):
     """A small module compiled, and time for the request to be heard."""
     from llvmlite import binding
 
@@ -139,8 +140,24 @@ def who_asks_while_llvm_writes(number):
     sleep(LONG_S)
 
 
+def who_asks_while_a_module_wakes(number, folder):
+    """One that sleeps is read where it is imported again: what it raises there, Python takes for none."""
+    (folder / "dozing.py").write_text(f"import signal\nsignal.raise_signal({int(number)})\nwhole = True\n")
+    spec = spec_from_file_location("dozing", folder / "dozing.py")
+    spec.loader = LazyLoader(spec.loader)
+    sys.modules["dozing"] = module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    import dozing
+
+    assert vars(dozing)["whole"]
+    sleep(LONG_S)
+
+
+@pytest.mark.parametrize("asks", [who_asks_while_llvm_writes, who_asks_while_a_module_wakes])
 @pytest.mark.parametrize(("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
-def test_a_request_to_end_while_llvm_writes_down_what_it_compiled_is_not_lost(monkeypatch, number, raised):
+def test_a_request_to_end_where_what_it_raises_would_be_lost_is_heard_a_little_later(
+    monkeypatch, tmp_path, asks, number, raised
+):
     lost, before = [], {one: signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     monkeypatch.setattr(sys, "unraisablehook", lost.append)
     try:
@@ -149,9 +166,10 @@ def test_a_request_to_end_while_llvm_writes_down_what_it_compiled_is_not_lost(mo
         end_tidily()
         began = monotonic()
         with pytest.raises(raised):
-            who_asks_while_llvm_writes(number)
+            asks(number, tmp_path)
         assert monotonic() - began < 0.9 * LONG_S  # who sleeps is woken
     finally:
+        sys.modules.pop("dozing", None)
         for one, handler in before.items():
             signal.signal(one, handler)
     assert not lost
