@@ -119,12 +119,11 @@ def pytest_sessionfinish() -> None:
 
 
 def _forget() -> None:
-    """Empty what functions of the suite and of its tests keep; those that compile keep theirs."""
+    """Empty what functions of the suite keep; those that compile keep theirs, and tests the runs that they share."""
     import functools
 
-    root = os.environ["PYTHONPATH"]
-    for module in list(sys.modules.values()):
-        if (getattr(module, "__file__", None) or "").startswith(root) and module.__name__ != COMPILER:
+    for name, module in list(sys.modules.items()):
+        if name.startswith("verify.") and name != COMPILER:
             for one in list(vars(module).values()):
                 if isinstance(one, functools._lru_cache_wrapper):
                     one.cache_clear()
