@@ -24,7 +24,7 @@ Read = Callable[[Array, int], ComplexArray]
 
 
 def _fields(n: int) -> Iterator[HarmonicField]:
-    """Of a thick lossy strip on three pairs of supports and of a stepped thin one: elements, links, and exact fields."""
+    """Of a thick lossy strip on three pairs of supports and of a stepped thin one: elements, links, exact."""
     from verify.elements import linear as elements
     from verify.exact import harmonic
     from verify.segments import linear as segments
@@ -64,7 +64,7 @@ ROWS: tuple[Row, ...] = (
     Floor(
         id="derivatives-of-fields",
         title="Derivatives of driven fields and of sections' turns, by every model and two theories, by differences",
-        why="Within a part a field is a cubic or a sum of waves: a difference over a ten-thousandth of it is its slope.",
+        why="Within a part a field is a cubic or a sum of waves: a difference over 1e-4 of it is its slope.",
         along="parts",
         at=(17,),
         promise=1e-7,
