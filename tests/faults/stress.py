@@ -389,6 +389,11 @@ def third_derivatives_of_elements_that_shear_a_little_larger(patch):
     patch.setattr(shear, "sheared", larger)
 
 
+def kicks_a_ten_millionth_harder(patch):
+    flows, weights = splitting.SCHEMES[2]
+    patch.setitem(splitting.SCHEMES, 2, (flows, tuple(1.0000001 * weight for weight in weights)))
+
+
 def whole_steps_a_millionth_longer(patch):
     true = splitting._turns
     patch.setattr(splitting, "_turns", lambda omega, times: true(omega, np.append(times[:-1], 1.000001 * times[-1])))
@@ -1029,6 +1034,7 @@ FAULTS = {
         recursion_with_another_inertia_than_the_energy: {"shaken-at-two-points"},
         longer_steps_than_the_tolerance_takes: {"kept-between-steps"},
         whole_steps_a_millionth_longer: {"kept-over-kicks"},
+        kicks_a_ten_millionth_harder: {"kicks-thrown-far"},
         third_derivatives_of_elements_that_shear_a_little_larger: {"derivatives-of-fields"},
         modes_that_take_too_much_of_a_kick: {"energy-over-kicks"},
         curvatures_of_the_other_sign: {"curvatures"},

@@ -182,6 +182,20 @@ def kept_over_kicks_error(microseconds: float) -> float:
     return float(np.max(apart))
 
 
+def thrown_far_error(n: float) -> float:
+    """Of hinged links let go far from straight: kicks of two steps, less what falls with their square, by adaptive."""
+    from verify.chain.dynamics import at_rest
+    from verify.chain.splitting import modal_basis, simulate_modal
+    from verify.chain.stepping import simulate
+    from verify.chain.system import build_system
+
+    system, times, at = build_system(STRIP, int(n)), np.linspace(0.0, 0.02, 41), (np.arange(n) + 0.5) / n
+    start = at_rest(system, 0.6 * np.cos(pi * at) + 0.18 * np.cos(2.0 * pi * at))
+    exact = simulate(system, start, times, tolerance=1e-11, ledger=False).angles
+    coarse, fine = (simulate_modal(modal_basis(system), start, times, step=step).angles for step in (2e-5, 1e-5))
+    return float(abs((4.0 * fine - coarse) / 3.0 - exact).max() / abs(exact).max())
+
+
 def worst_frequency_error(n: float) -> float:
     """Of how much a chain under two loads feels a slider, against the larger of both alone, either given first."""
     from verify.chain.ride import coupling_on_chain
@@ -204,6 +218,12 @@ def worst_frequency_error(n: float) -> float:
 def _kicked() -> Iterator[Call]:
     """Rigid links in modes, and their energies."""
     yield from warm.accelerations()
+    yield from warm.modal()
+
+
+def _thrown() -> Iterator[Call]:
+    """By adaptive steps and over kicks."""
+    yield from warm.rigid()
     yield from warm.modal()
 
 
@@ -286,6 +306,16 @@ ROWS: tuple[Row, ...] = (
         promise=2.0,
         error=kept_between_error,
         kernels=warm.rigid,
+    ),
+    Floor(
+        id="kicks-thrown-far",
+        title="Hinged links let go far from straight, over kicks of two steps and extrapolated, by adaptive steps",
+        why="chain/splitting.py: the roller is closed afresh along its own force; errors fall with the step's square.",
+        along="links",
+        at=(5, 6),
+        promise=2e-9,
+        error=thrown_far_error,
+        kernels=_thrown,
     ),
     Floor(
         id="kept-over-kicks",
