@@ -31,7 +31,7 @@ def key_of(module: str, fault: Fault) -> Key:
 def kept_reasons(file: Path = KEPT) -> dict[Key, Reason]:
     """Those that are written down. Raises ValueError for one that says what a reason cannot."""
     found = dict[Key, Reason]()
-    for one in tomllib.loads(file.read_text())["fault"]:
+    for one in tomllib.loads(file.read_text()).get("fault", []):
         if one["changes"] not in CHANGES:
             raise ValueError(f"{file.name}: changes = {one['changes']!r}: give one of {', '.join(CHANGES)}")
         key = one["module"], one["function"], one["old"], one["new"]

@@ -53,6 +53,7 @@ from verify.models import (
     division,
     driven_pencil,
     eigen,
+    fields,
     inverse,
     isolated,
     kind,
@@ -387,6 +388,15 @@ def third_derivatives_of_elements_that_shear_a_little_larger(patch):
         return first * (1.001 if derivative == 3 else 1.0), second
 
     patch.setattr(shear, "sheared", larger)
+
+
+def places_in_one_row_always(patch):
+    patch.setattr(fields, "as_asked", lambda found, x: found)
+
+
+def zeros_looked_for_in_forty_places(patch):
+    true = compare.zeros
+    patch.setattr(compare, "zeros", lambda shape, length, mode: true(shape, length, 1))
 
 
 def kicks_a_ten_millionth_harder(patch):
@@ -1034,6 +1044,8 @@ FAULTS = {
         recursion_with_another_inertia_than_the_energy: {"shaken-at-two-points"},
         longer_steps_than_the_tolerance_takes: {"kept-between-steps"},
         whole_steps_a_millionth_longer: {"kept-over-kicks"},
+        places_in_one_row_always: {"places-in-any-arrangement"},
+        zeros_looked_for_in_forty_places: {"zeros-of-shapes"},
         kicks_a_ten_millionth_harder: {"kicks-thrown-far"},
         third_derivatives_of_elements_that_shear_a_little_larger: {"derivatives-of-fields"},
         modes_that_take_too_much_of_a_kick: {"energy-over-kicks"},

@@ -10,7 +10,7 @@ GROUPS = {
     "modes": (
         *("sizes", "scales", "attached", "nearly_floating", "many_at_once", "laws", "all_supports"),
         *("any_beam", "written_out", "stacks", "mixed_stacks", "pencils", "felt", "mended"),
-        *("small_systems", "searches", "rules", "derivatives"),
+        *("small_systems", "searches", "rules", "read_off"),
     ),
     "waves": ("drives", "closed_forms", "resonances", "shear", "best_drives", "two_waves", "readings"),
     "motion": (
