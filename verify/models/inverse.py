@@ -112,7 +112,7 @@ def fitting_inverse(pencil: FactoredPencil) -> Inverse:
             raise
         lowest = 0.0
     felt = slow * min(pencil.n / DENSE_UNKNOWNS, 1.0) ** 4  # of few parts others keep their digits beside slower ones
-    return inverse_of(pencil, -slow) if lowest < felt else replace(inverse, rough=lowest < pencil.bending)
+    return replace(inverse, rough=lowest < pencil.bending) if lowest >= felt else inverse_of(pencil, -slow)
 
 
 def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
@@ -135,11 +135,15 @@ def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
 
 
 def lowest_told(inverse: Inverse) -> float:
-    """About the lowest eigenvalue less `below`, by two steps of inverse iteration; rounding may turn its sign."""
-    first = inverse.solve(inverse.mass @ start_of(inverse.pencil.n)[:, 0])
-    load = inverse.mass @ first
-    second = inverse.solve(load)
-    return float(second @ load / (second @ (inverse.mass @ second)))
+    """About the lowest eigenvalue less `below`, by two steps of inverse iteration; rounding may turn its sign.
+
+    NaN where motions are so slow that their answers are no numbers.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        first = inverse.solve(inverse.mass @ start_of(inverse.pencil.n)[:, 0])
+        load = inverse.mass @ first
+        second = inverse.solve(load)
+        return float(second @ load / (second @ (inverse.mass @ second)))
 
 
 @lru_cache(maxsize=8)

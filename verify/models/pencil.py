@@ -100,7 +100,7 @@ def mixed_matrix(pencil: FactoredPencil, below: float = 0.0, unit: float = 1.0) 
     """([[-s^2/(u d), s B], [B^T s, -below u M]] as a sparse array, the unknowns in it): K - below M with its strains.
 
     Where it is K alone and motions are rigid, as many unknowns are grounded as make the matrix regular. s are the
-    `soft_scales` of u d, and u is the `unit` of the unknowns (`swing`).
+    `soft_scales` of u d, and u is the `unit` of the unknowns (`swing`). Raises InputError for d that 1 has no quotient with.
     """
     from scipy.sparse import csc_array
 
@@ -109,7 +109,14 @@ def mixed_matrix(pencil: FactoredPencil, below: float = 0.0, unit: float = 1.0) 
     strain = pencil.strain_matrix()
     # None, not stored zeros: they would cost three times the solve
     corner = -below * unit * csc_array(pencil.mass_matrix()) if below else None
-    return bordered(-1.0 / (unit * pencil.stiffness), strain[:, free] if grounds else strain, corner), free
+    with np.errstate(over="ignore"):
+        given = -1.0 / (unit * pencil.stiffness)
+    if not np.isfinite(given).all():
+        raise InputError(
+            f"the beam is held by {abs(pencil.stiffness).min() / abs(pencil.stiffness).max():.0e} of its own stiffness, "
+            "which floating point cannot divide by: hold it better, or leave that out"
+        )
+    return bordered(given, strain[:, free] if grounds else strain, corner), free
 
 
 def swing(omega2: float) -> float:

@@ -15,6 +15,8 @@ _STEADY = 1e-14
 """Of a value: a change after which there is no other."""
 _UNSETTLED = 1e-9
 """Of what a value is a sum of: a change after the last step with which it is refused."""
+_FELT = 1e-31
+"""Of the lowest bending's omega^2, about: below it is rounding of strains, whatever holds the beam."""
 _SOUGHT = 6
 """Steps to one that was missed."""
 
@@ -76,6 +78,11 @@ def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
         raise InputError(
             f"count: slow motions of {pencil.n} unknowns, which next to nothing holds, do not settle (omega^2 "
             f"still moves by {change:.0e} of it): lower count, or hold the beam better"
+        )
+    if len(last) and abs(last).min() < _FELT * pencil.bending:
+        raise InputError(
+            f"count: a motion of {pencil.n} unknowns, which next to nothing holds, is told by rounding alone (its "
+            f"omega^2 is {abs(last).min() / pencil.bending:.0e} of the lowest bending's): hold the beam better"
         )
     return vectors, strains
 

@@ -18,7 +18,7 @@ from verify.stress.kind import Row
 from verify.stress.references.beams import PLAIN, STEPPED, STRIP, held
 from verify.stress.refusals import Ask, Case, refusals
 
-CANTILEVER, FREE = held("clamped", "free"), held("free", "free")
+CANTILEVER, FREE, TURNS = held("clamped", "free"), held("free", "free"), held("pinned", "free")
 TAUT, LOSSY = replace(STRIP, tension=12.0), replace(STRIP, loss_factor=0.02)
 TURNING = replace(PLAIN, rotary_inertia=1e-7)
 """With what Rayleigh's theory takes, and Timoshenko's lacks."""
@@ -38,6 +38,12 @@ def beam(**given: object) -> Ask:
 def modes(model: str, n_modes: int, count: int | None = PARTS, of: Beam = STRIP, **settings: str | float) -> Ask:
     """Of a model of 9 parts, or of others."""
     return lambda: MODELS.named(model).solve_modes(of, n_modes, count, **settings)  # type: ignore[arg-type]
+
+
+def hung(of: Beam, newton_per_metre: float) -> Beam:
+    """On two springs."""
+    springs = (PointSpring(position=at, stiffness=newton_per_metre) for at in (0.2, 0.5))
+    return replace(of, spring=tuple(springs))
 
 
 def field(
@@ -113,6 +119,18 @@ ROWS: tuple[Row, ...] = (
         "refused-modes",
         "Modes, sizes and settings that a model does not have",
         "docstrings of solve_modes, division.py, theory.py: unknown settings, more modes than there are, other beams.",
+        *(
+            Case(
+                "count: slow motions of", modes(model, 3, of=hung(FREE, 1e-100)), modes(model, 3, of=hung(FREE, 1e-20))
+            )
+            for model in ("segment", "fem")
+        ),
+        Case(
+            "the beam is held by",
+            modes("segment", 3, 400, of=replace(FREE, foundation=1e-300)),
+            modes("segment", 3, 400, of=replace(FREE, foundation=1e-20)),
+        ),
+        Case("count: a motion of", modes("fem", 1, of=hung(TURNS, 1e-36)), modes("fem", 1, of=hung(TURNS, 1e-25))),
         Case("n_modes = 9 is more than the 8", modes("segment", 9), modes("segment", 8)),
         Case("n_modes = 19 is more than the 18", modes("fem", 19), modes("fem", 18)),
         *(Case("n_modes = 0", modes(model, 0), modes(model, 1)) for model in ("segment", "fem")),
