@@ -190,6 +190,20 @@ def test_no_beam_of_many_modes_is_left_to_be_solved_alone(alone, model, supports
 
 
 @pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("most", [1, 20_000])
+def test_modes_are_the_same_in_however_many_parts_their_factors_are_taken(monkeypatch, alone, model, most):
+    """So large a stack that it does not stay near the processor is taken in parts: here in a few, or each mode by itself."""
+    beams = many(61, 10, ("clamped", "free"), n_sections=3, n_masses=1)
+    whole, parted = MODELS[model].sweep_modes(beams, 21, 49), band_stack.in_parts
+    parts = []
+    monkeypatch.setattr(band_stack, "_MOST", most)
+    monkeypatch.setattr(stacks, "in_parts", lambda *given: parts.append(len(parted(*given))) or parted(*given))
+    assert MODELS[model].sweep_modes(beams, 21, 49) == pytest.approx(whole, rel=3e-14)
+    assert max(parts) > 1
+    assert not alone
+
+
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("n_modes", [3, 5, 8])
 def test_no_taut_beam_is_left_alone_however_far_its_modes_are_from_those_of_bending(alone, model, n_modes):
     """Like a string's the lowest modes lie as their square roots do: a grid laid by bending ended before the last."""

@@ -100,7 +100,8 @@ def mixed_matrix(pencil: FactoredPencil, below: float = 0.0, unit: float = 1.0) 
     """([[-s^2/(u d), s B], [B^T s, -below u M]] as a sparse array, the unknowns in it): K - below M with its strains.
 
     Where it is K alone and motions are rigid, as many unknowns are grounded as make the matrix regular. s are the
-    `soft_scales` of u d, and u is the `unit` of the unknowns (`swing`). Raises InputError for d that 1 has no quotient with.
+    `soft_scales` of u d, and u is the `unit` of the unknowns (`swing`). Raises InputError for d by which
+    1 cannot be divided.
     """
     from scipy.sparse import csc_array
 
@@ -112,9 +113,10 @@ def mixed_matrix(pencil: FactoredPencil, below: float = 0.0, unit: float = 1.0) 
     with np.errstate(over="ignore"):
         given = -1.0 / (unit * pencil.stiffness)
     if not np.isfinite(given).all():
+        least = abs(pencil.stiffness).min()
         raise InputError(
-            f"the beam is held by {abs(pencil.stiffness).min() / abs(pencil.stiffness).max():.0e} of its own stiffness, "
-            "which floating point cannot divide by: hold it better, or leave that out"
+            f"the beam is held by {least / abs(pencil.stiffness).max():.0e} of its own stiffness: "
+            "floating point cannot divide by it, hold the beam better or leave that out"
         )
     return bordered(given, strain[:, free] if grounds else strain, corner), free
 
