@@ -132,10 +132,19 @@ def _files(place: Path) -> list[Path]:
     return sorted(place.rglob("test_*.py")) if place.is_dir() else [place]
 
 
+def _stamp(root: Path, tests: list[str]) -> str:
+    """That of sources, gates and all files beside tests, and of which tests are asked."""
+    files = [
+        file for part in ("verify", "tests") for kind in ("py", "toml") for file in (root / part).rglob(f"*.{kind}")
+    ]
+    told = [str(file.relative_to(root)).encode() + b"\n" + file.read_bytes() for file in sorted(files)]
+    return sha256(b"\0".join([*told, *(one.encode() for one in tests)])).hexdigest()
+
+
 def _known(root: Path, trees: list[Path], tests: list[str], compiled: str, kept: Path | None) -> Known:
     """What runs what, from a file that keeps it for these sources and tests, or by running them."""
     sources = {str(file.relative_to(root)): file.read_bytes() for file in (root / "verify").rglob("*.py")}
-    stamp = sha256(b"".join([*sources.values(), *(one.encode() for one in tests)])).hexdigest()
+    stamp = _stamp(root, tests)
     if kept and kept.exists() and (found := read_recorded(kept, stamp)):
         return Known(found, callers(sources))
     found = _recorded(trees, tests, compiled)

@@ -51,12 +51,8 @@ class Recorded(NamedTuple):
 
     def written(self, stamp: str) -> str:
         """As a file of its own, which holds as long as a stamp does."""
-        number = {
-            one: i
-            for i, one in enumerate(
-                sorted(set(self.seconds).union(*(s for r in self.run.values() for s in r.values())))
-            )
-        }
+        names = set(self.seconds).union(*(which for lines in self.run.values() for which in lines.values()))
+        number = {one: i for i, one in enumerate(sorted(names))}
         run = {
             module: {line: [number[one] for one in which] for line, which in lines.items()}
             for module, lines in self.run.items()
@@ -65,9 +61,13 @@ class Recorded(NamedTuple):
 
 
 def read_recorded(kept: Path, stamp: str) -> Recorded | None:
-    """What a file has kept; nothing where it is of another stamp."""
-    data = json.loads(kept.read_bytes())
-    if data["stamp"] != stamp:
+    """What a file has kept; nothing where it is of another stamp. Raises RuntimeError for a file of something else."""
+    try:
+        data = json.loads(kept.read_bytes())
+        told = data["stamp"]
+    except (ValueError, KeyError, TypeError):
+        raise RuntimeError(f"--recorded: {kept} is no record of lines: give another file, or remove it") from None
+    if told != stamp:
         return None
     run = {
         module: {int(line): {data["names"][i] for i in which} for line, which in lines.items()}

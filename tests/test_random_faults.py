@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.fault_kinds import Fault, drawn, faults_of
 from benchmarks.kernel_callers import callers
-from benchmarks.random_faults import MOST, Known, Met, meeting, met, table
+from benchmarks.random_faults import MOST, Known, Met, _stamp, meeting, met, table
 from benchmarks.reasons import NOTHING, Reason, kept_reasons, key_of
 from benchmarks.recorded_lines import Recorded, read_recorded, recorded
 
@@ -116,6 +116,9 @@ def test_what_was_recorded_is_kept_as_long_as_its_stamp_holds(tmp_path):
     (tmp_path / "kept").write_text(known.written("now"))
     assert read_recorded(tmp_path / "kept", "now") == known
     assert read_recorded(tmp_path / "kept", "then") is None
+    (tmp_path / "other").write_text("# Words\n")
+    with pytest.raises(RuntimeError, match="other is no record of lines: give another file, or remove it"):
+        read_recorded(tmp_path / "other", "now")
     other = Recorded({SLOW_GATE: 3.0}, {"a.py": {5: {SLOW_GATE}}, "b.py": {1: {SLOW_GATE}}})
     both = known.beside(other)
     assert both.run == {
@@ -123,6 +126,17 @@ def test_what_was_recorded_is_kept_as_long_as_its_stamp_holds(tmp_path):
         "b.py": {1: {SLOW_GATE}},
     }
     assert both.seconds == {TEST: 1.25, GATE: 0.1, SLOW_GATE: 3.0}
+
+
+def test_a_record_holds_for_its_sources_gates_and_tests_as_they_are(tmp_path):
+    for name in ("verify/a.py", "verify/scenes/a.toml", "tests/test_a.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("a = 1\n")
+    stamps = {_stamp(tmp_path, ["tests"]), _stamp(tmp_path, ["tests/waves"])}
+    for name in ("verify/a.py", "verify/scenes/a.toml", "tests/test_a.py"):
+        (tmp_path / name).write_text("a = 2\n")
+        stamps.add(_stamp(tmp_path, ["tests"]))
+    assert len(stamps) == 5
 
 
 def test_a_kernel_is_reached_from_the_lines_of_python_that_call_those_above_it():

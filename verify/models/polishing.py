@@ -59,7 +59,7 @@ def told_apart(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
 def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
     """Slow motions and what stands after them, and their strains, stepped until values of the slow no longer change.
 
-    Raises InputError where they still do.
+    Raises InputError where they still do, and where one is less than rounding tells.
     """
     pencil, last, change = inverse.pencil, np.zeros(0), inf
     for _ in range(_STEPS):

@@ -76,7 +76,7 @@ def arranged_error(n: float) -> float:
     """
     forces, beam = FORCES[:1], replace(STRIP, loss_factor=0.02)
     pairs = list[tuple[Any, Any]]()
-    for model, theory in product(MODELS, THEORIES):
+    for model, theory in product(MODELS.built_in, THEORIES):
         own = MODELS[model]
         sized: int | None = int(n) if own.sized else None
         field = own.solve_harmonic(beam, forces, HERTZ, sized, theory=theory)

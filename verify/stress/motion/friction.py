@@ -164,7 +164,7 @@ def span_error(static: float) -> float:
 
     worst = 0.0
     for r, a0, a1, stuck in product(
-        (0.0, 0.061, 0.3, -0.17), (-4.1, -0.5, 0.3, 5.2), (-6.3, -1.2, -0.4, 1.1, 8.1), (0, 1)
+        (0.0, 0.061, 0.3, 1.0, -0.17), (-4.1, -0.5, 0.3, 5.2), (-6.3, -1.2, -0.4, 1.1, 8.1), (0, 1)
     ):
         given = (0.0 if stuck else r, a0, a1)
         used, end, holds, kind = coulomb_span(*given, SLIDING, static, SPAN, bool(stuck))
