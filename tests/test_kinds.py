@@ -423,6 +423,8 @@ def test_a_guest_that_cannot_answer_takes_no_answer_of_ours_away(toys, capsys):
     assert "does not reach it" in told["left_out"]["sine"]
     assert status_of(["choose", "--mode", "5", "--error", "1%"]) == 0
     assert "sine is left out" in " ".join(capsys.readouterr().out.split())
+    assert status_of(["choose", "steel-cantilever", "--mode", "1", "--error", "90%", "--json"]) == 0
+    assert "its sines fit pinned ends alone" in json.loads(capsys.readouterr().out)["left_out"]["sine"]
     assert status_of(["table", "steel-cantilever", "--counts", "20,30", "--modes", "2", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
     assert "sine_error" not in rows[0]

@@ -111,6 +111,7 @@ DEVICES = (
     Device(position=0.39, rotational=1.9, rotary_inertia=2e-5, rotational_dashpot=7e-3, dashpot=0.9),
     Device(position=0.52, dashpot=1.1, amplitude=0.8, phase_deg=130.0),
 )
+STOP = Device(position=0.33, stiffness=1e16)
 DEVICED = replace(
     PLAIN,
     loss_factor=0.004,
@@ -121,22 +122,29 @@ DEVICED = replace(
 
 
 def devices_error(hertz: float) -> float:
-    """Of the exact field with devices that resist deflection and turning, and of the powers they take."""
+    """Of the exact field with devices that resist deflection and turning, and of the powers they take.
+
+    Once more with one of them so stiff that it is a support: whatever it is beside the others, nothing resonates.
+    """
+    return largest(_devices_error(devices, hertz) for devices in (DEVICES, (*DEVICES, STOP)))
+
+
+def _devices_error(devices: tuple[Device, ...], hertz: float) -> float:
     from verify.exact.harmonic import solve_harmonic
     from verify.waves.devices import field_with_devices, powers
 
     omega = 2.0 * pi * hertz
-    resists = {one.position: _resists(one, omega) for one in DEVICES}
+    resists = {one.position: _resists(one, omega) for one in devices}
     own = PointForce(position=0.52, amplitude=0.8, phase_deg=130.0)
     stops = [*PLACES.tolist(), *resists, *(force.position for force in FORCES)]
     states = States(DEVICED, "euler-bernoulli", omega**2, stops, resists)
     under = states.under((*FORCES, own))
     exact = np.array([states.read(under, x, 0) for x in PLACES.tolist()])
-    field = field_with_devices(solve_harmonic, DEVICED, FORCES, hertz, DEVICES)
+    field = field_with_devices(solve_harmonic, DEVICED, FORCES, hertz, devices)
     worst = float(abs(field.shapes(PLACES, 0) - exact).max() / abs(exact).max())
     moved = {at: abs(states.read(under, at, 0)) ** 2 for at in resists}
-    taken = {at: -0.5 * omega * resists[at][0].imag * square for at, square in moved.items() if resists[at][0]}
-    pulls = [force for force in field.forces if force.position in resists and force != own]
+    taken = {at: -0.5 * omega * resists[at][0].imag * square for at, square in moved.items() if resists[at][0].imag}
+    pulls = [force for force in field.forces if force.position in taken and force != own]
     found = powers(field, pulls)
     return largest(worst, *(abs(value / taken[at.position] - 1.0) for at, value in zip(pulls, found, strict=True)))
 
