@@ -6,6 +6,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 SWAPPED: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,
@@ -45,7 +46,9 @@ class Fault:
     line: int
     last_line: int
     function: str
-    """Dotted; empty in the module itself, which runs when it is imported."""
+    """Dotted; that of a class in its body; empty in the module itself."""
+    at_import: bool
+    """Whether it runs when its module is imported: outside functions, and in what their arguments are by default."""
     in_kernel: bool
     old: str
     new: str
@@ -136,28 +139,44 @@ def _found(node: ast.AST) -> Iterator[tuple[str, ast.AST, str]]:
             yield kind, node, new
 
 
-def _walked(node: ast.AST, function: str, in_kernel: bool) -> Iterator[tuple[str, ast.AST, str, str, bool]]:
+class _Place(NamedTuple):
+    """Where a node stands."""
+
+    function: str = ""
+    at_import: bool = True
+    in_kernel: bool = False
+
+
+def _walked(node: ast.AST, place: _Place) -> Iterator[tuple[str, ast.AST, str, _Place]]:
     """All of a tree, but for what does not run or is words: imports, annotations, docstrings, messages."""
     if isinstance(node, ast.Import | ast.ImportFrom | ast.JoinedStr | ast.arg):
         return
     if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
         return
+    inside, defaults = list[ast.AST](ast.iter_child_nodes(node)), list[ast.AST]()
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
-        function = f"{function}.{node.name}".strip(".")
-        in_kernel = in_kernel or any(COMPILED.match(ast.unparse(one)) for one in node.decorator_list)
-        inside: list[ast.AST] = list(node.body)
-        if isinstance(node, ast.FunctionDef):
-            inside[:0] = [one for one in (*node.args.defaults, *node.args.kw_defaults) if one]
+        place = _within(node, place)
+        inside = list(node.body)
+    if isinstance(node, ast.FunctionDef):
+        defaults = [one for one in (*node.args.defaults, *node.args.kw_defaults) if one]
     elif isinstance(node, ast.AnnAssign):
         inside = [node.value] if node.value else []
     elif isinstance(node, ast.Raise) or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
         inside = []
-    else:
-        inside = list(ast.iter_child_nodes(node))
-    for kind, place, new in _found(node):
-        yield kind, place, new, function, in_kernel
+    for kind, replaced, new in _found(node):
+        yield kind, replaced, new, place
+    for one in defaults:
+        yield from _walked(one, place)
+    if isinstance(node, ast.FunctionDef):
+        place = place._replace(at_import=False)
     for one in inside:
-        yield from _walked(one, function, in_kernel)
+        yield from _walked(one, place)
+
+
+def _within(node: ast.FunctionDef | ast.ClassDef, place: _Place) -> _Place:
+    """That of its defaults or its body's first level."""
+    kernel = any(COMPILED.match(ast.unparse(one)) for one in node.decorator_list)
+    return _Place(f"{place.function}.{node.name}".strip("."), place.at_import, place.in_kernel or kernel)
 
 
 def faults_of(source: bytes) -> list[Fault]:
@@ -166,13 +185,13 @@ def faults_of(source: bytes) -> list[Fault]:
     for line in source.splitlines(keepends=True):
         begins.append(begins[-1] + len(line))
     found: list[Fault] = []
-    for kind, node, new, function, in_kernel in _walked(ast.parse(source), "", False):
+    for kind, node, new, place in _walked(ast.parse(source), _Place()):
         assert isinstance(node, ast.expr | ast.stmt)
         assert node.end_lineno is not None
         assert node.end_col_offset is not None
         start, end = begins[node.lineno - 1] + node.col_offset, begins[node.end_lineno - 1] + node.end_col_offset
         old = source[start:end].decode()
-        fault = Fault(kind, start, end, node.lineno, node.end_lineno, function, in_kernel, old, new)
+        fault = Fault(kind, start, end, node.lineno, node.end_lineno, *place, old, new)
         if old != new:
             found.append(fault)
     return found

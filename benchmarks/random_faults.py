@@ -61,10 +61,10 @@ class Known(NamedTuple):
 
 
 def _runs(module: str, fault: Fault, known: Known) -> set[str]:
-    """What runs the lines of a fault: in a kernel, what runs the lines from which it is called."""
+    """What runs the lines of a fault: in a kernel, where it is called; at import, the module."""
     if fault.in_kernel:
         return known.recorded.running(known.callers.get((module, fault.function.split(".")[0]), ()))
-    lines = range(fault.line, fault.last_line + 1) if fault.function else (0,)
+    lines = (0,) if fault.at_import else range(fault.line, fault.last_line + 1)
     return known.recorded.running((module, line) for line in lines)
 
 

@@ -205,7 +205,7 @@ def test_what_a_force_there_does_here_a_force_here_does_there(made, model, one, 
     """
     (beam, theory), (solve, size) = made, FIELDS[model]
     if model == "segments":
-        beam, one, other = replace(beam, section=()), round(one * 40) / 40, round(other * 40) / 40
+        beam, one, other = without_steps(beam), round(one * 40) / 40, round(other * 40) / 40
     rules = {"load": "lever", "reading": "raw"} if model == "segments" else {}
     fields = [
         solve(replace(beam, loss_factor=0.07), (PointForce(position=a * L),), hertz, *size, theory=theory, **rules)
@@ -213,6 +213,12 @@ def test_what_a_force_there_does_here_a_force_here_does_there(made, model, one, 
     ]
     (own, there), (here, others) = (field.deflection([one * L, other * L]) for field in fields)
     assert abs(here - there) < 1e-9 * max(abs(own), abs(others))
+
+
+def without_steps(beam):
+    """Of one section, and as near to buckling as it was."""
+    uniform = replace(beam, section=(), tension=max(beam.tension, 0.0))
+    return replace(uniform, tension=-0.6 * buckling_load(uniform)) if beam.tension < 0 else uniform
 
 
 EIGHTHS = st.integers(1, 7).map(lambda k: k / 8)

@@ -75,6 +75,19 @@ def test_a_fault_knows_its_function_and_whether_it_is_compiled():
     assert set(where) == {("", False), ("lift", False), ("press", True)}
 
 
+def test_a_class_and_the_defaults_of_a_function_run_when_their_module_is_imported():
+    source = b"class Cell:\n    nodes = 2\n    def size(self, scale=3.5):\n        return 7 * scale\n"
+    assert {(fault.old, fault.function, fault.at_import) for fault in faults_of(source)} == {
+        ("2", "Cell", True),
+        ("3.5", "Cell.size", True),
+        ("7", "Cell.size", False),
+        ("7 * scale", "Cell.size", False),
+    }
+    nodes = next(fault for fault in faults_of(source) if fault.old == "2")
+    known = Known(Recorded({GATE: 0.5, TEST: 2.0}, {"cell.py": {2: {GATE}, 4: {TEST}}}), {})
+    assert meeting("cell.py", nodes, known) == ([GATE], [TEST])
+
+
 @pytest.mark.parametrize("kernels", [False, True])
 def test_a_seed_draws_the_same_faults_of_the_asked_kind_one_a_line(kernels):
     sources = {"verify/a.py": SOURCE, "verify/b.py": SOURCE.replace(b"0.25", b"0.5")}

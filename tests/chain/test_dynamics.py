@@ -8,9 +8,12 @@ import pytest
 from chain_reference import by_multipliers, by_partitioning, elastica_tip
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from interpreted import interpreted
+from mpmath import mp
 from scipy.special import jn_zeros
 
 from verify.beam import Beam, PointForce
+from verify.chain import recursion_kernels
 from verify.chain.dynamics import (
     accelerations,
     at_rest,
@@ -120,6 +123,15 @@ def test_the_recursion_holds_for_any_chain(seed, n, roller, axial):
     state = some_state(system, seed)
     expected = by_multipliers(system, state.time, state.angles, state.rates)
     assert abs(accelerations(system, state) - expected).max() <= 1e-9 * abs(expected).max()
+
+
+def test_cosine_and_sine_of_an_angle_are_right_to_rounding_on_both_sides_of_where_series_end():
+    angles = np.concatenate([np.linspace(0.37, 0.5, 500, endpoint=False), np.linspace(0.5, 0.6, 100)])
+    direction = interpreted(recursion_kernels, "direction")
+    for angle in (*angles, *-angles, *np.geomspace(1e-9, 0.37, 200)):
+        cosine, sine = direction(angle)
+        assert abs(cosine - float(mp.cos(angle))) <= 1.2e-16
+        assert abs(sine - float(mp.sin(angle))) <= 6e-17
 
 
 def test_an_evaluation_costs_in_proportion_to_the_links():

@@ -189,6 +189,10 @@ def test_a_beam_that_is_refused_is_named_by_its_index():
             module.sweep_modes([BEAM, crushed], 3, *size)
         with pytest.raises(InputError, match="beams is empty"):
             module.sweep_modes([], 3, *size)
+        with pytest.raises(
+            InputError, match=r"^beams: 3 beams of 20000000 numbers each are more than 5e\+07: give fewer"
+        ):
+            module.sweep_modes([BEAM] * 3, 20_000_000, *size)
         if model != "analytic":
             with pytest.raises(InputError, match=r"beams\[0\]: n_modes = 300"):
                 module.sweep_modes([BEAM], 300, *size)

@@ -1,9 +1,9 @@
 """A light slider that friction grips hard: caught in a small part of a step, it goes on with the surface."""
 
-from types import FunctionType
-
 import numpy as np
 import pytest
+from interpreted import interpreted
+from mpmath import mp
 
 from verify.beam import Beam, PointForce
 from verify.fem_beam import solve_harmonic
@@ -59,15 +59,6 @@ def test_how_hard_friction_grips_needs_no_finer_step(law, mass, within):
     assert coarse.travelled == pytest.approx(fine.travelled, abs=within * abs(fine.travelled).max())
 
 
-def interpreted(module, name):
-    """A kernel as Python runs it, with the parts that it calls: nothing is compiled for it."""
-    known = dict(vars(module))
-    for one, kernel in vars(module).items():
-        if hasattr(kernel, "py_func"):
-            known[one] = FunctionType(kernel.py_func.__code__, known)
-    return known[name]
-
-
 def way_by_small_steps(rho, alpha, tau, n=3000):
     """The integral of rho over tau under rho' = -(tanh rho + alpha), by Runge and Kutta's rule; all (draws,)."""
     moved, h = np.zeros_like(rho), tau / n
@@ -94,3 +85,29 @@ def test_a_surface_that_accelerates_as_friction_does_leaves_the_slider_by_as_muc
     ]
     found = side * slope * slope * b * np.array([way(*one, change(*one)) for one in given])
     assert abs((found - expected) / (tau * np.maximum(abs(rho), abs(last)))).max() < within
+
+
+def integral(of, end):
+    return float(mp.quad(of, mp.linspace(0, mp.mpf(end), 9)))
+
+
+@pytest.mark.parametrize("end", [-0.693, -0.41, -0.08, 1e-4, 0.13, 0.37, 0.55, 0.693])
+def test_bernoullis_numbers_give_the_integral_of_planck_to_rounding(end):
+    exact = integral(lambda u: u / mp.expm1(u) if u else mp.mpf(1), end)
+    assert abs(interpreted(way_kernels, "_planck")(end) / exact - 1.0) < 1e-15
+
+
+@pytest.mark.parametrize("end", [1e-6, 0.21, 0.344, 0.346, 0.9, 4.3, 37.0])
+def test_a_slider_that_comes_to_rest_and_one_that_is_swept_have_ways_to_rounding(end):
+    """On either side of 2 eta = 0.69, where the one parts; of the other, which cancels near nought, in all its size."""
+    coth, tanh = interpreted(way_kernels, "_by_coth"), interpreted(way_kernels, "_by_tanh")
+    assert coth(end) == pytest.approx(integral(lambda x: x * mp.coth(x) if x else mp.mpf(1), end), rel=2e-15)
+    for side in (-1.0, 1.0):
+        exact = side * integral(lambda x: x * mp.tanh(x), end)
+        assert tanh(side * end) == pytest.approx(exact, rel=1e-15, abs=3e-16)
+
+
+@pytest.mark.parametrize(("start", "end"), [(-0.7, 2.1), (0.02, 0.03), (-31.0, 44.0), (800.0, -1100.0)])
+def test_the_logarithm_of_cosh_changes_without_overflow(start, end):
+    exact = float(mp.log(mp.cosh(start)) - mp.log(mp.cosh(end)))
+    assert interpreted(way_kernels, "_ln_cosh_change")(start, end) == pytest.approx(exact, rel=1e-15, abs=2e-16)

@@ -1,6 +1,7 @@
 """Devices and displacements where the bare beam resonates: every model beside its own equations in 40 digits."""
 
-from functools import cache
+import re
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -244,6 +245,22 @@ def test_a_node_of_the_resonance_is_refused_for_devices_and_displacements(model)
             driven_field(lambda acting, f: solve(STRIP, acting, f), nothing, hertz, "displacement")
     with pytest.raises(ResonanceError, match=f"mode 7 of the {model} model"):
         field_with_devices(solve, STRIP, [], hertz, [Device(position=0.03, amplitude=1.0)])
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("part", [4e-10, -3e-10])
+def test_the_frequency_at_which_a_held_beam_resonates_is_told(model, part):
+    """At a node of a mode, where holding changes nothing and a force excites all, and at a place of no mode's node."""
+    place, system = 3 * STRIP.length / 14, MODELS[model][0]
+    around = 1.001 * resonance(model, 1), 0.999 * resonance(model, 2)
+    between = mp.findroot(lambda f: system(f).answer(mpf(place), mpf(place)), around, solver="anderson", tol=1e-40)
+    solve, node = partial(solving(model), STRIP), 2 * STRIP.length / 7
+    for held, hertz in ((node, resonance(model, 7)), (place, float(between))):
+        with pytest.raises(HeldResonanceError) as told:
+            driven_field(solve, [PointForce(position=held)], hertz * (1.0 + part), "displacement")
+        away, at = re.search(r"lies (\S+) \(relative\).* at (\S+) Hz: give", str(told.value)).groups()
+        assert float(away) == pytest.approx(abs(part), rel=0.06)
+        assert float(at) == pytest.approx(hertz, rel=2e-11)
 
 
 def test_a_resonance_that_a_small_mass_moves_is_refused_where_it_lies():

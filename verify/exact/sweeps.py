@@ -84,7 +84,7 @@ def sweep_modes(beams: Iterable[Beam], n_modes: int, theory: str = EULER) -> Arr
     check_whole("n_modes", n_modes, 1)
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
-    check_held(len(beams), n_modes, "beams")
+    check_held(len(beams), n_modes, "beams", "beams")
     check_word("theory", theory, THEORIES)
     slowest = max(beams, key=lambda beam: (not beam.uniform, len(beam.pieces)))
     check_n_modes(slowest, n_modes, theory, 1 if theory == EULER and slowest.uniform else len(beams))

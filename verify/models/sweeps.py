@@ -134,12 +134,11 @@ def swept_frequencies(beam: Beam, forces: Forces, frequencies_hz: Numbers, unkno
     return found
 
 
-def check_held(n_frequencies: int, each: int, field: str) -> None:
-    """Raise InputError for more numbers than are held at once."""
-    if n_frequencies * each > MOST_VALUES:
+def check_held(number: int, each: int, field: str, of: str = "frequencies") -> None:
+    """Raise InputError for more numbers than are held at once: so many `of` a kind, `each` with as many."""
+    if number * each > MOST_VALUES:
         raise InputError(
-            f"{field}: {n_frequencies} frequencies of {each} numbers each are more than {MOST_VALUES:.0e}: give fewer, "
-            "sweep by sweep"
+            f"{field}: {number} {of} of {each} numbers each are more than {MOST_VALUES:.0e}: give fewer, sweep by sweep"
         )
 
 
@@ -219,7 +218,7 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
     check_word("theory", theory, THEORIES)
-    check_held(len(beams), n_modes, "beams")
+    check_held(len(beams), n_modes, "beams", "beams")
     leaders = _leaders(beams, theory)
     lifted = [i for i in set(leaders) if beams[i].foundation and _is_plain(beams[i], theory)]
     groups = _groups(sorted(set(leaders) - set(lifted)), beams, model.layout)

@@ -33,8 +33,9 @@ STIFF = 0.25
 def _planck(w: float) -> float:
     """The integral of u / (e^u - 1) from 0 to w, by Bernoulli's numbers: off by less than 1e-15 for |w| <= ln 2."""
     s = w * w
-    last = 1.0 / 211680.0 - s * (1.0 / 10886400.0 - s / 526901760.0)
-    return float(w * (1.0 - 0.25 * w + s * (1.0 / 36.0 - s * (1.0 / 3600.0 - s * last))))
+    last = 1.0 / 526901760.0 - s * (691.0 / 16999766784000.0 - s / 1120863744000.0)
+    next_last = 1.0 / 211680.0 - s * (1.0 / 10886400.0 - s * last)
+    return float(w * (1.0 - 0.25 * w + s * (1.0 / 36.0 - s * (1.0 / 3600.0 - s * next_last))))
 
 
 @part()
