@@ -7,7 +7,7 @@ import pytest
 from chain_reference import elastica_tip, woinowsky_krieger
 from msgspec.structs import replace
 
-from verify.chain import departure
+from verify.chain import departure, problems
 from verify.errors import InputError
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.run.gates import judge
@@ -32,6 +32,24 @@ def test_a_thousand_times_slower_beam_departs_in_a_thousand_times_the_time():
     scene = replace(CHAIN, beam=beam, drive=drive, axial_inertia=None)
     found = figure("axial_departure", scene, segments=7, force=6.0 * slow**2, time=4e-4 / slow)
     assert found == pytest.approx(figure("axial_departure", segments=7, force=6.0, time=4e-4), rel=1e-6)
+
+
+@pytest.mark.parametrize("tip", ["free", "roller"])
+def test_on_a_shaken_chain_works_all_that_can(monkeypatch, tip):
+    """At speeds of their own, so that no book can take one for another."""
+    shaken, simulate = [], problems.simulate
+    monkeypatch.setattr(
+        problems, "simulate", lambda system, *a, **b: (shaken.append(system), simulate(system, *a, **b))[1]
+    )
+    problems.shaken_imbalance(5, tip, 1e-6)
+    (chain,) = shaken
+    (push,), (shake,), turns = chain.loads, chain.actuators, chain.rotation
+    speeds = [push.frequency_hz, shake.frequency_hz, turns.frequency_hz]
+    assert min(np.diff(sorted([0.0, *speeds]))) > 0.1 * max(speeds)
+    assert all(push.force)
+    assert push.moment * push.at * shake.amplitude * turns.amplitude * turns.rate > 0.0
+    assert (chain.dashpots > 0.0).all()
+    assert (chain.axial_spring > 0.0) == (tip == "roller")
 
 
 ASKED = {

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from interpreted import interpreted
 from mpmath import mp
+from scipy.integrate import solve_ivp
 
 from verify.beam import Beam, PointForce
 from verify.fem_beam import solve_harmonic
@@ -111,3 +112,22 @@ def test_a_slider_that_comes_to_rest_and_one_that_is_swept_have_ways_to_rounding
 def test_the_logarithm_of_cosh_changes_without_overflow(start, end):
     exact = float(mp.log(mp.cosh(start)) - mp.log(mp.cosh(end)))
     assert interpreted(way_kernels, "_ln_cosh_change")(start, end) == pytest.approx(exact, rel=1e-15, abs=2e-16)
+
+
+@pytest.mark.parametrize("alpha", [0.0, 0.1, 0.7, 1.0, 3.3, 900.0])
+def test_what_friction_adds_in_a_short_time_is_off_by_less_than_it_says(alpha):
+    """At its longest, against eight parts of it by steps of order 8; the worst draw of this rule comes near the bound."""
+    brief, tau, worst = interpreted(friction_kernels, "_brief_change"), 0.00999 / (1.0 + alpha), 0.0
+    for rho in (-15.0, -2.1, -0.45, 0.02, 0.45, 1.3):
+        moved = solve_ivp(
+            lambda t, y: [-np.tanh(y[0]) - alpha, -np.tanh(y[0])],
+            (0.0, tau),
+            [rho, 0.0],
+            method="DOP853",
+            rtol=1e-13,
+            atol=1e-18,
+            max_step=tau / 8,
+        )
+        worst = max(worst, abs(brief(rho, alpha, tau) - moved.y[1, -1]) / tau)
+    assert worst < 3e-11
+    assert alpha > 0.0 or worst > 2e-11

@@ -56,7 +56,7 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
 
 @part()
 def _brief_change(rho: float, alpha: float, tau: float) -> float:
-    """What friction adds to rho in a short tau: four stages, off by less than 1e-11 of it, where logarithms cancel."""
+    """What friction adds to rho in a short tau, in which logarithms cancel: four stages, off by less than 3e-11 tau."""
     first = np.tanh(rho)
     second = np.tanh(rho - 0.5 * tau * (first + alpha))
     third = np.tanh(rho - 0.5 * tau * (second + alpha))
