@@ -55,6 +55,7 @@ def test_small_waves_carry_a_slider_on_the_nonlinear_chain_as_on_the_linear_one(
     assert found.displacement == pytest.approx(expected.displacement, rel=1e-4)
     assert found.speed[-1] == pytest.approx(expected.speed[-1], rel=1e-4)
     assert found.friction[-1] == pytest.approx(expected.friction[-1], rel=1e-3)
+    assert (found.statistics.steps, found.statistics.evaluations) == (200, 401)  # both ends of a step and its middle
 
 
 def test_the_shortening_of_the_chain_is_felt_in_proportion_to_the_force(paper_beam):

@@ -570,3 +570,15 @@ def test_a_constant_end_moment_bends_a_damped_cantilever_to_its_equilibrium():
     system = replace(system, loads=(LinkLoad(link=5, at=0.0, moment=0.5),))
     motion = simulate(system, at_rest(system), [8.0], tolerance=1e-6)
     assert motion.angles[0] == pytest.approx(solve_static(system).angles, abs=1e-5)
+
+
+@pytest.mark.parametrize("step", [2e-4, 1e-3])
+def test_a_roller_that_goes_far_is_on_its_line_to_rounding_whatever_the_step(step):
+    """Links turn by 0.8 rad: Newton's method goes on until nothing is left, from above and below the line."""
+    system = build_system(beam(), 9, [PointForce(position=0.1, amplitude=0.3)], 60.0)
+    start, _ = project(system, ChainState(np.r_[0.9, np.full(8, -0.21)], np.zeros(9)))
+    moved = simulate_modal(modal_basis(system), start, np.linspace(0.0, 0.02, 21), step=step)
+    heights = np.sin(np.cumsum(moved.angles, axis=1)) @ system.lengths
+    assert moved.statistics.finished
+    assert np.ptp(moved.angles[:, 0]) > 0.5
+    assert abs(heights).max() < 1e-14

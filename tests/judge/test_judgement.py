@@ -181,6 +181,15 @@ def test_a_mode_seen_at_its_own_nodes_alone_has_no_error(titanium_strip, parts):
     assert 1e-4 < Workbench(titanium_strip).shape_error("fem", parts + 1, parts) < 0.3
 
 
+@pytest.mark.parametrize("size", [1e-6, 1e4])
+def test_a_mode_seen_at_its_own_nodes_alone_has_no_error_whatever_the_beam_weighs(titanium_strip, size):
+    """Deflections of unit modal mass go by the root of the mass: 1e9 m of a speck, 1e-6 m of a bridge."""
+    sizes = {name: size * getattr(titanium_strip, name) for name in ("length", "width", "thickness")}
+    with pytest.raises(NoFigureError, match="at rest at every node"):
+        Workbench(replace(titanium_strip, **sizes)).shape_error("fem", 3, 3)
+    assert 1e-4 < Workbench(replace(titanium_strip, **sizes)).shape_error("fem", 4, 3) < 0.3
+
+
 def test_a_shape_that_a_heavy_body_keeps_small_is_not_taken_for_rest(titanium_strip):
     heavy = replace(titanium_strip, mass=(PointMass(position=0.3 * titanium_strip.length, mass=1e12),))
     assert Workbench(heavy).shape_error("fem", 10, 1) < 1e-3
