@@ -1,4 +1,4 @@
-"""What is said of a run's own time: more than nothing, and no more than the clock saw around it."""
+"""What is said of a run's own cost: its steps, what each of them asks, and no more time than the clock saw around it."""
 
 import os
 import subprocess
@@ -62,6 +62,34 @@ def test_setting_up_and_running_take_no_longer_than_the_clock_saw(kind):
     seen = perf_counter() - began
     assert min(found.set_up_s, found.wall_s) > 0.0
     assert found.set_up_s + found.wall_s < seen
+
+
+EACH = {
+    "steps of a chain": (300, 4, 0),
+    "kicks": (30, 2 * 2, 0),
+    "stretching links": (600, 4, 0),
+    "a slider on a chain": (300, 2, 1),
+    "a beam": (0, 0, 5),
+    "a slider": (176, 2, 1),
+    "a slider that is felt": (352, 2, 1),
+}
+"""Steps, evaluations in each, and beside them: Runge and Kutta's stages, two to a kick, both halves of a contact's step."""
+
+
+@pytest.mark.parametrize("kind", EACH)
+def test_a_run_says_how_many_steps_it_took_how_long_they_were_and_what_they_asked(kind):
+    (steps, each, beside), found = EACH[kind], RUNS[kind]()
+    told = found.statistics
+    assert (told.steps, told.evaluations) == (steps, steps * each + beside)
+    assert told.step_s * steps == pytest.approx(found.times[-1] if steps else 0.0, rel=1e-12)
+    assert told.stopped == "end"
+
+
+def test_steps_that_were_taken_once_more_are_counted_among_evaluations():
+    """Dormand and Prince: six in each, the seventh is the next one's first."""
+    told = simulate(chain(), at_rest(chain()), TIMES, tolerance=1e-9).statistics
+    assert told.rejected > 0
+    assert told.evaluations == 6 * (told.steps + told.rejected)
 
 
 def test_a_linear_chain_takes_no_longer_than_the_clock_saw():

@@ -15,7 +15,7 @@ from verify.models.catalogue import MODELS
 from verify.section import Section
 from verify.segments import carried, loaded
 from verify.segments.assembly import build_chain, chain_pencil
-from verify.segments.attached import felt_at
+from verify.segments.attached import felt_at, mended
 from verify.segments.buckling import buckling_load
 from verify.segments.linear import n_elastic, solve_modes, unknowns
 
@@ -190,6 +190,19 @@ def test_bodies_are_felt_together_where_each_is_alone(rule, steps):
     for p, place in enumerate(places):
         for found, alone in zip(together, felt_at(chain, [place], rule), strict=True):
             assert found[p] == pytest.approx(alone[0], rel=1e-13, abs=1e-15)
+
+
+@pytest.mark.parametrize("s", [0.0, 0.3, 1.0])
+@pytest.mark.parametrize("link", [0, 7, 21, 39])
+def test_a_place_on_a_long_chain_is_felt_by_eight_joints_and_the_links_between_them_alone(link, s):
+    """Exactly: not a rounding is left of a sum that is nought."""
+    for supports in (("clamped", "free"), ("pinned", "guided"), ("free", "pinned")):
+        deflections, turns = (one[0] for one in mended(supports, 40, np.array([link]), np.array([s])))
+        for felt, most in ((deflections, 8), (turns, 7)):
+            there = np.flatnonzero(felt)
+            assert len(there) <= most
+            assert len(there) == 0 or np.ptp(there) < most
+        assert np.flatnonzero(deflections).size > 0
 
 
 def test_a_mirrored_beam_with_everything_on_it_has_the_same_frequencies():

@@ -119,8 +119,8 @@ def mended(supports: tuple[str, str], n: int, links: Indices, s: Array) -> tuple
     # a slope's weights add up to nothing, for which joints that a support holds give what is missing
     turning[places[:, 0], np.where(2 * first[:, 0] < n, 0, n)] -= turning.sum(axis=1)
     turns = -np.cumsum(turning, axis=1)[:, :-1]
-    link, begin = np.arange(n), np.maximum(first, 0)
-    turns[(link < begin) | (link >= begin + at[:, 3:] - first + 3)] = 0.0  # but for the rounding of the sum
+    link = np.arange(n)
+    turns[(link < first) | (link > at[:, 3:] + 1)] = 0.0  # but for the rounding of the sum
     for end, support in zip((0, n), supports, strict=True):
         if support == "free" and (there := links + s == end).any():
             deflections[there], turns[there] = np.eye(n + 1)[end], np.eye(n)[min(end, n - 1)]
