@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from scipy.sparse import csc_array
 
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
@@ -17,6 +18,7 @@ from verify.errors import InputError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
 from verify.models import eigen
+from verify.models.pencil import factorised
 from verify.segments import linear as segment_model
 from verify.segments import links as chain_of_links
 
@@ -292,8 +294,10 @@ def test_a_band_answers_as_sparse_factors_do(titanium_strip, n):
 
 def test_a_singular_system_is_one_sentence(titanium_strip):
     free = replace(titanium_strip, supports=("free", "free"))
-    with pytest.raises(InputError, match="singular to rounding"):
+    with pytest.raises(InputError, match="singular to rounding: choose another frequency_hz or count"):
         fem_beam.solve_harmonic(free, [PointForce(position=0.1)], 1e-300, 20)
+    with pytest.raises(InputError, match="singular to rounding: hold the beam better or choose another count"):
+        factorised(csc_array(np.ones((3, 3))))  # where modes are asked for, no frequency was given
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="peak memory is read from /proc")

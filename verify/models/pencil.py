@@ -177,15 +177,18 @@ def _grounds(rigid: Array) -> list[int]:
     return grounds
 
 
-def factorised(matrix: Any) -> Any:
-    """The sparse LU factors of a matrix. Raises InputError where memory does not suffice or the matrix is singular."""
+def factorised(matrix: Any, remedy: str = "hold the beam better or choose another count") -> Any:
+    """The sparse LU factors of a matrix.
+
+    Raises InputError where memory does not suffice, and with a remedy where the matrix is singular.
+    """
     from scipy.sparse.linalg import splu
 
     try:
         return splu(matrix)
     except (MemoryError, RuntimeError) as error:
         if "singular" in str(error):
-            raise InputError("the system is singular to rounding: choose another frequency_hz or count") from None
+            raise InputError(f"the system is singular to rounding: {remedy}") from None
         raise too_large(matrix.shape[0]) from None
 
 

@@ -103,7 +103,7 @@ def _by_sparse_factors(
     mixed = bordered(diagonal, pencil.strain_matrix(), -omega2 * unit * csc_array(pencil.mass_matrix()))
     right = np.zeros((len(scales) + pencil.n, loads.shape[1]), dtype=complex)
     right[len(scales) :] = loads
-    factor = factorised(mixed.astype(complex))
+    factor = factorised(mixed.astype(complex), "choose another frequency_hz or count")
     return _SparseAnswer(factor=factor, scales=scales, found=factor.solve(right), unit=unit)
 
 
