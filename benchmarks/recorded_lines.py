@@ -1,7 +1,7 @@
 """Which gate or test runs which line of the suite, and how long each takes.
 
 Inside pytest this module is a plugin: `pytest -p benchmarks.recorded_lines` under `coverage run` names the lines after
-the test that runs them. Outside, `recorded` runs it and reads what it left.
+the test that runs them, also in processes that the test starts. Outside, `recorded` runs it and reads what it left.
 """
 
 import json
@@ -19,6 +19,20 @@ import pytest
 COMPILER = "verify.models.kernels"
 TOLD = "GATES_SECONDS"
 """The variable of the environment that names the file to which times go."""
+ASKER = "GATES_ASKER"
+"""The variable that names the test from which a process of its own is started."""
+HOW = "GATES_HOW"
+"""The variable that names the file of `CHILDREN`."""
+CHILDREN = """\
+[run]
+source = verify
+data_file = {lines}
+parallel = true
+sigterm = true
+patch = _exit
+context = ${{{asker}-}}
+"""
+"""How coverage follows a test into the processes that it starts."""
 ALONE = {"OPENBLAS_NUM_THREADS": "1", "VERIFY_JOBS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
 GIVEN = "PYTEST_ADDOPTS"
 
@@ -86,6 +100,8 @@ def _switch(context: str) -> None:
 
     if (measured := coverage.Coverage.current()) is not None:
         measured.switch_context(context)
+        os.environ[ASKER] = context
+        os.environ["COVERAGE_PROCESS_START"] = os.environ[HOW]
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -148,16 +164,19 @@ def recorded(tree: Path, asked: Iterable[str], compiled: str) -> tuple[Recorded,
     import coverage
 
     with TemporaryDirectory() as folder:
-        lines, told = Path(folder, "lines"), Path(folder, "seconds.json")
-        before = ("coverage", "run", "--source=verify", f"--data-file={lines}", "-m")
-        environment = {TOLD: str(told), "NUMBA_CACHE_DIR": compiled}
+        lines, told, how = Path(folder, "lines"), Path(folder, "seconds.json"), Path(folder, "how")
+        how.write_text(CHILDREN.format(lines=lines, asker=ASKER))
+        before = ("coverage", "run", f"--rcfile={how}", "-m")
+        environment = {TOLD: str(told), "NUMBA_CACHE_DIR": compiled, ASKER: "", HOW: str(how)}
         status, red = run_pytest(tree, ("-p", __name__, *asked), before, **environment)
         if not told.exists():
             raise RuntimeError(f"pytest ends with {status} before any test")
-        data, run = coverage.CoverageData(basename=str(lines)), dict[str, dict[int, set[str]]]()
-        data.read()
+        measured, run = coverage.Coverage(data_file=str(lines), config_file=False), dict[str, dict[int, set[str]]]()
+        measured.combine([folder])
+        data = measured.get_data()
         for file in data.measured_files():
-            contexts = data.contexts_by_lineno(file)
-            run[str(Path(file).relative_to(tree))] = {line: set(which) - {""} for line, which in contexts.items()}
+            if Path(file).is_relative_to(tree):  # a process may be given another copy of the suite
+                contexts = data.contexts_by_lineno(file)
+                run[str(Path(file).relative_to(tree))] = {line: set(which) - {""} for line, which in contexts.items()}
         seconds = {one: took for one, took in json.loads(told.read_text()).items() if one not in red}
         return Recorded(seconds, run), red

@@ -172,12 +172,15 @@ def test_lines_are_recorded_by_the_test_that_runs_them_and_what_is_red_is_told(t
         "from functools import cache\n\n\n@cache\ndef half(x):\n    return 0.5 * x\n"
     )
     (tmp_path / "test_lever.py").write_text(
-        "import pytest\nfrom verify.lever import half\n\n\n@pytest.fixture(scope='module')\ndef shared():\n    return half(5.0)\n\n\n"
-        "def test_red(shared):\n    assert half(3.0) == 1.0\n\n\ndef test_half():\n    assert half(3.0) == 1.5\n"
+        "import subprocess\nimport sys\nimport pytest\nfrom verify.lever import half\n\n\n@pytest.fixture(scope='module')\ndef shared():\n    return half(5.0)\n\n\n"
+        "def test_red(shared):\n    assert half(3.0) == 1.0\n\n\ndef test_half():\n    assert half(3.0) == 1.5\n\n\n"
+        "def test_apart():\n    subprocess.run([sys.executable, '-c', 'from verify.apart import far; far()'], check=True)\n"
     )
+    (tmp_path / "verify" / "apart.py").write_text("def far():\n    return 7\n")
     found, red = recorded(tmp_path, ["test_lever.py"], str(tmp_path / "kept"))
     assert red == ["test_lever.py::test_red"]
-    assert set(found.seconds) == {"test_lever.py::test_half"}
+    assert set(found.seconds) == {"test_lever.py::test_half", "test_lever.py::test_apart"}
+    assert found.run["verify/apart.py"][2] == {"test_lever.py::test_apart"}
     assert found.run["verify/lever.py"][6] == {"test_lever.py", "test_lever.py::test_red", "test_lever.py::test_half"}
 
 
