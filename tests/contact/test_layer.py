@@ -1,5 +1,6 @@
 """A slider on a driving layer: sums over the contact, step by step, beside the closed forms."""
 
+from itertools import pairwise
 from math import cos, pi, sin
 
 import mpmath as mp
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.contact.layer import efficiency, force, half_space_force, no_load_speed
+from verify.contact.layer import _even_at, efficiency, force, half_space_force, no_load_speed
 from verify.errors import InputError
 
 ANGLES = st.floats(0.05, 3.0)
@@ -132,3 +133,18 @@ def test_the_layers_force_at_rest_is_all_of_friction_only_while_it_gives_way_lit
     edge = cos(phi) / sin(phi)
     assert force(phi, 0.0, 0.999 * edge) == pytest.approx(1.0, abs=1e-12)
     assert force(phi, 0.0, 1.01 * edge) < 1.0 - 1e-7
+
+
+@given(st.floats(-1.3, 1.3), st.floats(-1.0, 1.0))
+def test_every_place_where_the_layer_runs_evenly_with_the_crest_is_found_in_a_wavelength(r, slope):
+    """Each change of sign of cos s + slope sin s - r on a fine circle lies beside one of them, and each is a zero."""
+
+    def ahead(s):
+        return cos(s) + slope * sin(s) - r
+
+    found = _even_at(r, slope)
+    assert all(abs(ahead(s)) < 1e-7 for s in found)
+    circle = [pi * (k / 500.0 - 1.0) for k in range(1001)]
+    for before, after in pairwise(circle):
+        if ahead(before) * ahead(after) < 0.0:
+            assert any(before - 1e-7 <= s <= after + 1e-7 for s in found)

@@ -192,6 +192,17 @@ def test_bodies_are_felt_together_where_each_is_alone(rule, steps):
             assert found[p] == pytest.approx(alone[0], rel=1e-13, abs=1e-15)
 
 
+@pytest.mark.parametrize("supports", [("pinned", "pinned"), ("clamped", "free"), ("guided", "pinned")])
+def test_two_links_feel_what_stands_on_them_as_rigid_links_do(supports):
+    """Too few to mend: of three on weights are those of a curve through their joints."""
+    carried = replace(STRIP, supports=supports, mass=(PointMass(position=0.3 * L, mass=0.1, rotary_inertia=1e-4),))
+    by_rule = [
+        solve_modes(carried, 1, n, attachment=rule).frequencies_hz for n in (2, 3) for rule in ("reciprocal", "lever")
+    ]
+    assert by_rule[0] == pytest.approx(by_rule[1], rel=1e-12)
+    assert by_rule[2] != pytest.approx(by_rule[3], rel=1e-4)
+
+
 @pytest.mark.parametrize("s", [0.0, 0.3, 1.0])
 @pytest.mark.parametrize("link", [0, 7, 21, 39])
 def test_a_place_on_a_long_chain_is_felt_by_eight_joints_and_the_links_between_them_alone(link, s):
