@@ -1,8 +1,14 @@
 """A slider that sticks to a beam it pushes back on: friction gains no energy from steps that fast modes outrun."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
+from interpreted import interpreted
+from scipy.integrate import quad
 
 from verify.beam import Beam, PointForce
+from verify.motion import friction_kernels, records
 from verify.motion.simulate import simulate
 from verify.slider import Slider
 
@@ -31,6 +37,36 @@ def ride(count=60, duration=8e-3, step=None, **given):
 def words(run):
     """What is said against its step."""
     return [note for note in run.notes if note.startswith("step:") and "give" in note]
+
+
+def held(needed, before, static, kinetic, side):
+    """(mean friction of a step, what the last and this one took) of a slider that stuck on in the last one."""
+    seen, took, dt = np.zeros((3, 8)), np.zeros(16), 3e-4
+    took[records.STICKING], took[records.CHANGE] = 1.0, side * before * dt
+    seen[2, records.SURFACE] = side * needed * dt + 0.7
+    law = SimpleNamespace(mass=2.0, kinetic=kinetic)
+    given = interpreted(friction_kernels, "hold")(0.7, 0.0, static, law, dt, seen, took)
+    return given / dt, took
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(("before", "needed"), [(1.1, 2.6), (1.9, 2.3), (-0.4, 2.1), (0.2, 9.0)])
+def test_a_slider_that_lets_go_is_held_by_the_line_through_two_means_up_to_static_friction_and_then_by_kinetic(
+    before, needed, side
+):
+    """The line through both means, each at the middle of its step; what it had beyond before this step is taken off."""
+    static, kinetic = 2.0, 1.3
+
+    def line(share):
+        return before + (needed - before) * (share + 0.5)
+
+    passes = (static - before) / (needed - before) - 0.5
+    exact = quad(line, 0.0, passes)[0] + (1.0 - passes) * kinetic
+    mean, took = held(needed, before, static, kinetic, side)
+    assert mean == pytest.approx(side * exact, rel=1e-12)
+    assert took[records.FIRST_EVENT] == pytest.approx(passes * 3e-4, rel=1e-12)
+    assert took[records.N_EVENTS] == 1.0
+    assert held(1.99, before, static, kinetic, side)[0] == pytest.approx(side * 1.99, rel=1e-12)
 
 
 def test_a_slider_that_sticks_moves_as_one_the_beam_hardly_feels():

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
+from msgspec.structs import replace
 
 from verify import Beam, PointForce, PointSpring, analytic_modes, fem_beam, segment_model
 from verify.device import Device
@@ -261,6 +262,20 @@ def test_the_frequency_at_which_a_held_beam_resonates_is_told(model, part):
         away, at = re.search(r"lies (\S+) \(relative\).* at (\S+) Hz: give", str(told.value)).groups()
         assert float(away) == pytest.approx(abs(part), rel=0.06)
         assert float(at) == pytest.approx(hertz, rel=2e-11)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("softer", [1e-4, 1e12])
+def test_a_held_resonance_is_refused_of_rubber_as_of_diamond(model, softer):
+    """A thousand metres to the newton, or a nanometre: frequencies go by the root, and nothing else changes."""
+    beam, place, system = replace(STRIP, youngs_modulus=200e9 / softer), 3 * STRIP.length / 14, MODELS[model][0]
+    around = 1.001 * resonance(model, 1), 0.999 * resonance(model, 2)
+    between = mp.findroot(lambda f: system(f).answer(mpf(place), mpf(place)), around, solver="anderson", tol=1e-40)
+    hertz, drive = float(between / mp.sqrt(softer)), [PointForce(position=place)]
+    with pytest.raises(HeldResonanceError, match="from an undamped resonance of the beam held at its actuators"):
+        driven_field(partial(solving(model), beam), drive, hertz, "displacement")
+    beside = driven_field(partial(solving(model), beam), drive, hertz * 1.01, "displacement")
+    assert beside.deflection(place) == pytest.approx(1.0, rel=1e-6)
 
 
 def test_a_resonance_that_a_small_mass_moves_is_refused_where_it_lies():
