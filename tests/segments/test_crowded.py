@@ -10,7 +10,7 @@ from verify.exact import modes as exact_modes
 from verify.segments import crowded, stacks
 from verify.segments.assembly import build_chain
 from verify.segments.attached import felt_at
-from verify.segments.crowded import felt_together
+from verify.segments.crowded import _groups, felt_together
 from verify.segments.linear import solve_modes
 from verify.segments.sweeps import sweep_modes
 
@@ -197,3 +197,18 @@ def test_what_stands_on_a_joint_is_as_near_seen_from_the_other_end(places, count
     assert there == pytest.approx(here, rel=1e-11)
     seen = np.array(places)[:, None]
     assert (crowded.near(seen, count) == crowded.near(count - seen, count)).all()
+
+
+@pytest.mark.parametrize("supports", [("clamped", "free"), ("pinned", "guided"), ("free", "free")])
+def test_bodies_crowd_each_other_and_an_end_alike_from_either_side(supports):
+    """One or two on 40 links, at joints and between, at ends; 25 links in the middle are far from both ends."""
+    n = 40
+    for places in ([k / 4.0] for k in range(4 * n + 1)):
+        mirrored = [n - place for place in places]
+        assert list(_groups(n, supports, places)) == list(_groups(n, supports[::-1], mirrored))
+    for gap in (k / 4.0 for k in range(60)):
+        there, back = [14.25, 14.25 + gap], [n - 14.25, n - 14.25 - gap]
+        one, other = list(_groups(n, supports, there)), list(_groups(n, supports[::-1], back))
+        assert sorted(map(sorted, one)) == sorted(map(sorted, other))
+    alone = [place for place in range(n + 1) if not list(_groups(n, supports, [float(place)]))]
+    assert set(range(15, 26)) <= set(alone)
