@@ -30,7 +30,7 @@ def as_typed(verb: Callable[Given, Found]) -> Callable[Given, Found]:
     What is no Beam where a verb begins with one is refused.
     """
     begins = getattr(verb, "__code__", None)
-    fields = begins.co_varnames[: begins.co_argcount + begins.co_kwonlyargcount] if begins is not None else ()
+    fields = begins.co_varnames[: begins.co_argcount] if begins is not None else ()
     on_beam = fields[:1] == ("beam",)
 
     def settled(field: str, value: Any) -> Any:
