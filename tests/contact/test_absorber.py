@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
@@ -83,11 +83,17 @@ def test_ends_that_are_known_by_heart():
     s=st.floats(0.2, 5.0),
     loss=st.sampled_from([0.0, 0.03, 0.4]),
 )
+@example(hertz=5877.19, d=0.0344, s=4.27, loss=0.4)  # a little one helps, though the least that it leaves lies far out
+@example(hertz=3218.24, d=0.04524, s=4.27, loss=0.4)  # the place held, as by an endless one, is best
+@example(hertz=8047.15, d=0.02574, s=1.3, loss=0.03)
 def test_no_dashpot_alone_leaves_less_than_the_best(hertz, d, s, loss):
     end = ending(replace(STRIP, loss_factor=loss), hertz, d)
     resistance, left = best_dashpot(end)
-    assert reflection(resistance + 0j, end) == pytest.approx(left, rel=1e-9)
-    assert reflection((s * resistance or s) + 0j, end) >= left * (1 - 1e-9)
+    told = min(resistance, 1e12)
+    assert reflection(told + 0j, end) == pytest.approx(left, rel=1e-8)
+    assert all(
+        reflection(one + 0j, end) >= left * (1 - 1e-9) for one in (s * told, s, *np.geomspace(1e-3, 1e9, 40), 0.0)
+    )
     if not loss:
         assert (resistance, left) == pytest.approx((abs(end.own), np.tan(0.5 * abs(np.angle(end.own)))), rel=1e-9)
 

@@ -16,6 +16,8 @@ where Gamma_held = r - i omega A s^2 Z_b is of a place that is held, and Z_m = -
 Without a loss factor Z_m = conj(Z_b) and |Gamma_held| = 1.
 """
 
+from math import inf
+
 import msgspec
 import numpy as np
 
@@ -124,13 +126,19 @@ def best_dashpot(end: Ending) -> tuple[float, float]:
     """(resistance, |Gamma| that it leaves) of the best dashpot alone.
 
     Without a loss factor |Z_b| and tan(|arg Z_b| / 2): over real R, |R - Z_m|^2 / |R + Z_b|^2 is least where
-    Re(Z_m + Z_b) R^2 + (|Z_b|^2 - |Z_m|^2) R = Re(Z_m) |Z_b|^2 + Re(Z_b) |Z_m|^2, or at no dashpot.
+    Re(Z_m + Z_b) R^2 + (|Z_b|^2 - |Z_m|^2) R = Re(Z_m) |Z_b|^2 + Re(Z_b) |Z_m|^2 rises through nought, or at no
+    dashpot, or, with losses, at inf: the stiffer the dashpot the less it leaves, down to what a held place does.
     """
     matched, own = end.matched, end.own
     a, b = (matched + own).real, abs(own) ** 2 - abs(matched) ** 2
     c = matched.real * abs(own) ** 2 + own.real * abs(matched) ** 2
-    best = max(float(-b + np.sqrt(max(b * b + 4.0 * a * c, 0.0))) / (2.0 * a), 0.0) if a > 0.0 else 0.0
-    return best, reflection(complex(best), end)
+    root, best = float(np.sqrt(max(b * b + 4.0 * a * c, 0.0))), 0.0
+    if b >= 0.0 and b + root > 0.0:
+        best = max(2.0 * c / (b + root), 0.0)
+    elif a > 0.0:
+        best = max((root - b) / (2.0 * a), 0.0)
+    found = [(one, reflection(complex(one), end)) for one in (best, 0.0)]
+    return min(*found, (inf, abs(end.held)), key=lambda one: one[1])
 
 
 @as_typed
