@@ -148,6 +148,18 @@ def test_forces_give_what_bending_and_shear_lose_and_waves_carry(model, within, 
     assert abs(power_imbalance(field, measures(field, None))) < within
 
 
+@pytest.mark.parametrize("hertz", [9000.0, 47000.0])
+def test_the_ellipse_of_a_pure_wave_is_as_high_as_its_section_turns(hertz):
+    """By the shear that carries a wave's inertia: psi = (k - rho A omega^2 / (kappa G A k)) w, times h/2."""
+    beam = replace(BAR, length=0.9, loss_factor=0.0, supports=("pinned", "pinned"))
+    forces = (PointForce(position=0.04, amplitude=3.0), PointForce(position=0.86, amplitude=2.0, phase_deg=60.0))
+    field, piece = analytic_modes.solve_harmonic(beam, forces, hertz, theory="timoshenko"), beam.pieces[0]
+    k = field.wavenumber.real
+    turn = k - piece.mass_per_length * (2.0 * np.pi * hertz) ** 2 / (piece.shear_stiffness * k)
+    assert measures(field, None).ideal_axis_ratio == pytest.approx(turn * 0.009, rel=1e-9)
+    assert turn < 0.98 * k
+
+
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "rayleigh", "timoshenko"])
 @pytest.mark.parametrize("turning", ["body", "spring"])
 def test_books_close_where_something_that_turns_stands_before_the_window(theory, turning):
