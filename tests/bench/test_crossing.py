@@ -78,6 +78,14 @@ def test_times_stand_for_nothing_where_errors_do_not_fall_at_their_order(errors,
     assert found.remedy
 
 
+@pytest.mark.parametrize(("orders", "told"), [((4.0, 4.0), "4"), ((2.0, 4.0), "2 to 4"), ((1.0, 1.5), "1 to 1.5")])
+def test_the_orders_that_were_expected_are_told_where_another_is_seen(orders, told):
+    points = [Point(0.1 / 2**i, 0.03 / 64.0**i, 1.0) for i in range(4)]
+    found = converging(points, orders, 1e-12)
+    assert isinstance(found, Unearned)
+    assert found.why == f"errors fall not at order {told} but at 6.00, 6.00, 6.00"
+
+
 def test_coarse_sizes_before_the_order_and_fine_ones_that_are_rounding_are_left_out():
     errors = (0.9, 1.6e-2, 1e-3, 6.25e-5, 1e-13)
     points = [Point(0.1 / 2**i, error, 1.0) for i, error in enumerate(errors)]
