@@ -224,6 +224,18 @@ def test_a_slow_force_is_answered_beside_one_that_moves_nothing(face):
     assert found[1] == pytest.approx(0.9 * 0.5 / held, rel=2e-3)
 
 
+@pytest.mark.parametrize("model", [analytic_modes, fem_beam, segment_model], ids=["exact", "elements", "segments"])
+def test_the_softest_beam_is_told_per_newton_as_a_stiffer_one_is(model):
+    """A newton bends it to slopes of 1e103, which a field of a force is refused for: a receptance is no field."""
+
+    def over_stiffness(stiffness):
+        beam = Beam(length=1e3, bending_stiffness=stiffness, mass_per_length=0.01 * stiffness)
+        size = () if model is analytic_modes else (60,)
+        return stiffness * model.unit_responses(beam, 400.0, [1e-9, 7e-4], [310.0, 900.0], *size)
+
+    assert over_stiffness(1e-97) == pytest.approx(over_stiffness(3.0), rel=1e-9)
+
+
 BEHIND = {"a third": (0.3, 0.3, 0.4), "one part": (0.4, 0.02, 0.58)}
 
 

@@ -17,7 +17,6 @@ from verify.models.fields import (
     RESONANCE,
     HarmonicField,
     check_drive,
-    check_forces,
     phasor,
     refuse_resonance,
     unit_drives,
@@ -328,7 +327,6 @@ def unit_responses(
                 responses[i] = general_responses(beam, positions.tolist(), float(frequency), x, theory)
         return responses
     forces = [PointForce(position=float(position)) for position in positions]
-    check_forces(beam, forces)
     steady = np.full(len(frequencies_hz), True)
     steady[resonant(beam, frequencies_hz)] = False
     for j, force in enumerate(forces):
