@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from verify import Beam, PointForce, PointMass, analytic_modes, segment_model, travelling_wave
-from verify.errors import InputError
-from verify.waves.lumped import TwoModes, local_waves, reflections, standing_wave_ratios
+from verify.errors import InputError, StandingError
+from verify.waves.found import TwoWaves, reflections, standing_wave_ratios
+from verify.waves.lumped import TwoModes, local_swr, local_waves
 
 SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
 STRIP = Beam(**SIZES)
@@ -41,7 +42,7 @@ def test_any_two_modes_of_a_pinned_beam_are_two_sines(modes, ratio, phase, part)
 def test_it_is_right_at_mid_span_of_the_papers_beam_and_wrong_at_a_quarter():
     """REFERENCE-motor, section 2: 1 and 2.414 where the field has 1.056 everywhere."""
     field = analytic_modes.solve_harmonic(PAPER, TWO, 4276.0)
-    everywhere = standing_wave_ratios(*local_waves(field, np.linspace(0.03, 0.47, 45)))
+    everywhere = local_swr(field, np.linspace(0.03, 0.47, 45))
     assert np.ptp(everywhere) < 1e-9
     assert everywhere[0] == pytest.approx(1.0563563, abs=1e-6)
     lumped = TwoModes(beam=PAPER).local_swr([0.25, 0.125, 0.375])
@@ -103,3 +104,18 @@ def test_local_waves_are_read_from_the_exact_field_alone():
         local_waves(segment_model.solve_harmonic(STRIP, [PointForce(position=0.1)], 900.0, n_segments=30), 0.3)
     with pytest.raises(InputError, match="lies off the beam"):
         TwoModes(beam=STRIP).local_swr(0.9)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("short", "ratio"), [(0.0, np.inf), (4e-13, np.inf), (3e-12, 2.0 / 3e-12), (0.75, 5.0 / 3.0)])
+def test_waves_that_are_alike_to_rounding_stand(short, ratio):
+    """Read of a window, along a beam and over a map by one rule: a ratio of 1e13 would be rounding's."""
+    ahead, back = (1.0 - short) * np.exp(0.4j), 1j + 0.0
+    assert standing_wave_ratios(reflections(ahead, back)) == pytest.approx(ratio, rel=1e-3)
+    waves = TwoWaves(wavenumber=31.0 + 0j, forward=ahead, backward=back, residual=0.0)
+    assert waves.standing_wave_ratio == pytest.approx(ratio, rel=1e-3)
+    if ratio == np.inf:
+        with pytest.raises(StandingError, match="carries no power"):
+            waves.check_travelling()
+    else:
+        waves.check_travelling()

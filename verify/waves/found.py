@@ -1,11 +1,25 @@
 """What is found of a wave: the two waves in a window, and all measures of them (`waves.measures` finds them)."""
 
+import numpy as np
+
 from verify.errors import StandingError
 from verify.field_docs import Value
-from verify.models.arrays import Array
+from verify.models.arrays import Array, ComplexArray
 
 STANDING = 1e-12
 """A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
+
+
+def reflections(forward: ComplexArray, backward: ComplexArray) -> Array:
+    """Gamma of amplitudes of one shape: the weaker over the stronger; 1 where nothing moves."""
+    sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
+    return np.asarray(sizes[0] / np.where(sizes[1] > 0.0, sizes[1], 1.0) + (sizes[1] == 0.0))
+
+
+def standing_wave_ratios(gammas: Array) -> Array:
+    """(1 + Gamma) / (1 - Gamma) of reflections of any shape, infinite from 1 - `STANDING` on."""
+    travels = gammas < 1.0 - STANDING
+    return np.where(travels, (1.0 + gammas) / np.where(travels, 1.0 - gammas, 1.0), np.inf)
 
 
 class TwoWaves(Value, frozen=True, eq=False, kw_only=True):
@@ -34,8 +48,7 @@ class TwoWaves(Value, frozen=True, eq=False, kw_only=True):
     @property
     def standing_wave_ratio(self) -> float:
         """(1 + Gamma) / (1 - Gamma), 1 for a pure travelling wave, infinite for a standing one."""
-        gamma = self.reflection
-        return (1.0 + gamma) / (1.0 - gamma) if gamma < 1.0 - STANDING else float("inf")
+        return float(standing_wave_ratios(np.asarray(self.reflection)))
 
     def check_travelling(self) -> None:
         """Raise StandingError where the wave stands: flux and signed area are then zero but for rounding."""

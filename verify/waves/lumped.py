@@ -23,7 +23,7 @@ from verify.errors import InputError
 from verify.exact.modes import exact_frequency_hz, mode_shape
 from verify.models.fields import HarmonicField
 from verify.models.places import Numbers, in_a_row, places
-from verify.waves.found import STANDING
+from verify.waves.found import reflections, standing_wave_ratios
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -64,7 +64,7 @@ class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
 
     def local_swr(self, x: Numbers) -> "Array":
         """Local standing-wave ratio at x, (n,), infinite where the wave stands."""
-        return standing_wave_ratios(*self.local_waves(x))
+        return standing_wave_ratios(reflections(*self.local_waves(x)))
 
     def wavenumber(self, mode: int) -> float:
         """Of one of its modes, which lose nothing, 1/m."""
@@ -101,14 +101,6 @@ def local_waves(field: HarmonicField, x: Numbers) -> "tuple[ComplexArray, Comple
     return _waves_of(field.shapes, field.wavenumber, in_a_row("x", x, "metres"))
 
 
-def standing_wave_ratios(forward: "ComplexArray", backward: "ComplexArray") -> "Array":
-    """(1 + Gamma) / (1 - Gamma) of amplitudes (n,), infinite where they are alike."""
-    gamma = reflections(forward, backward)
-    travels = gamma < 1.0 - STANDING
-    return np.where(travels, (1.0 + gamma) / np.where(travels, 1.0 - gamma, 1.0), np.inf)
-
-
-def reflections(forward: "ComplexArray", backward: "ComplexArray") -> "Array":
-    """Gamma of amplitudes (n,): the weaker over the stronger; 1 where nothing moves."""
-    sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
-    return np.asarray(sizes[0] / np.where(sizes[1] > 0.0, sizes[1], 1.0) + (sizes[1] == 0.0))
+def local_swr(field: HarmonicField, x: Numbers) -> "Array":
+    """The standing-wave ratio of the exact field of a uniform beam at x, metres, (n,). Raises InputError as above."""
+    return standing_wave_ratios(reflections(*local_waves(field, x)))

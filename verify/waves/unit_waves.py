@@ -12,7 +12,7 @@ from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.catalogue import MODELS
 from verify.models.fields import unit_response, wavenumber
-from verify.waves.found import STANDING
+from verify.waves.found import reflections, standing_wave_ratios
 from verify.waves.imposed import held_units
 from verify.waves.measures import (
     STILL,
@@ -167,16 +167,13 @@ def resonant(model: str, frequency_hz: float, held: str = "") -> ResonanceError:
 
 
 def _reflection(medium: Medium, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray) -> Array:
-    sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
-    return np.asarray(sizes[0] / sizes[1])
+    return reflections(forward, backward)
 
 
 def _standing_wave_ratio(
     medium: Medium, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray
 ) -> Array:
-    gamma = _reflection(medium, omega, k, forward, backward)
-    travelling = gamma < 1.0 - STANDING
-    return np.where(travelling, (1.0 + gamma) / np.where(travelling, 1.0 - gamma, 1.0), np.inf)
+    return standing_wave_ratios(_reflection(medium, omega, k, forward, backward))
 
 
 FIGURES: dict[str, Callable[[Medium, Array, ComplexArray, ComplexArray, ComplexArray], Array]] = {

@@ -19,7 +19,7 @@ from verify.studies.methods.seen import WAYS, Row, Setting, Way, seen_of, settin
 from verify.studies.told import Found, Table
 from verify.units import in_words, time_in_words, unit_of
 from verify.waves.driven import driven, measures
-from verify.waves.lumped import TwoModes, local_waves, standing_wave_ratios
+from verify.waves.lumped import TwoModes, local_swr
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -164,7 +164,7 @@ def along(setting: Setting, asked: "Methods", bench: "Workbench") -> Along:
         x=tuple(x.tolist()),
         everywhere=tuple(everywhere.tolist()),
         amplitudes={way: tuple(abs(field.deflection(everywhere)).tolist()) for way, field in fields.items()},
-        ratios={way: tuple(standing_wave_ratios(*local_waves(f, x)).tolist()) for way, f in fields.items()},
+        ratios={way: tuple(local_swr(f, x).tolist()) for way, f in fields.items()},
         lumped=tuple(picture.local_swr(x).tolist()),
         modes=pair,
     )
@@ -293,7 +293,7 @@ def methods_study(
 def _picture(setting: Setting, modes: tuple[int, int], bench: "Workbench") -> tuple[tuple[float, float, float], ...]:
     low, high = sorted((setting.force.position, setting.device.position))
     x = np.array([part * setting.beam.length for part in (0.25, 0.5, 0.75) if low < part * setting.beam.length < high])
-    field = standing_wave_ratios(*local_waves(driven(setting.case("forces"), bench), x))
+    field = local_swr(driven(setting.case("forces"), bench), x)
     lumped = TwoModes(beam=setting.beam, modes=modes).local_swr(x)
     return tuple(zip(x.tolist(), lumped.tolist(), field.tolist(), strict=True))
 

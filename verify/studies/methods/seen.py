@@ -14,8 +14,8 @@ from verify.models.catalogue import MODELS
 from verify.waves.case import DrivenCase
 from verify.waves.devices import powers
 from verify.waves.driven import driven
-from verify.waves.found import STANDING
-from verify.waves.lumped import local_waves, reflections
+from verify.waves.found import STANDING, reflections
+from verify.waves.lumped import local_waves
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
