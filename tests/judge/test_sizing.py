@@ -109,6 +109,13 @@ def test_an_error_that_goes_up_and_down_far_out_is_refused_and_not_guessed():
         sizing._scanned(lambda count: count % 7 != 0 or count > 2050, 2, 30, "segment", 1e-3, uneven=True)
 
 
+@pytest.mark.parametrize("last", [2040, 3100, 10**9])
+def test_of_one_that_wanders_beyond_what_is_gone_through_nothing_is_said_of_larger_sizes(last):
+    """It said "does not reach it up to count = 4045" of one that fails up to 2600 and does from there on."""
+    with pytest.raises(InputError, match=r"beyond it at count = 20\d\d, and larger ones are not looked through"):
+        sizing._scanned(lambda count: count > last, 2, 30, "segment", 1e-3, uneven=True)
+
+
 def test_what_is_said_of_larger_sizes_is_what_was_solved():
     assert known.solved(5, {3: False, 5: True, 6: True, 7: True}) == "all N from 5 to 7 do; larger ones were not solved"
     some = {4: False, 5: True, 6: True, 9: True}

@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
-from verify.motion.free_vibration import free_vibration
+from verify.motion.free_vibration import _of_lines, free_vibration
 from verify.motion.simulate import simulate
 from verify.segments.in_time import time_basis
 
@@ -226,6 +226,16 @@ def test_at_a_corner_a_body_turns_by_the_mean_of_both_sides(model):
     assert by_table.kinetic[0] == pytest.approx(0.5 * heavy * mean**2 + LINE * L * up**2 / 6, rel=2e-3)
     assert by_function.amplitudes == pytest.approx(by_table.amplitudes)
     assert by_function.kinetic[0] == pytest.approx(by_table.kinetic[0], rel=1e-5)
+
+
+@pytest.mark.parametrize("length", [2e-8, 0.7, 5e9])
+def test_on_which_line_of_a_table_a_body_stands_is_a_matter_of_the_beams_length(length):
+    """Within 1e-9 of it a corner is where the body is; a hundredth of a millionth beside it is a straight line."""
+    x, values = length * np.array([0.0, 0.41, 1.0]), np.array([0.0, 0.3, -0.1])
+    left, right = 0.3 / 0.41 / length, -0.4 / 0.59 / length
+    places = length * np.array([0.0, 0.41 - 1e-8, 0.41 - 7e-10, 0.41 + 7e-10, 0.41 + 1e-8, 1.0])
+    mean = 0.5 * (left + right)
+    assert _of_lines(x, values, places) == pytest.approx([left, left, mean, mean, right, right], rel=1e-12)
 
 
 def test_a_mode_that_is_given_as_a_function_is_found_alone_with_its_bodies():

@@ -127,8 +127,7 @@ def load_power(f: Flat, work: Array) -> float:
     """Power of the point loads, from velocities carried from link to link."""
     last = -1
     for k in range(f.loads.shape[0]):
-        link = int(f.loads[k, 6])
-        last = link if link > last else last
+        last = max(last, int(f.loads[k, 6]))
     v1, v2, power = 0.0, 0.0, 0.0
     for i in range(last + 1):
         if i > 0:

@@ -275,5 +275,5 @@ def _negatives(a: float, b: float, d: float, determinant: float) -> int:
     """Negative eigenvalues of [[a, b], [b, d]]; the sign of its determinant is known otherwise too."""
     products = a * d, b * b
     difference = products[0] - products[1]
-    sign = difference if abs(difference) > _CANCELLED * (abs(products[0]) + products[1]) else determinant
+    sign = difference if abs(difference) > _CANCELLED * sum(products) else determinant
     return 1 if sign < 0.0 else 2 if a + d < 0.0 else 0

@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 
 _LARGEST_COUNT = 200_000
 _LARGEST_UNKNOWN = 2000
-"""Of a model without an error law: nobody says beforehand whether it gets there. Also of an error that goes up and
-down with N, where every size has to be solved."""
+"""Of a model without an error law, and of errors that go up and down: nobody says beforehand whether they get there."""
 _EVERY, _CLOSELY = 100, 2000
 """Sizes are gone through one by one up to the first, 5 % apart up to the second, then doubled."""
 _LOWER_BRANCH = 0.05
@@ -218,28 +217,33 @@ def _scanned(
     """
     does: dict[int, bool] = {}
     count, failed = smallest, smallest - 1
-    largest = 2 * _LARGEST_UNKNOWN if uneven else _LARGEST_COUNT if model in LAWS else _LARGEST_UNKNOWN
+    largest = _LARGEST_COUNT if uneven or model in LAWS else _LARGEST_UNKNOWN
     while count <= max(2 * failed, guess, smallest + 4):
         if count > largest:
             raise _unreached(model, error, count)
         does[count] = reached(count)
         if not does[count]:
-            failed = count
+            failed = _followed(count, model, error) if uneven else count
             seconds = before_s + each_s * (sum(does) + _ahead(failed, uneven))
             check_work("count", f"beyond {failed}", seconds, "ask for a larger error")
         closely = uneven or count < _CLOSELY
         count = count + 1 if count < _EVERY else ceil(1.05 * count) if closely else 2 * count
     if uneven:
-        failed, does = walked(reached, failed, does) if failed <= _LARGEST_UNKNOWN else (failed, does)
-        if failed > _LARGEST_UNKNOWN:
-            raise InputError(
-                f"error = {error!r}: the {model} model, whose error goes up and down with count here, is still beyond "
-                f"it at count = {failed}, and larger ones are not looked through"
-            )
-        enough = failed + 1
+        failed, does = walked(reached, failed, does)
+        enough = _followed(failed, model, error) + 1
     else:
         enough = between(reached, failed, min(n for n in does if n > failed))
     return enough, next((n for n in does if n < failed and does[n]), None), does
+
+
+def _followed(failed: int, model: str, error: float) -> int:
+    """A size that fails while errors go up and down. Raises InputError where those after it are not gone through."""
+    if failed > _LARGEST_UNKNOWN:
+        raise InputError(
+            f"error = {error!r}: the {model} model, whose error goes up and down with count here, is still beyond "
+            f"it at count = {failed}, and larger ones are not looked through"
+        )
+    return failed
 
 
 def _ahead(failed: int, uneven: bool) -> float:
