@@ -215,7 +215,7 @@ def _stretch(layout: _Layout, crowds: list[_Crowd], places: Array, links: Links)
         places=np.where(ends, links.n - there, there) - (firsts - layout.inner),
         weights=weights,
     )
-    even = np.ptp(lengths, axis=1) <= _ABOUT * lengths[:, 0]
+    even = np.ptp(lengths, axis=1) <= _ABOUT * lengths.max(axis=1)
     return stretch, np.asarray(even & (abs(inside - 1.0) <= _ABOUT).all(axis=1))
 
 
