@@ -151,11 +151,14 @@ def _forget() -> None:
 def run_pytest(
     tree: Path, words: Iterable[str], before: tuple[str, ...] = (), waited: float | None = None, **environment: str
 ) -> tuple[int, list[str]]:
-    """How pytest ends in a tree, and what is red. Raises subprocess.TimeoutExpired."""
+    """How pytest ends in a tree, and what is red. Raises subprocess.TimeoutExpired, RuntimeError for no such test."""
     command = [sys.executable, "-m", *before, "pytest", "-q", "-p", "no:cacheprovider", *words]
     given = os.environ | ALONE | {GIVEN: "", "PYTHONPATH": str(tree)} | environment
     run = subprocess.run(command, cwd=tree, env=given, capture_output=True, text=True, timeout=waited, check=False)
     lines = [line for line in run.stdout.splitlines() if line.startswith(("FAILED ", "ERROR "))]
+    lost = [line for line in run.stderr.splitlines() if line.startswith("ERROR: not found: ")]
+    if lost and not lines:
+        raise RuntimeError(f"{lost[0].split(': ', 2)[2]} is in no tree: give it a name that is the same in each")
     return run.returncode, [line.split(" ", 1)[1].split(" - ")[0] for line in lines]
 
 

@@ -258,7 +258,7 @@ HEAVY = {
         (("table", "paper", "--counts", "30,40", "--csv"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),
         (("run", "paper", "--no-report", "--json"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),
     ],
-    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+    ids=lambda value: " ".join(Path(word).name for word in value) if isinstance(value, tuple) else "",
 )
 def test_a_command_loads_only_what_it_uses(words, allowed):
     assert loaded_by(*words) & HEAVY <= allowed

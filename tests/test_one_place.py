@@ -37,3 +37,44 @@ def test_every_list_says_in_one_breath_what_its_words_mean(name):
 def test_arrays_have_their_names_from_one_module():
     named = {str(path.relative_to(PACKAGE)) for path in paths() if "NDArray" in path.read_text("utf-8")}
     assert named == {"models/arrays.py", "asleep.py"}  # which stands in for the module that has them
+
+
+SETTLED = {
+    "attachment": "'reciprocal'",
+    "axial_inertia": "True",
+    "derivative": "0",
+    "epsilon": "0.0",
+    "frozen": "False",
+    "gates_only": "False",
+    "grading": "1.0",
+    "immovable": "False",
+    "joint_dashpot": "0.0",
+    "joints": "'series'",
+    "patient": "True",
+    "settings": "()",
+    "soft_start_periods": "0.0",
+    "support": "'pinned'",
+    "theory": "'euler-bernoulli'",
+    "turning": "False",
+}
+"""What a verb takes where nobody says."""
+
+
+def default_values(node):
+    """(name, default as written) of what a function takes without being given."""
+    given, named = node.args.posonlyargs + node.args.args, node.args.kwonlyargs
+    written = [None] * (len(given) - len(node.args.defaults)) + node.args.defaults + node.args.kw_defaults
+    return [(arg.arg, ast.unparse(one)) for arg, one in zip(given + named, written, strict=True) if one]
+
+
+def test_what_nobody_says_is_the_same_to_every_verb():
+    """The same beam by two verbs is else two beams; of the suite's own references some are of one theory by name."""
+    seen = set()
+    for path in paths():
+        if "stress" not in path.parts:
+            for node in nodes_of(path):
+                for name, value in default_values(node) if isinstance(node, ast.FunctionDef) else ():
+                    one = value.replace("EULER", SETTLED["theory"])
+                    assert one == SETTLED.get(name, one), f"{path}:{node.lineno} {node.name}: {name} = {value}"
+                    seen.add(name)
+    assert seen >= SETTLED.keys()

@@ -10,7 +10,7 @@ from benchmarks.fault_kinds import Fault, drawn, faults_of
 from benchmarks.kernel_callers import callers
 from benchmarks.random_faults import MOST, Known, Met, _stamp, meeting, met, table
 from benchmarks.reasons import NOTHING, Reason, kept_reasons, key_of
-from benchmarks.recorded_lines import Recorded, read_recorded, recorded
+from benchmarks.recorded_lines import Recorded, read_recorded, recorded, run_pytest
 
 SOURCE = b'''"""Words - not faults."""
 
@@ -205,6 +205,17 @@ def test_a_planted_fault_is_noticed_by_the_gate_or_test_that_it_turns_red_and_ta
     assert became[("x > 0.0", "(x < 0.0)")] == (gate, "")
     assert became[("0.0", "1.0")] == ("", test)
     assert (tmp_path / "lever.py").read_bytes() == source
+
+
+def test_a_test_that_a_tree_does_not_have_notices_nothing(tmp_path):
+    """One named after where its tree lies ended pytest before any test, which was counted as noticed."""
+    (tmp_path / "test_lever.py").write_text("def test_half():\n    assert True\n")
+    with pytest.raises(RuntimeError, match=r"test_lever.py::test_third is in no tree: give it a name that is the same"):
+        run_pytest(tmp_path, ["test_lever.py::test_half", "test_lever.py::test_third"])
+    (tmp_path / "test_lever.py").write_text("import leever\n\n\ndef test_half():\n    assert True\n")
+    status, red = run_pytest(tmp_path, ["test_lever.py::test_half"])
+    assert status
+    assert red == ["test_lever.py"]
 
 
 def test_the_table_counts_by_room_and_kind_and_lists_what_no_gate_notices():

@@ -2,6 +2,7 @@
 
 import sys
 from time import process_time
+from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
@@ -632,3 +633,13 @@ def test_many_stepped_beams_take_a_fraction_of_a_loops_time(model, layout, chose
         ratios.append((loop, seconds(lambda: module.sweep_modes(beams, n_modes, 49, **chosen)) / len(beams)))
     loops, swept = zip(*ratios, strict=True)
     assert min(loops) > least * min(swept)
+
+
+@pytest.mark.parametrize(("wider", "alike"), [(0.98, True), (1.02, False)])
+def test_parts_are_unlike_by_how_fast_they_are_and_not_by_how_stiff_or_heavy(wider, alike):
+    """Of three beams: one of equal weights, one of equal stiffness, one whose parts are a million times each other."""
+    far = wider * stacks._UNLIKE
+    stiffness = np.array([[7.0, 7.0, 7.0], [7.0 * far, 7.0, 7e6 * far], [90.0, 7.0, 7e3]])
+    mass = np.array([[0.3, 0.3, 0.3], [0.3, 0.3 / far, 0.3e6], [0.3, 0.3, 0.03]])
+    given = SimpleNamespace(pencils=SimpleNamespace(diagonals=(stiffness, mass)))
+    assert stacks._alike(given).tolist() == [alike] * 3

@@ -88,6 +88,18 @@ def test_a_surface_that_accelerates_as_friction_does_leaves_the_slider_by_as_muc
     assert abs((found - expected) / (tau * np.maximum(abs(rho), abs(last)))).max() < within
 
 
+@pytest.mark.parametrize("alpha", [0.0, 0.3, 1.7, 40.0])
+@pytest.mark.parametrize("rho", [27.0, 3e3, -3e3, 2e7, -2e7])
+def test_a_slider_that_slides_fast_all_the_time_is_a_stone_that_is_thrown(rho, alpha):
+    """Friction is all it can be: without that the ways are differences of squares, and lose what these are longer by."""
+    change, way = interpreted(friction_kernels, "tanh_speed_change"), interpreted(way_kernels, "relative_way")
+    b, slope, tau = 2.3, 17.0, 0.11
+    for side in (-1.0, 1.0):
+        given = side * rho / slope, side * alpha * b, b, slope, tau / (slope * b)
+        found = side * slope * slope * b * way(*given, change(*given))
+        assert found == pytest.approx(rho * tau - 0.5 * (alpha + np.sign(rho)) * tau**2, rel=1e-14)
+
+
 def integral(of, end):
     return float(mp.quad(of, mp.linspace(0, mp.mpf(end), 9)))
 

@@ -1,6 +1,7 @@
 """What a scene may hold, told to people and to editors, from the types that read it."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -75,7 +76,7 @@ CHECKS = {
 }
 
 
-@pytest.mark.parametrize("scene", [*packaged_scenes(), str(STARTER)])
+@pytest.mark.parametrize("scene", [*packaged_scenes(), str(STARTER)], ids=lambda scene: Path(scene).stem)
 def test_the_schema_takes_every_scene_that_is_packaged(scene):
     assert refusals(read_toml(scene_path(scene)), SCHEMA) == []
 
