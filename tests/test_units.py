@@ -243,16 +243,13 @@ def ridden(u):
 
 
 def motors(u, contact, model="segment"):
-    law = grip(u) | {"coupling": "one-way"} if contact is hard else {"law": "coulomb"}
-    feet = (Foot(length=u.length(0.03), points=3), Foot(length=u.length(0.01), points=2, offset=u.length(0.05)))
-    given = slider(
-        u,
-        contact=contact(u),
-        foot=() if contact is hard else feet,
-        pull=u.force(-0.02),
-        preload_stiffness=u.spring(3.0),
-        **law,
-    )
+    on = {"contact": contact(u), "pull": u.force(-0.02)}
+    if contact is hard:
+        on |= grip(u) | {"coupling": "one-way"}
+    else:
+        feet = Foot(length=u.length(0.03), points=3), Foot(length=u.length(0.01), points=2, offset=u.length(0.05))
+        on |= {"foot": feet, "preload_stiffness": u.spring(3.0), "law": "coulomb"}
+    given = slider(u, **on)
     size = {"modes": 40} if model == "analytic" else {"count": 31}
     asked = {"modal_damping": 0.02, "at": u.length(X), "model": model} | size
     found = run_motor(strip(u), forces(u, 40.0), u.rate(433.0), u.time(0.01), slider=given, **asked)
