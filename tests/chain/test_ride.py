@@ -58,6 +58,29 @@ def test_small_waves_carry_a_slider_on_the_nonlinear_chain_as_on_the_linear_one(
     assert (found.statistics.steps, found.statistics.evaluations) == (200, 401)  # both ends of a step and its middle
 
 
+def test_when_a_motion_begins_is_nothing_to_the_slider_on_it(paper_beam):
+    """Let go with rates of its own, at the start of all time and a quarter of a second later."""
+    system = build_system(paper_beam, 9)
+    begun = at_rest(system)
+    rates = 3.0 * np.cos(np.arange(9.0))
+    runs = [
+        ride(
+            simulate_chain(system, dataclasses.replace(begun, rates=rates, time=late), late + half_steps(8e-4, STEP)),
+            paper_beam,
+            SLIDER,
+        )
+        for late in (0.0, 0.25)
+    ]
+    assert runs[1].statistics.step_s == pytest.approx(STEP, rel=1e-9)
+    assert runs[1].times[0] == 0.25
+    assert runs[0].displacement
+    for name in ("travelled", "speed", "friction"):
+        first, late = (getattr(run, name) for run in runs)
+        assert late == pytest.approx(first, abs=1e-6 * abs(first).max())
+    first, late = (run.ledger for run in runs)
+    assert late.rubbed == pytest.approx(first.rubbed, rel=1e-6)
+
+
 def test_the_shortening_of_the_chain_is_felt_in_proportion_to_the_force(paper_beam):
     # the speed of a shortening chain along x is quadratic in the force, what carries the slider linear
     parts = []
