@@ -7,7 +7,9 @@ import pytest
 from chain_reference import elastica_tip, woinowsky_krieger
 from msgspec.structs import replace
 
+from verify.beam import Beam
 from verify.chain import departure, problems
+from verify.chain.problems import large_amplitude_frequency
 from verify.errors import InputError
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.run.gates import judge
@@ -170,6 +172,12 @@ def test_unlike_sections_have_no_sine_for_a_first_mode():
     scene = sectioned((0.4, {}), (0.6, {"width": 0.03}))
     with pytest.raises(InputError, match=r"beam.section: the first mode of unlike sections is no sine"):
         figure("large_amplitude_frequency", scene, amplitude=2.0, segments=10)
+
+
+def test_an_amplitude_in_radii_of_gyration_asks_for_a_section_that_has_one():
+    stated = Beam(length=0.7, bending_stiffness=3.1, mass_per_length=0.2)
+    with pytest.raises(InputError, match=r"this figure takes a section's sizes, give its shape, sizes and youngs_mod"):
+        large_amplitude_frequency(stated, 1.5, 7)
 
 
 def test_links_that_stretch_feel_where_the_soft_section_lies():

@@ -208,6 +208,27 @@ def test_a_roller_carried_past_the_pivots_turn_takes_another_pivot():
     assert abs(motion.residual()).max() < 1e-6 * energy_of(system, start)
 
 
+def test_a_crank_between_an_actuator_and_a_roller_takes_other_pivots_between_two_looks_at_the_keyboard(monkeypatch):
+    """The same crank, its rod's end moved a little, and a link from there to the roller: two angles are dependent."""
+    monkeypatch.setattr(chain_motion, "_BUDGET", 60)
+    still = np.zeros(3)
+    system = ChainSystem(
+        lengths=np.array([0.2, 0.201, 0.3]),
+        masses=np.array([0.2, 0.1, 0.05]),
+        inertias=np.array([2e-4, 6e-4, 3e-4]),
+        stiffness=still,
+        dashpots=still,
+        tip="roller",
+        actuators=(Actuator(link=2, at=0.201, amplitude=1e-5, frequency_hz=3.0),),
+    )
+    start, _ = project(system, ChainState(np.array([0.4, -0.6, 0.2]), np.array([30.0, -40.0, 10.0])))
+    motion = simulate(system, start, np.linspace(0.0, 1.0, 50), tolerance=1e-10)
+    assert motion.statistics.finished
+    assert np.ptp(motion.angles[:, 0]) > 2 * np.pi
+    assert motion.statistics.pivot_changes > 0
+    assert abs(motion.residual()).max() < 1e-6 * energy_of(system, start)
+
+
 def test_small_motion_is_the_linear_chains():
     which, n = beam(), 15
     modes = segment_model.solve_modes(which, 3, n)

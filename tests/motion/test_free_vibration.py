@@ -299,3 +299,15 @@ def test_what_a_start_misses_of_a_table_at_its_own_places_is_told(model):
     assert 0.0 < abs(off) < 0.05 * 1.7e-3
     assert found.notes[-1] == (f"start: {off:+.2g} m off the shape at x = {at[1]:g} m, the most at its own places")
     assert not any(note.startswith("start: ") for note in freed(sine(2), model=model).notes)
+
+
+@pytest.mark.parametrize("length", [0.031, 47.0])
+def test_how_far_a_mode_may_move_is_told_in_lengths_of_its_beam(length):
+    """To slopes of 1e100, whose squares are still numbers."""
+    beam = replace(STRIP, length=length)
+    most = 1e100 * length
+    found = freed(2, beam=beam, amplitude=0.97 * most, at=length / 4, samples=2)
+    assert found.deflection[0, 0] == pytest.approx(0.97 * most, rel=1e-6)
+    for sign in (-1.0, 1.0):
+        with pytest.raises(InputError, match=r"amplitude = .*: give a finite number of at least -"):
+            freed(2, beam=beam, amplitude=1.03 * sign * most)

@@ -137,8 +137,8 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int, pro
     not uniform, not between hinges, or damped.
     """
     _check_hinged(beam, n_segments)
-    system = build_system(beam, n_segments, immovable=True)
     height = amplitude * _radius(beam)
+    system = build_system(beam, n_segments, immovable=True)
     _check_height(height, system)
     linear = float(linearise(system, at_rest(system)).frequencies()[0])
     times = np.linspace(0.0, 1.01 * pi / 2 / linear, 801)

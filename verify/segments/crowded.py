@@ -222,7 +222,7 @@ def _stretch(layout: _Layout, crowds: list[_Crowd], places: Array, links: Links)
 def near(places: Array, n: int) -> BoolArray:
     """Whether bodies at `places` (p, ...) on n links may stand near an end or each other, (...)."""
     ordered = np.sort(places, axis=0)
-    after, before = np.minimum(np.floor(ordered), n - 1), np.maximum(np.ceil(ordered) - 1, 0)
+    after, before = np.minimum(np.floor(ordered), n - 1), np.ceil(ordered) - 1
     ends = (before < _WALL + _BEFORE) | (after >= n - _WALL - _BEFORE)
     apart = np.minimum(np.diff(after, axis=0), np.diff(before, axis=0))
     return np.asarray(ends.any(axis=0) | (apart < _BEFORE + _AFTER).any(axis=0))
