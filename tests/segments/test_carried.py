@@ -15,7 +15,7 @@ from verify.models.catalogue import MODELS
 from verify.section import Section
 from verify.segments import carried, loaded
 from verify.segments.assembly import build_chain, chain_pencil
-from verify.segments.attached import felt_at, mended
+from verify.segments.attached import felt_at, mended, places_on
 from verify.segments.buckling import buckling_load
 from verify.segments.linear import n_elastic, solve_modes, unknowns
 
@@ -398,3 +398,13 @@ def test_what_a_small_chain_carries_takes_it_a_few_times_as_long():
             solve_modes(beam, 10, 20)
             times.append(process_time() - begun)
     assert min(times[1::2]) < 9.0 * min(times[::2])
+
+
+@pytest.mark.parametrize("base", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize(("part", "even"), [(0.045, True), (0.055, False)])
+def test_whether_links_around_a_place_are_equally_long_is_a_matter_of_their_own_length(base, part, even):
+    lengths = base * (1.0 + part * np.array([0, 0, 0.3, 0, 0.1, 0, 1.0, 0.2, 0, 0, 0, 0.0]))[:, None]
+    links, on, about = places_on(lengths, np.array([lengths[:5].sum() + 0.37 * lengths[5, 0]]))
+    assert links.tolist() == [5]
+    assert on == pytest.approx([0.37])
+    assert about.tolist() == [even]
