@@ -639,3 +639,18 @@ def test_a_figure_that_is_found_alone_is_the_one_among_all_measures(model, count
     for name in travelling_wave.FIGURES:
         alone = travelling_wave.measured_figure(field, window, own_wavenumber(field), name)
         assert alone == getattr(together, name), name
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.3, -40.0])
+def test_a_smooth_figure_is_looked_at_twice(shift):
+    """Until its mean stands, whatever its sign."""
+    from verify.models.intervals import mean_over
+
+    asked = []
+
+    def figure(x):
+        asked.append(len(x))
+        return shift + np.sin(3.0 * x)
+
+    assert mean_over(figure, (0.2, 0.9), 4) == pytest.approx(shift + (np.cos(0.6) - np.cos(2.7)) / 2.1, rel=1e-13)
+    assert asked == [48, 96]

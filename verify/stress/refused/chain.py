@@ -192,7 +192,7 @@ ROWS: tuple[Row, ...] = (
         ),
         Case("amplitude: the middle would", lambda: problems.large_amplitude_frequency(STRIP, 200.0, LINKS)),
         Case("beam.section: the first mode", lambda: problems.large_amplitude_frequency(STEPPED, 2.0, LINKS)),
-        Case("beam.bending_stiffness: a section", lambda: problems.large_amplitude_frequency(PLAIN, 2.0, LINKS)),
+        Case("beam.shape: this figure takes a section", lambda: problems.large_amplitude_frequency(PLAIN, 2.0, LINKS)),
         Case("slider.coupling = 'two-way'", ridden(coupling="two-way"), ridden(coupling="one-way")),
         Case("slider.line = 'raw'", ridden(line="raw")),
         Case("beam.supports = ['pinned', 'pinned']", ridden(on=STRIP)),
