@@ -106,7 +106,7 @@ def test_many_frequencies_and_forces_are_turned_round_at_once(model):
     compared(one, other)
 
 
-@settings(max_examples=3000, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     supports=st.tuples(*[st.sampled_from(SUPPORTS)] * 2),
     places=st.lists(st.integers(0, 46), min_size=1, max_size=2, unique=True),
