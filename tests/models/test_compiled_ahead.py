@@ -65,6 +65,17 @@ def test_two_processes_compile_what_one_would_and_a_run_that_finds_it_starts_non
     assert not list(tmp_path.rglob("*.tmp.*"))
 
 
+def test_what_helpers_compile_is_heard_by_nobody(tmp_path):
+    """They share the run's terminal, whose line says what the run itself waits for."""
+    listens = "compiling.hearers.append(lambda said: print('heard by', os.getpid(), flush=True))\n"
+    words = [sys.executable, "-c", f"{START}print('run', os.getpid(), flush=True)\n{listens}{RUN}"]
+    run = subprocess.run(words, capture_output=True, text=True, env=surroundings(tmp_path, 2), check=True)
+    lines = run.stdout.splitlines()
+    began, own, heard = ({line.split()[-1] for line in lines if line.startswith(k)} for k in ("began", "run", "heard"))
+    assert len(began) == 1
+    assert heard == own
+
+
 def is_there(process):
     """Whether it runs; one that has ended and that nobody has asked about does not."""
     try:
