@@ -89,3 +89,9 @@ def test_an_edge_without_its_twist_is_seen(monkeypatch):
     true = plate_strip._edge
     monkeypatch.setattr(plate_strip, "_edge", lambda g, q, nu: true(g, q, 0.9 * nu))
     assert abs(stiffening(1.38, 0.33) - by_ritz(1.38, 0.33)) > 1e-3
+
+
+@pytest.mark.parametrize("mode", [0, -3, 2.5])
+def test_a_plates_mode_has_a_whole_number(paper_beam, mode):
+    with pytest.raises(InputError, match=f"^mode = {mode}"):
+        plate_error(paper_beam, mode)

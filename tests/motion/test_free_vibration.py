@@ -311,3 +311,12 @@ def test_how_far_a_mode_may_move_is_told_in_lengths_of_its_beam(length):
     for sign in (-1.0, 1.0):
         with pytest.raises(InputError, match=r"amplitude = .*: give a finite number of at least -"):
             freed(2, beam=beam, amplitude=1.03 * sign * most)
+
+
+def test_what_is_damped_out_rests_as_long_as_its_turns_are_numbers():
+    """Then it is refused as what is not damped: of 1e100 radians and more no power is a number."""
+    omega = 2.0 * np.pi * frequency_hz(STRIP, 1)
+    rested = freed(1, 1e99 / omega / 100.0, amplitude=0.01, modal_damping=0.1, count=2, at=L / 2, samples=2)
+    assert rested.deflection[-1, 0] == 0.0
+    with pytest.raises(InputError, match=r"duration = .* is more than .* periods of the highest mode"):
+        freed(1, 1.2e100 / omega, amplitude=0.01, modal_damping=0.1, count=2)
