@@ -102,5 +102,5 @@ def local_waves(field: HarmonicField, x: Numbers) -> "tuple[ComplexArray, Comple
 
 
 def local_swr(field: HarmonicField, x: Numbers) -> "Array":
-    """The standing-wave ratio of the exact field of a uniform beam at x, metres, (n,). Raises InputError as above."""
+    """Standing-wave ratio at x (metres) of the exact field of a uniform beam, (n,). Raises InputError for another."""
     return standing_wave_ratios(reflections(*local_waves(field, x)))

@@ -160,7 +160,7 @@ ENDS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Derivatives that are nought at an end."""
 LOST, RUBBER = 0.013, 0.4
 WAYS_TO_THE_END = (0.9, 2.94, 3.1, 3.3, 3.5, 3.65, 5.4)
-"""k d, at which the best dashpot of rubber before a pinned end is one that turns, none, or a place held."""
+"""k d, at which the best dashpot of rubber before a pinned end is where |Gamma| is least, none, or a place held."""
 
 
 def absorbers_error(hertz: float) -> float:
