@@ -114,6 +114,10 @@ def slow_motions_unseen(patch):
     patch.setattr(inverse, "SLOW", 0.0)
 
 
+def ground_that_lifts_nothing(patch):
+    patch.setattr(links.Chain, "lifted", 0.0)
+
+
 def slow_answers_as_they_are_factorised(patch):
     patch.setattr(response, "_refined", lambda pencil, answer, *given: np.asarray(answer.unknowns))
 
@@ -976,6 +980,7 @@ FAULTS = {
         },
         unknowns_in_one_unit: {"nearly-floating"},
         slow_answers_as_they_are_factorised: {"nearly-floating"},
+        ground_that_lifts_nothing: {"nearly-rigid"},
         slow_motions_unseen: {"tip-mass", "tip-mass-second-mode", "nearly-rigid"},
         root_off_in_its_twelfth_digit: {"closed-form-frequencies", "closed-form-shapes"},
         metres_and_pascals_felt: {"counted-frequencies", "nanometres-to-kilometres", "modulus", "density"},

@@ -7,7 +7,12 @@ from math import inf, pi, sqrt
 from pathlib import Path
 
 import pytest
-from faults.stress import assembled_instead_of_factored, slow_motions_unseen, unlike_parts_unseen
+from faults.stress import (
+    assembled_instead_of_factored,
+    ground_that_lifts_nothing,
+    slow_motions_unseen,
+    unlike_parts_unseen,
+)
 from msgspec.structs import replace
 from packaged import named, names, ran
 
@@ -93,6 +98,7 @@ def a_frequency_wrong_in_its_twelfth_digit(patch):
         ("section-steps-elements", unlike_parts_unseen),
         ("mesh-a-million-to-one-elements", unlike_parts_unseen),
         ("nearly-rigid", slow_motions_unseen),
+        ("nearly-rigid", ground_that_lifts_nothing),
         ("tip-mass-second-mode", slow_motions_unseen),
         ("tip-mass", slow_motions_unseen),
         ("near-resonance-segments", a_frequency_wrong_in_its_twelfth_digit),

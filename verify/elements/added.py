@@ -62,7 +62,7 @@ def _lifted(elements: Elements, bending: float) -> float:
     if beam.mass or beam.tension < 0.0 or elements.theory != "euler-bernoulli":
         return 0.0
     lifted = ground_stiffness(beam, parts.unit) / float(parts.masses_per_length.max())
-    return max(lifted - max(1e-6 * lifted, bending), 0.0)
+    return max(lifted - max(1e-10 * lifted, bending), 0.0)
 
 
 Strained = tuple[Callable[[Array], Array], Callable[[], Any], Array]

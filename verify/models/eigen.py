@@ -13,6 +13,7 @@ from verify.models.pencil import (
     DENSE_UNKNOWNS,
     FactoredPencil,
     factored_quotient,
+    restarts,
 )
 from verify.models.polishing import polished, sharpened, told_apart
 from verify.patience import check_work
@@ -206,8 +207,10 @@ def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array
     inverse = fitting_inverse(pencil)
     mass = np.asarray(inverse.mass.toarray() if hasattr(inverse.mass, "toarray") else inverse.mass)
     lower = cholesky(mass, lower=True)
-    first = pencil.n - n_modes
-    _, found = eigh(_flexibility(inverse, lower), subset_by_index=(first, pencil.n - 1), driver="evr")
+    first, flexibility = pencil.n - n_modes, _flexibility(inverse, lower)
+    found = eigh(flexibility, subset_by_index=(first, pencil.n - 1), driver="evr")[1]
+    if found.shape[1] < n_modes:  # of values that are all alike LAPACK's bisection loses some, and says nothing
+        found = np.linalg.eigh(flexibility)[1][:, first:]
     vectors = np.asarray(solve_triangular(lower, found[:, ::-1], lower=True, trans="T"))
     return _of_inverse(inverse, vectors)
 
@@ -259,6 +262,7 @@ def _by_lanczos(inverse: Inverse, n_modes: int) -> Array:
             v0=start,
             tol=_LANCZOS,
             ncv=basis,
+            maxiter=restarts(n),
         )
     except ArpackNoConvergence:
         raise InputError(

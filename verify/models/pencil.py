@@ -21,6 +21,10 @@ LARGE = 20_000
 """Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
 square would be 1e-9 of the eigenvalues of a million parts, and was 1e-12 of those of 20 000 free elements."""
 
+_RESTARTS = 10, 100
+"""Of Lanczos, the fewest and the most after which it is given up: ordinary modes take one."""
+_RESTARTED = 1e6
+"""Unknowns times restarts, about."""
 _SLOWEST = 2.0**-200
 """Omega^2 below which no unit grows."""
 
@@ -190,6 +194,12 @@ def factorised(matrix: Any, remedy: str = "hold the beam better or choose anothe
         if "singular" in str(error):
             raise InputError(f"the system is singular to rounding: {remedy}") from None
         raise too_large(matrix.shape[0]) from None
+
+
+def restarts(n_unknowns: int) -> int:
+    """How often Lanczos begins anew at most: where values lie closer together than it can tell, it never ends."""
+    least, most = _RESTARTS
+    return int(min(max(_RESTARTED / n_unknowns, least), most))
 
 
 def too_large(n_unknowns: int) -> InputError:

@@ -133,6 +133,22 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return first_bending(self.lengths, stiffnesses, self.masses / self.lengths, self.tension)
 
     @property
+    def lifted(self) -> float:
+        """What ground lifts every omega^2 above, in its units; 0 where bodies or a push may take one down again.
+
+        What is left is as large as what bends: a motion that it bears may be rigid.
+        """
+        if (
+            self.tension < 0.0
+            or any(body.mass or body.rotary_inertia for body in self.bodies)
+            or any(self.end_inertias)
+        ):
+            return 0.0
+        squares = np.minimum(self.lengths / self.masses, self.lengths**3 / (12.0 * self.inertias))
+        found = self.foundation * float(squares.min())
+        return max(found - max(1e-10 * found, self.first_bending), 0.0)
+
+    @property
     def nodes(self) -> Array:
         """Joint positions, (N + 1,), metres."""
         steps = np.concatenate([[self.start], self.lengths])

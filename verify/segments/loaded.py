@@ -71,6 +71,7 @@ def loaded_pencil(chain: Chain) -> FactoredPencil:
         mass_matrix=cache(lambda: _mass(chain, placed)),
         masses=lambda free: _weighed(chain, placed, free),
         uneven=True,
+        below=chain.lifted,
         bending=chain.first_bending,
     )
 
