@@ -74,15 +74,15 @@ def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
             if (abs(values - last) < _STEADY * values).all():
                 break
         last = values
-    if not change < _UNSETTLED:
-        raise InputError(
-            f"count: slow motions of {pencil.n} unknowns, which next to nothing holds, do not settle (omega^2 "
-            f"still moves by {change:.0e} of it): lower count, or hold the beam better"
-        )
     if len(last) and abs(last).min() < _FELT * pencil.bending:
         raise InputError(
             f"count: a motion of {pencil.n} unknowns, which next to nothing holds, is told by rounding alone (its "
             f"omega^2 is {abs(last).min() / pencil.bending:.0e} of the lowest bending's): hold the beam better"
+        )
+    if not change < _UNSETTLED:
+        raise InputError(
+            f"count: a motion of {pencil.n} unknowns, which next to nothing holds, does not settle (its omega^2 "
+            f"still moves by {change:.0e} of it): lower count, or hold the beam better"
         )
     return vectors, strains
 

@@ -120,9 +120,7 @@ ROWS: tuple[Row, ...] = (
         "Modes, sizes and settings that a model does not have",
         "docstrings of solve_modes, division.py, theory.py: unknown settings, more modes than there are, other beams.",
         *(
-            Case(
-                "count: slow motions of", modes(model, 3, of=hung(FREE, 1e-100)), modes(model, 3, of=hung(FREE, 1e-20))
-            )
+            Case("count: a motion of", modes(model, 3, of=hung(FREE, 1e-100)), modes(model, 3, of=hung(FREE, 1e-20)))
             for model in ("segment", "fem")
         ),
         Case(
