@@ -38,6 +38,8 @@ from verify.motor.records import (
     V,
 )
 
+WIDER = 1.125
+"""Of the most that friction is: sought so far, since where a point slides one way Newton's step ends on 1."""
 SWEEPS = 400
 ENOUGH = 1e-13
 """Of mu N: as far as sweeps go on changing a force, they go on."""
@@ -207,7 +209,7 @@ def turn(most: float, ahead: float, slip: float, ease: float) -> tuple[float, fl
 @part()
 def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
     """Force = most tanh(slope (slip - ease force)), which falls as the force rises."""
-    low, high, force = -most, most, 0.0
+    low, high, force = -WIDER * most, WIDER * most, 0.0
     for _ in range(60):
         share = np.tanh(slope * (slip - ease * force))
         miss = force - most * share
@@ -216,9 +218,10 @@ def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
         else:
             low = force
         after = force - miss / (1.0 + most * slope * ease * (1.0 - share * share))
-        if not low < after < high:
-            after = 0.5 * (low + high)
-        if abs(after - force) <= 1e-15 * most:
+        near = abs(after - force) <= 1e-15 * most
+        if not near and not low < after < high:
+            after, near = 0.5 * (low + high), high - low <= 1e-15 * most
+        if near:
             return float(after)
         force = after
     return float(force)

@@ -4,6 +4,7 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.models.kernels import part
+from verify.motor.beam_kernels import WIDER
 from verify.motor.records import (
     CLOSING,
     DEPTH,
@@ -26,6 +27,8 @@ ROUNDS = 100
 """Of the search for a speed under tanh: each halves what is left at least."""
 SHORT = 1.0
 """Of the turn of tanh: half a step that long is seen by its middle alone."""
+FAR = 20.0
+"""From there on tanh is 1 to the last digit, and ln cosh a straight line."""
 
 
 @part()
@@ -74,6 +77,17 @@ def hold(dt: float, feet: Feet, before: Array) -> None:
 
 
 @part()
+def _bent(x: float) -> tuple[float, float]:
+    """(ln cosh x + ln 2, tanh x)."""
+    size = abs(x)
+    if size > FAR:
+        return size, 1.0 if x > 0.0 else -1.0
+    left = np.exp(-2.0 * size)
+    turned = (1.0 - left) / (1.0 + left)
+    return float(size + np.log1p(left)), float(turned if x > 0.0 else -turned)
+
+
+@part()
 def _turned(ahead: float, half: float, slope: float) -> tuple[float, float]:
     """(tanh of how far a surface is ahead, its rise with that), of a step through whose half it goes by `half` m/s.
 
@@ -82,9 +96,9 @@ def _turned(ahead: float, half: float, slope: float) -> tuple[float, float]:
     if half * slope < SHORT:
         turned = np.tanh(slope * ahead)
         return float(turned), float(slope * (1.0 - turned * turned))
-    high, low = slope * (ahead + half), slope * (ahead - half)
-    gone = abs(high) - abs(low) + np.log1p(np.exp(-2.0 * abs(high))) - np.log1p(np.exp(-2.0 * abs(low)))
-    return float(gone / (2.0 * slope * half)), float((np.tanh(high) - np.tanh(low)) / (2.0 * half))
+    above, high = _bent(slope * (ahead + half))
+    below, low = _bent(slope * (ahead - half))
+    return (above - below) / (2.0 * slope * half), (high - low) / (2.0 * half)
 
 
 @part()
@@ -99,7 +113,7 @@ def agree(
     gain, wide, free, mean = 0.5 * light, 0.0, v + 0.5 * light * pull, v
     for i in range(first, last):
         wide += gain * mu * touch[i, PUSH]
-    low, high = free - wide, free + wide
+    low, high = free - WIDER * wide, free + WIDER * wide
     mean = low if mean < low else high if mean > high else mean
     for _ in range(ROUNDS):
         total, rise = _slid(first, last, mean, wide, mu, slope, touch)
@@ -108,9 +122,10 @@ def agree(
             high = mean
         else:
             low = mean
-        if not low < after < high:
+        near = 1e-15 * (abs(mean) + abs(high - low))
+        if abs(after - mean) > near and not low < after < high:
             after = 0.5 * (low + high)
-        if abs(after - mean) <= 1e-15 * (abs(mean) + abs(high - low)):
+        if abs(after - mean) <= near:
             break
         mean = after
     return mean, 2.0 * mean - v
