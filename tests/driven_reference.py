@@ -170,6 +170,7 @@ def _answer(bent, held, mass, beam, omega, damping, load):
     if not damping:
         return np.linalg.solve(bent * lossy + held - omega**2 * mass, load)
     values, vectors = eigh(bent + held, mass)
+    values[: beam.rigid_motions] = 0.0  # whose rounding a ratio would damp, of its root
     own = values * lossy - omega**2 + 2j * damping * omega * np.sqrt(np.maximum(values, 0.0))
     return vectors @ ((vectors.T @ load) / own)
 

@@ -436,7 +436,7 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "segment", "count": 12, "of": "rubbed"}, SHAKEN),
         Case({"model": "fem", "count": 12, "of": "normal_on_beam", "mass": 0.02}, COARSE),
     ],
-    "slider.imbalance": [Case({"model": "fem", "count": 12, "mass": 0.02, "step": 2e-5}, SHAKEN)],
+    "slider.imbalance": [Case({"model": "fem", "count": 12, "mass": 2e-4, "step": 2e-5}, SHAKEN)],
     "slider.deflection": [
         Case({"model": "segment", "count": 12, "x": 0.31, "mass": 0.02}, COARSE),
         Case(
