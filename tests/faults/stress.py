@@ -50,6 +50,7 @@ from verify.identify import told as compared
 from verify.judge import compare, crossing, sizing
 from verify.models import (
     band_stack,
+    compression,
     division,
     driven_pencil,
     eigen,
@@ -116,6 +117,10 @@ def slow_motions_unseen(patch):
 
 def ground_that_lifts_nothing(patch):
     patch.setattr(links.Chain, "lifted", 0.0)
+
+
+def loads_read_off_the_shape(patch):
+    patch.setattr(compression, "best_read", lambda held, shape, strains: held.strain(shape))
 
 
 def slow_answers_as_they_are_factorised(patch):
@@ -981,6 +986,7 @@ FAULTS = {
         unknowns_in_one_unit: {"nearly-floating"},
         slow_answers_as_they_are_factorised: {"nearly-floating"},
         ground_that_lifts_nothing: {"nearly-rigid"},
+        loads_read_off_the_shape: {"softly-held-buckling"},
         slow_motions_unseen: {"tip-mass", "tip-mass-second-mode", "nearly-rigid"},
         root_off_in_its_twelfth_digit: {"closed-form-frequencies", "closed-form-shapes"},
         metres_and_pascals_felt: {"counted-frequencies", "nanometres-to-kilometres", "modulus", "density"},

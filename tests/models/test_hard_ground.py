@@ -74,7 +74,7 @@ def test_what_cannot_be_told_apart_is_refused_before_long(face, more):
 
 
 def test_a_search_begins_anew_the_less_often_the_more_it_costs():
-    assert [restarts(n) for n in (300, 10_000, 20_000, 80_000, 400_000, 2_000_000)] == [100, 100, 50, 12, 10, 10]
+    assert [restarts(n) for n in (300, 10_000, 20_000, 45_000, 400_000, 2_000_000)] == [100, 50, 25, 11, 10, 10]
 
 
 @settings(max_examples=40, deadline=None)

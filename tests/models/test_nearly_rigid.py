@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 from verify import Beam, PointForce, PointMass, PointSpring, Section, analytic_modes, fem_beam, segment_model
 from verify.errors import InputError
 from verify.models import polishing, response
-from verify.models.eigen import lowest
+from verify.models.eigen import _in_order, lowest
 from verify.segments.assembly import build_chain, chain_pencil
 
 LENGTH, STIFFNESS, RHO_A = 1.3, 7.0, 0.2
@@ -254,3 +254,36 @@ def test_both_slow_modes_behind_a_soft_stretch_go_as_the_root_of_its_softness(fa
         return face.solve_modes(beam, 2, 50).frequencies_hz / analytic_modes.solve_modes(beam, 2).frequencies_hz
 
     assert abs(over_exact(1e-13) / over_exact(1e-11) - 1.0).max() < 1e-8
+
+
+@FACES
+@pytest.mark.parametrize("parts", [30, 800, 8000])
+@pytest.mark.parametrize("softness", [1e-6, 1e-11])
+def test_a_bar_on_soft_ground_tips_over_under_its_closed_load(face, parts, softness):
+    """Under k L^2 / 12: of 800 elements half of it was lost, of 8000 it was eighty times as large."""
+    beam = bar(supports=("free", "free"), foundation=softness * STIFFNESS / LENGTH**4)
+    assert face.buckling_load(beam, parts) == pytest.approx(beam.foundation * LENGTH**2 / 12.0, rel=1e-9, abs=0.0)
+
+
+@FACES
+def test_a_stepped_bar_on_soft_ground_beyond_its_buckling_is_refused_however_many_parts_it_has(face):
+    """Ground of 1e-6 EI/L^4 holds it; a mode was told as no number."""
+    sections = tuple(
+        Section(length=share * LENGTH, bending_stiffness=ei, mass_per_length=m)
+        for share, ei, m in ((0.48, 5.3, 0.21), (0.52, 2.9, 0.05))
+    )
+    beam = bar(supports=("free", "free"), section=sections, foundation=1e-6, tension=-0.4)
+    load = analytic_modes.buckling_load(beam)
+    assert load == pytest.approx(1e-6 * LENGTH**2 / 12.0, rel=1e-6, abs=0.0)
+    with pytest.raises(InputError, match=f"buckles? at {load:.4g}".partition("e-")[0]):
+        face.solve_modes(beam, 3, 6000)
+
+
+def test_a_square_below_nothing_is_refused():
+    """As rounding of a check of buckling may leave one: half a wave under half as much again as it bears."""
+    pencil = chain_pencil(build_chain(bar(supports=("pinned", "pinned"), tension=-61.0), 12))
+    half_a_wave = np.sin(np.pi * np.arange(1.0, 12.0) / 12.0)[:, None]
+    with pytest.raises(
+        InputError, match=r"beam\.tension: a mode of 11 unknowns has an omega\^2 of -\de-03, below nothing"
+    ):
+        _in_order(pencil, half_a_wave, "by hand")

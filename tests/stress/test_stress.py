@@ -10,6 +10,7 @@ import pytest
 from faults.stress import (
     assembled_instead_of_factored,
     ground_that_lifts_nothing,
+    loads_read_off_the_shape,
     slow_motions_unseen,
     unlike_parts_unseen,
 )
@@ -99,6 +100,7 @@ def a_frequency_wrong_in_its_twelfth_digit(patch):
         ("mesh-a-million-to-one-elements", unlike_parts_unseen),
         ("nearly-rigid", slow_motions_unseen),
         ("nearly-rigid", ground_that_lifts_nothing),
+        ("softly-held-buckling", loads_read_off_the_shape),
         ("tip-mass-second-mode", slow_motions_unseen),
         ("tip-mass", slow_motions_unseen),
         ("near-resonance-segments", a_frequency_wrong_in_its_twelfth_digit),

@@ -142,6 +142,11 @@ def _elastic(pencil: FactoredPencil, vectors: Array) -> Array:
 def _in_order(pencil: FactoredPencil, vectors: Array, method: str, strains: Array | None = None) -> Eigenpairs:
     """The pairs of vectors (n, k), their values read from the factored quotient; `strains` as there."""
     values, vectors = factored_quotient(pencil, vectors, strains)
+    if values.min(initial=0.0) < 0.0:
+        raise InputError(
+            f"beam.tension: a mode of {pencil.n} unknowns has an omega^2 of {values.min():.0e}, below nothing: "
+            "compress the beam less, hold it better, or lower count"
+        )
     order = np.argsort(values, kind="stable")
     return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method)
 

@@ -64,7 +64,7 @@ def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
     pencil, last, change = inverse.pencil, np.zeros(0), inf
     for _ in range(_STEPS):
         vectors, strains = polished(inverse, vectors)
-        strains = _best_read(pencil, vectors, strains)
+        strains = best_read(pencil, vectors, strains)
         slow = factored_quotient(pencil, vectors, strains)[0] < SLOW * pencil.bending
         turned = _turned(pencil, vectors[:, slow], strains[:, slow])
         vectors[:, slow], strains[:, slow] = vectors[:, slow] @ turned, strains[:, slow] @ turned
@@ -107,7 +107,7 @@ def _with_missed(inverse: Inverse, vectors: Array) -> Array:
     return vectors
 
 
-def _best_read(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:
+def best_read(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:
     """Strains (m, k) of a solution, or off its vectors where these tell more.
 
     A spring so soft that the rounding of what it feels is less than that of the forces is read off the vector; what

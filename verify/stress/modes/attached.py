@@ -130,6 +130,18 @@ def compressed_error(gap: float) -> float:
     return worst
 
 
+def softly_held_buckling_error(softness: float) -> float:
+    """Of the loads at which 49 and 2000 parts of a free bar on ground of EI / L^4 over `softness` tip over.
+
+    It turns as a whole, under k L^2 / 12, and bends by a millionth of the ground's stiffness at the most.
+    """
+    beam = replace(FREE, foundation=FREE.bending_stiffness / FREE.length**4 / softness)
+    exact, tipping = MODELS["analytic"].buckling_load(beam, None), beam.foundation * beam.length**2 / 12.0
+    found = [MODELS[model].buckling_load(beam, count) for model in ("segment", "fem") for count in (49, 2000)]
+    bends = 0.01 / softness
+    return largest(0.0, *(abs(one / exact - 1.0) for one in found), abs(exact / tipping - 1.0) - bends)
+
+
 def crushed(excess: float) -> float:
     """The models' mode 1 beyond buckling, each in turn; the first that answers."""
     said: InputError | None = None
@@ -225,6 +237,16 @@ ROWS: tuple[Row, ...] = (
         promise=1e-13,
         error=compressed_error,
         seconds=2.0,
+    ),
+    Floor(
+        id="softly-held-buckling",
+        title="Loads at which a free bar on soft ground tips over, 49 and 2000 parts against the exact equation",
+        why="models/compression.py: loads are read from strains of a refined solution, whatever holds the beam softly.",
+        along="L^4/EI",
+        at=(1e6, 1e9, 1e12, 1e15),
+        promise=SMALL,
+        error=softly_held_buckling_error,
+        seconds=4.0,
     ),
     Refusal(
         id="beyond-buckling",
