@@ -68,7 +68,7 @@ def test_of_few_parts_whose_modes_are_all_alike_as_many_are_told_as_are_asked_fo
 @FACES
 @pytest.mark.parametrize("more", [{"mass": (PointMass(position=0.4, mass=0.1),)}, {"tension": -0.3}])
 def test_what_cannot_be_told_apart_is_refused_before_long(face, more):
-    """A search without an end took hours."""
+    """Of 3000 elements a search had not ended after nine minutes."""
     with pytest.raises(InputError, match="too close together to be told apart on so many parts"):
         face.solve_modes(bar(1e15, **more), 5, 1500)
 

@@ -56,7 +56,7 @@ def added_strains(elements: Elements, plain: FactoredPencil) -> FactoredPencil:
 def _lifted(elements: Elements, bending: float) -> float:
     """What a foundation lifts all eigenvalues above, 0 where masses or an axial force may take them down again.
 
-    What is left is as large as what bends: a motion that it bears may be rigid.
+    What is left is as large as what bends, for a motion that it bears may be rigid, and a million roundings of it.
     """
     beam, parts = elements.beam, elements.parts
     if beam.mass or beam.tension < 0.0 or elements.theory != "euler-bernoulli":

@@ -24,7 +24,7 @@ square would be 1e-9 of the eigenvalues of a million parts, and was 1e-12 of tho
 _RESTARTS = 10, 100
 """Of Lanczos, the fewest and the most after which it is given up: ordinary modes take one."""
 _RESTARTED = 5e5
-"""Unknowns times restarts, about."""
+"""Unknowns times restarts, about: of some thirty solves each that is a few seconds."""
 _SLOWEST = 2.0**-200
 """Omega^2 below which no unit grows."""
 

@@ -136,7 +136,7 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def lifted(self) -> float:
         """What ground lifts every omega^2 above, in its units; 0 where bodies or a push may take one down again.
 
-        What is left is as large as what bends: a motion that it bears may be rigid.
+        What is left is as large as what bends, for a motion that it bears may be rigid, and a million roundings of it.
         """
         if (
             self.tension < 0.0
