@@ -72,10 +72,10 @@ def test_a_motion_without_a_slider_is_skipped_with_the_reason_it_has():
 
 def test_the_kind_of_work_is_what_a_quantity_says_not_what_it_is_called():
     scene = load_scene("paper-slider")
-    work = {ask.name: ask.work for ask in asks_of(scene)}
-    assert work["friction-size"] == "harmonic"  # a slider's figure without a step in it
-    assert work["slider-order-fem"] == "in time"
-    assert {ask.work for ask in asks_of(load_scene("chain")) if ask.kind == "gate"} == {"equilibrium", "in time"}
+    work = {ask.name: ask.works for ask in asks_of(scene)}
+    assert work["friction-size"] == ("harmonic",)  # a slider's figure without a step in it
+    assert work["slider-order-fem"] == ("in time",)
+    assert {ask.works for ask in asks_of(load_scene("chain")) if ask.kind == "gate"} == {("equilibrium",), ("in time",)}
     stepped = plan_scene(scene).stepped
     assert "gate friction-size" not in stepped
     assert "gate slider-order-fem" in stepped

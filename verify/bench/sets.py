@@ -12,6 +12,7 @@ from verify.options import BenchSet
 if TYPE_CHECKING:
     from verify.bench.kind import Case
     from verify.judge.workbench import Workbench
+    from verify.quantities.kind import Work
     from verify.scenes.scene import Scene
 
 COUNTS, MODES, LINKS = (24, 49, 98, 196), (1, 5, 22), (49,)
@@ -27,6 +28,8 @@ class MethodSet(msgspec.Struct, frozen=True, kw_only=True):
     """Why it is left out where nobody names it; empty where the scene has what it takes."""
     cases: Callable[["Scene", Settled, "Workbench"], "Iterator[Case]"]
     """Raises InputError where the scene has not what it takes."""
+    works: tuple["Work", ...]
+    """Kinds of what its methods do."""
     elements: bool = True
     """Whether finite elements take part, and scikit-fem is imported."""
     compiled: bool = False
@@ -98,11 +101,13 @@ def _chain_cases(scene: "Scene", its: Settled, bench: "Workbench") -> "Iterator[
 SETS: dict[str, MethodSet] = {
     one.name: one
     for one in (
-        MethodSet(name="modes", unasked=_always, cases=_mode_cases),
-        MethodSet(name="harmonic", unasked=_undriven, cases=_field_cases),
-        MethodSet(name="transient", unasked=_undriven, cases=_transient_cases),
-        MethodSet(name="slider", unasked=_still, cases=_slider_cases, compiled=True),
-        MethodSet(name="chain", unasked=_unchained, cases=_chain_cases, elements=False, compiled=True),
+        MethodSet(name="modes", unasked=_always, cases=_mode_cases, works=("modes",)),
+        MethodSet(name="harmonic", unasked=_undriven, cases=_field_cases, works=("harmonic",)),
+        MethodSet(name="transient", unasked=_undriven, cases=_transient_cases, works=("in time",)),
+        MethodSet(name="slider", unasked=_still, cases=_slider_cases, works=("harmonic", "in time"), compiled=True),
+        MethodSet(
+            name="chain", unasked=_unchained, cases=_chain_cases, works=("in time",), elements=False, compiled=True
+        ),
     )
 }
 """In the order in which they are run."""

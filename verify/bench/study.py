@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.bench.request import Bench
-from verify.bench.sets import settled
+from verify.bench.sets import SETS, settled
 from verify.errors import InputError
 from verify.models.catalogue import discrete
 from verify.studies.kind import Progress, Study
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from verify.bench.found import BenchFound
     from verify.judge.workbench import Need, Workbench
+    from verify.quantities.kind import Work
     from verify.scenes.scene import Scene
     from verify.studies.told import Found
 
@@ -42,6 +43,10 @@ class BenchStudy(Study[Bench, "BenchFound"]):
     def models(self, asked: Bench, scene: "Scene") -> tuple[str, ...]:
         """All."""
         return tuple(model.name for model in discrete("solve_modes", scene.beam))
+
+    def works_on(self, asked: Bench, scene: "Scene") -> "tuple[Work, ...]":
+        """Of every set that is run."""
+        return tuple(dict.fromkeys(work for name in settled(asked, scene).sets for work in SETS[name].works))
 
     def told(self, asked: Bench, scene: "Scene") -> str:
         """Which sets, at which sizes, for how long at most."""

@@ -19,7 +19,7 @@ from verify.commands.shared import (
 def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Print what SCENE will run, what is skipped, and why; exit 1 where something cannot run.
 
-    It solves nothing, but for two exact fields under a slider, by which it says how the slider is coupled.
+    It solves nothing but two or three exact fields under a slider, by which it says how the slider is coupled.
 
     Example: `verify plan paper`
     """

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 Figure: TypeAlias = float | complex | Bracket
 """What a quantity is evaluated to."""
 
-Work: TypeAlias = Literal["closed form", "matrices", "modes", "harmonic", "equilibrium", "in time"]
+Work: TypeAlias = Literal["closed form", "matrices", "modes", "harmonic", "equilibrium", "in time", "promise"]
 """What is done for a figure: nothing but arithmetic; matrices, of which nothing is solved; eigenvalues, of models of
-parts, for the exact beam's are closed forms; driven fields; equilibria and modes of the nonlinear chain; motion."""
+parts, for the exact beam's are closed forms; driven fields; equilibria and modes of the nonlinear chain; motion; any of
+these on beams of its own, where a promise is pushed."""
 
 
 Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]

@@ -110,7 +110,7 @@ def _figure(gate: "Gate", ask: Ask, result: GateResult | None) -> Figure:
         meaning=found.summary if found else "",
         arguments=gate.arguments,
         models=tuple(models),
-        work=ask.work,
+        work=" and ".join(ask.works),
         unit=found.unit if found else "",
         expected=shown_expectation(given_band(gate)),
         band=given_band(gate),

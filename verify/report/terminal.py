@@ -355,6 +355,8 @@ def print_plan(plan: "Plan") -> None:
         console.print(f"harmonic fields, for {_who(plan.harmonic)}", markup=False)
     if plan.compiled:
         console.print(f"equilibria and modes of the nonlinear chain, for {_who(plan.compiled)}", markup=False)
+    if plan.promises:
+        console.print(f"promises pushed on beams of their own, for {_who(plan.promises)}", markup=False)
     if plan.stepped:
         console.print(f"motion in time, for {_who(plan.stepped)}", markup=False)
     for chosen in plan.chosen:

@@ -27,7 +27,8 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True):
     name: str
     told: str = ""
     """What a study will do."""
-    work: Work = "closed form"
+    works: tuple[Work, ...] = ("closed form",)
+    """Kinds of what is done for it, one at least."""
     needs: tuple[Need, ...] = ()
     models: tuple[str, ...] = ()
     """Models that are used beside the needs, by name."""
@@ -55,7 +56,7 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def closed_form(self) -> bool:
         """Whether nothing is solved for it: the exact beam's modes are closed forms."""
-        return not self.problem and not self.needs and self.work in ("closed form", "modes")
+        return not self.problem and not self.needs and set(self.works) <= {"closed form", "modes"}
 
 
 def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
@@ -79,7 +80,7 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
     try:
         found = quantity(one.quantity)
         if isinstance(one, Claim) and is_of_study(one, scene):
-            return Ask(kind=kind, name=one.id, work=found.work, slides=True)
+            return Ask(kind=kind, name=one.id, works=(found.work,), slides=True)
         arguments = arguments_of(found, one.arguments)
         needs = needs_of(found, arguments, scene)
     except InputError as error:
@@ -87,7 +88,7 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
     return Ask(
         kind=kind,
         name=one.id,
-        work=found.work,
+        works=(found.work,),
         needs=needs,
         models=(*found.models, *models_named(arguments)),
         slides=found.arguments.slides,
@@ -106,7 +107,7 @@ def _study_asks(scene: "Scene") -> Iterable[Ask]:
             yield Ask(
                 kind="study",
                 name=study.name,
-                work=study.work_on(asked, scene),
+                works=study.works_on(asked, scene),
                 models=study.models(asked, scene),
                 slides=study.slides,
                 problem=str(error),
@@ -116,7 +117,7 @@ def _study_asks(scene: "Scene") -> Iterable[Ask]:
             kind="study",
             name=study.name,
             told=study.told(asked, scene),
-            work=study.work_on(asked, scene),
+            works=study.works_on(asked, scene),
             needs=study.needs(asked, scene),
             models=study.models(asked, scene),
             slides=study.slides,
@@ -162,6 +163,6 @@ def every_work(asks: Iterable[Ask]) -> dict[Any, tuple[Ask, ...]]:
     """Asks by what is done, or would be, for them."""
     found: dict[Any, tuple[Ask, ...]] = {}
     for ask in asks:
-        work = "closed form" if ask.closed_form else ask.work
-        found[work] = (*found.get(work, ()), ask)
+        for work in ("closed form",) if ask.closed_form else ask.works:
+            found[work] = (*found.get(work, ()), ask)
     return found

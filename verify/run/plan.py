@@ -63,6 +63,8 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True):
     """Who asks for equilibria or modes of the nonlinear chain."""
     assembled: tuple[str, ...] = ()
     """Who asks for matrices of which nothing is solved."""
+    promises: tuple[str, ...] = ()
+    """Who pushes a promise on beams of its own: with solves, fields and motions that are not listed."""
     motions: int = 0
     """Simulations in time that the studies will do."""
 
@@ -89,6 +91,7 @@ def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
         stepped=by_work.get("in time", ()),
         compiled=by_work.get("equilibrium", ()),
         assembled=by_work.get("matrices", ()),
+        promises=by_work.get("promise", ()),
         chosen=_chosen(scene, asks),
         skipped=(*_set_aside(scene, overrides), *_skipped(scene, asks)),
         problems=tuple(Problem(*pair) for pair in problems),
@@ -98,7 +101,7 @@ def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
 
 def _unstable(scene: "Scene", ask: Ask) -> str:
     """Why a beam has no vibration that somebody asks for; empty where it has."""
-    vibrates = ask.work in ("modes", "harmonic") or (ask.work == "in time" and ask.kind == "study")
+    vibrates = {"modes", "harmonic"} & {*ask.works} or ("in time" in ask.works and ask.kind == "study")
     if scene.beam.tension >= 0.0 or not vibrates:
         return ""
     from verify.exact.buckling import check_stable
@@ -168,8 +171,13 @@ def skipped_by(scene: "Scene") -> tuple[Choice, ...]:
 
 
 def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
-    """What this scene leaves out, with the reason; what is asked for and cannot run is not left out."""
+    """What this scene leaves out, with the reason; what is asked for and cannot run is not left out.
+
+    What promises take nobody knows before they are pushed: beside one nothing but studies is said to be left out.
+    """
     work, left = every_work(asks), []
+    if "promise" in work:
+        return tuple(_skipped_studies(scene))
     if not set(work) - {"closed form"}:
         left.append(Choice("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
     else:

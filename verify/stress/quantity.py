@@ -38,7 +38,7 @@ SHARE = Quantity(
     "1",
     "Of a row's promise: error over floor, exponent over promised growth; 0 of what is refused as promised.",
     OfRow,
-    "modes",
+    "promise",
     _share,
     kernels=_kernels,
 )

@@ -26,7 +26,7 @@ class Stress(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 class StressStudy(Study[Stress, "StressFound"]):
     """Measures rows one by one, each once for gates and table."""
 
-    name, section, work = "stress", Stress, "modes"
+    name, section, work = "stress", Stress, "promise"
     title = "Promises pushed until they break"
 
     def check_run(self, asked: Stress, scene: "Scene") -> None:

@@ -77,9 +77,9 @@ class Study(Generic[Asked, Out]):
         """(which simpler model will do, why, with the size of what it neglects), for the plan."""
         return ()
 
-    def work_on(self, asked: Asked, scene: "Scene") -> "Work":
-        """What kind of work it is on this scene."""
-        return self.work
+    def works_on(self, asked: Asked, scene: "Scene") -> "tuple[Work, ...]":
+        """What kinds of work it is on this scene."""
+        return (self.work,)
 
     def told(self, asked: Asked, scene: "Scene") -> str:
         """What it will do, in a few words, for the plan."""

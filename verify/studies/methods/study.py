@@ -109,9 +109,9 @@ class MethodsStudy(Study[Methods, "MethodsFound"]):
         if asked.modes is not None:
             TwoModes(beam=scene.beam, modes=asked.modes)
 
-    def work_on(self, asked: Methods, scene: "Scene") -> "Work":
-        """Steps of a slider where the scene has one."""
-        return "in time" if scene.slider else "harmonic"
+    def works_on(self, asked: Methods, scene: "Scene") -> "tuple[Work, ...]":
+        """Fields, and steps of a slider where the scene has one."""
+        return ("harmonic", "in time") if scene.slider else ("harmonic",)
 
     def models(self, asked: Methods, scene: "Scene") -> tuple[str, ...]:
         """All that can."""
