@@ -43,7 +43,7 @@ def doctored(i, **change):
 
 def test_nothing_moves_where_nothing_changed():
     (text,) = texts(ROWS)
-    assert text == "against 2026-01-02: of 6 rows no ratio between methods moved beyond its spread, and no error"
+    assert text == "against 2026-01-02: of 6 rows no ratio between methods moved beyond its spread, and no error of 6"
 
 
 def test_a_machine_three_times_as_fast_moves_nothing():
@@ -64,6 +64,27 @@ def test_a_method_that_became_slower_is_named_and_nothing_else(i):
 def test_a_change_within_the_spread_of_both_is_none():
     assert "no ratio" in texts(doctored(1, warm_s=1.25 * 2.1e-3, spread_s=0.2 * 2.1e-3))[0]
     assert "takes 1.25 times" in texts(doctored(1, warm_s=1.25 * 2.1e-3))[0]
+
+
+def test_of_a_row_that_stands_alone_no_ratio_is_said_not_to_move():
+    pair, alone = ROWS[:2], replace(BASE, set="harmonic", about="", count=7)
+    (text,) = texts((*pair, alone), (*pair, alone))
+    assert "of 2 rows no ratio" in text
+    assert text.endswith("and no error of 3")
+    (lonely,) = moved((alone,), (alone,), "2026-01-02")
+    assert "no ratio" not in lonely.text
+    assert not lonely.earned
+
+
+@pytest.mark.parametrize("wrong", [{"warm_s": -5.0}, {"warm_s": 1e-320}, {"warm_s": 1e308}, {"set_up_s": -1.0}])
+def test_times_that_no_clock_gives_are_refused(tmp_path, wrong):
+    """Their logarithms would be a traceback, and their ratio no number."""
+    import msgspec
+
+    file = tmp_path / "earlier.json"
+    file.write_bytes(msgspec.json.encode({"scene": "paper", "rows": [msgspec.to_builtins(BASE) | wrong]}))
+    with pytest.raises(InputError, match=f"rows.0..{next(iter(wrong))}"):
+        read_earlier(file)
 
 
 def test_another_answer_is_named():

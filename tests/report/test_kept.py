@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from msgspec.structs import replace
 from strip import STRIP
 
 from verify import __version__, run_scene
@@ -196,6 +197,28 @@ def test_anything_else_is_refused_in_one_sentence(tmp_path, capsys, text, said):
     assert err.startswith(f"verify: run = '{path}' ")
     assert said in err
     assert not (tmp_path / "x.html").exists()
+
+
+@pytest.mark.parametrize("value", [1e308, -1e308])
+def test_a_number_that_no_axis_holds_is_refused_where_it_is_read(tmp_path, value):
+    bar = replace(load_scene("free-free-bar"), gate=(), claim=())
+    folder = keep(run_scene(bar), tmp_path, "strip", "verify run", 9).folder
+    kept = json.loads((folder / "run.json").read_text("utf-8"))
+    chart = next(one for one in charts_in(kept) if one["lines"])
+    chart["lines"][0]["y"] = [value] * len(chart["lines"][0]["y"])
+    (folder / "run.json").write_text(json.dumps(kept), encoding="utf-8")
+    with pytest.raises(InputError, match="is no run as verify .* keeps it .*1e200"):
+        read_kept(folder / "run.json", "run")
+
+
+def charts_in(data):
+    """Every chart of a kept run, wherever it stands."""
+    if isinstance(data, dict):
+        if "lines" in data and "bars" in data:
+            yield data
+        data = list(data.values())
+    for one in data if isinstance(data, list) else ():
+        yield from charts_in(one)
 
 
 def test_the_page_that_is_kept_is_the_page_of_the_result(strip, tmp_path):

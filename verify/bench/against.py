@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from verify.bench.found import BenchFound
 from verify.bench.rows import Row, Sentence
 from verify.errors import InputError
+from verify.options import BenchSet
 
 LEAST = 0.1
 """Logarithm of a change below which nothing is said, whatever the spread."""
@@ -79,9 +80,18 @@ def moved(old: Iterable[Row], new: Iterable[Row], when: str) -> tuple[Sentence, 
         sentences += _ratios_moved([(before[key], after[key]) for key in keys], when)
     if sentences:
         return tuple(sentences)
-    first = after[common[0]]
-    text = f"against {when}: of {len(common)} rows no ratio between methods moved beyond its spread, and no error"
-    return (Sentence(set=first.set, about="", methods=("", ""), text=text, earned=True),)
+    beside_others = sum(len(keys) for keys in groups.values() if len(keys) > 1)
+    return (_nothing_moved(after[common[0]].set, len(common), beside_others, when),)
+
+
+def _nothing_moved(of: BenchSet, n_rows: int, n_beside_others: int, when: str) -> Sentence:
+    """Of how many rows no error moved, and of how many no ratio; of times nothing is earned where there is none."""
+    if n_beside_others:
+        rows = f"of {n_beside_others} rows no ratio between methods moved beyond its spread"
+        text = f"against {when}: {rows}, and no error of {n_rows}"
+    else:
+        text = f"against {when}: no error of {n_rows} moved; of times nothing is said, for none stands beside another's"
+    return Sentence(set=of, about="", methods=("", ""), text=text, earned=n_beside_others > 0)
 
 
 def _timed(rows: Iterable[Row]) -> dict[Key, Row]:

@@ -1,11 +1,17 @@
 """Rows and sentences of a bench, and what the machine was: plain values that JSON holds."""
 
-from typing import Any
+from typing import Annotated, Any, TypeAlias
 
 import msgspec
+from msgspec import Meta
 
 from verify.bench.kind import Setting
 from verify.options import BenchSet
+
+
+Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e12)]
+Taken: TypeAlias = Annotated[float, Meta(ge=1e-12, le=1e12)]
+"""Seconds of what was run, over which others are told: no clock gives less."""
 
 
 class Row(msgspec.Struct, frozen=True, kw_only=True):
@@ -24,15 +30,15 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     reference_uncertainty: float | None = None
     order: float | None = None
     """Observed from the coarser row before it."""
-    warm_s: float | None = None
+    warm_s: Taken | None = None
     """Seconds of a run after its set-up, median of interleaved rounds."""
-    spread_s: float | None = None
+    spread_s: Seconds | None = None
     """Between the quartiles of the rounds, of all that each ran."""
-    set_up_s: float | None = None
+    set_up_s: Seconds | None = None
     """Seconds before it, for models and modes that are made once; None where the run is all there is."""
-    first_s: float | None = None
+    first_s: Seconds | None = None
     """The first call in its process, with imports and compiled code brought in."""
-    compile_s: float | None = None
+    compile_s: Seconds | None = None
     """Of compiling what no method before it in its set has compiled, with nothing kept on disk; None where nothing is
     compiled or nobody asked."""
     rounds: int = 0

@@ -1,10 +1,13 @@
 """What a chart shows, as plain values: axes, lines, bars, a map, marks. Nothing is drawn and nothing imported here."""
 
-from typing import Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
+from msgspec import Meta
 
-Numbers: TypeAlias = tuple[float | None, ...]
+Number: TypeAlias = Annotated[float, Meta(ge=-1e200, le=1e200)]
+"""What an axis can hold: nothing larger is read from a file."""
+Numbers: TypeAlias = tuple[Number | None, ...]
 """None, and what is not finite, is a gap."""
 Dash: TypeAlias = Literal["solid", "dash", "dot", "dashdot", "longdash"]
 Marker: TypeAlias = Literal["", "circle", "square", "diamond", "triangle", "cross", "star"]
@@ -16,7 +19,7 @@ class Axis(msgspec.Struct, frozen=True):
     title: str
     """With its unit."""
     log: bool = False
-    ticks: tuple[float, ...] = ()
+    ticks: tuple[Number, ...] = ()
     """Where they are chosen: every size that was solved."""
     backwards: bool = False
     """From large to small."""
@@ -59,7 +62,7 @@ class Bars(msgspec.Struct, frozen=True):
     """Bars from the left, the first at the bottom."""
 
     names: tuple[str, ...]
-    values: tuple[float, ...]
+    values: tuple[Number, ...]
     colours: tuple[str, ...]
     words: tuple[str, ...] = ()
     """Of each, at its end."""
@@ -70,18 +73,18 @@ class Map(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     """What the colours are."""
-    x: tuple[float, ...]
-    y: tuple[float, ...]
+    x: tuple[Number, ...]
+    y: tuple[Number, ...]
     values: tuple[Numbers, ...]
     """A row for each y."""
-    most: float | None = None
+    most: Number | None = None
     """What stands for all larger values too, where they are cut off."""
 
 
 class Mark(msgspec.Struct, frozen=True):
     """An upright line with words at its top."""
 
-    x: float
+    x: Number
     words: str
     colour: str
 
