@@ -253,16 +253,17 @@ def least_seconds(job, rounds=3):
     return min(found)
 
 
+@pytest.mark.parametrize("beam", [BEAM, LOSSY], ids=["undamped", "lossy"])
 @pytest.mark.parametrize("model", ["segment", "fem"])
-def test_a_sweep_takes_a_fraction_of_a_loops_time(model):
-    """Two hundred times faster where nothing else runs; five is asked for."""
-    module, size = SIZED[model]
-    frequencies = np.linspace(4000.3, 4600.7, 60)
-    sweep = least_seconds(lambda: module.sweep_harmonic(LOSSY, FORCES, frequencies, *size).deflection(X))
+def test_a_sweep_takes_a_tenth_of_a_loops_time_at_most(model, beam):
+    """A hundred fields of 49 parts, read at as many places: 19 to 52 times faster when measured."""
+    module, places = SIZED[model][0], np.linspace(0.0, beam.length, 100)
+    frequencies = np.linspace(4000.3, 4600.7, 100)
+    sweep = least_seconds(lambda: module.sweep_harmonic(beam, FORCES, frequencies, 49).deflection(places), rounds=7)
     loop = least_seconds(
-        lambda: [module.solve_harmonic(LOSSY, FORCES, float(f), *size).deflection(X) for f in frequencies]
+        lambda: [module.solve_harmonic(beam, FORCES, float(f), 49).deflection(places) for f in frequencies], rounds=2
     )
-    assert loop > 5.0 * sweep
+    assert loop > 10.0 * sweep, loop / sweep
 
 
 @pytest.mark.parametrize("name", SIZED)
