@@ -207,7 +207,7 @@ def test_a_number_that_no_axis_holds_is_refused_where_it_is_read(tmp_path, value
     chart = next(one for one in charts_in(kept) if one["lines"])
     chart["lines"][0]["y"] = [value] * len(chart["lines"][0]["y"])
     (folder / "run.json").write_text(json.dumps(kept), encoding="utf-8")
-    with pytest.raises(InputError, match="is no run as verify .* keeps it .*1e.200"):
+    with pytest.raises(InputError, match=r"is no run as verify .* keeps it .*1e.200"):
         read_kept(folder / "run.json", "run")
 
 

@@ -1,6 +1,6 @@
 """Scenes and command lines that nobody wrote: each is answered, refused in a sentence, or a fault of the suite's.
 
-300 of them by default. `pytest -m hostile` takes 10 000 others, for an hour or two, and 1000 of a second kind.
+200 of them by default. `pytest -m hostile` takes 10 000 others, for an hour or two, and 1000 of a second kind.
 """
 
 from functools import cache
@@ -12,7 +12,7 @@ from watched import timeless, wrong_with
 
 from verify.bench import running
 
-IN_A_ROW = 30
+IN_A_ROW = 20
 MANY = 100
 
 

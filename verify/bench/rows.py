@@ -8,7 +8,6 @@ from msgspec import Meta
 from verify.bench.kind import Setting
 from verify.options import BenchSet
 
-
 Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e12)]
 Taken: TypeAlias = Annotated[float, Meta(ge=1e-12, le=1e12)]
 """Seconds of what was run, over which others are told: no clock gives less."""

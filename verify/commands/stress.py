@@ -67,7 +67,9 @@ def stress(
                     click.echo(_measured(one), err=True)
         except KeyboardInterrupt:
             broken_off = True
-    _show(result := told(found), as_json, layout, None if broken_off else target)
+    result = told(found)
+    if found or not broken_off:  # of nothing measured there is nothing to say
+        _show(result, as_json, layout, None if broken_off else target)
     if broken_off:
         raise KeyboardInterrupt
     if not result.held:

@@ -98,8 +98,9 @@ def _fits(one: Outcome) -> Iterator[dict[str, Any]]:
 def stress_table(found: StressFound) -> Table:
     """What is promised, measured and left, and how far it was pushed."""
     return Table(
-        before="Each row pushes one figure towards where it breaks. A floor is the most its error may be, a growth the "
-        "largest exponent of a cost, a refusal the field that one sentence has to name. Margin: promise over measured.",
+        before="Each row pushes one figure along what makes it hard, or takes a list of cases in turn. A floor is the "
+        "most its error may be, a growth the largest exponent of a cost, a refusal the field that one sentence has to "
+        "name. Margin: promise over measured.",
         columns=(
             Column("row", left=True),
             Column("promise", ".2g"),

@@ -94,9 +94,9 @@ def _peaks(model: str) -> tuple[float, ...]:
     return tuple(float(line) for line in done.stdout.split())
 
 
-def dense_megabytes(n: float) -> float:
-    """K and M of so many elements as dense matrices and the vectors, 3 x 8 bytes an entry."""
-    return 3.0 * 8.0 * (2.0 * n) ** 2 / 2.0**20
+def dense_megabytes(model: str) -> Callable[[float], float]:
+    """N -> what K, M and the vectors of so many parts take as dense matrices, 8 bytes an entry: not run, counted."""
+    return lambda n: 3.0 * 8.0 * MODELS[model].unknowns(STRIP, int(n)) ** 2 / 2.0**20
 
 
 def chain_seconds(n: float) -> float:
@@ -174,7 +174,7 @@ ROWS: tuple[Row, ...] = (
             unit="MB",
             of="megabytes",
             cost=megabytes(model),
-            beside=dense_megabytes,
+            beside=dense_megabytes(model),
             beside_at=(300, 1000, 3000),
             textbook=f"dense K, M and vectors of {parts}",
             seconds=5.0,
