@@ -40,7 +40,8 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     poissons_ratio: float = 0.33
     """nu; used by Timoshenko's theory and a plate's alone."""
     loss_factor: Relative = 0.0
-    """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2."""
+    """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2, times
+    the share of bending and shear in the mode's stiffness where springs, ground or an axial force resist as well."""
     section: tuple[Section, ...] = ()
     """Pieces from left to right where the beam is stepped; their lengths add up to `length`."""
     mass: tuple[PointMass, ...] = ()

@@ -10,14 +10,14 @@ from verify.beam import Beam
 from verify.elements.curvatures import curvature_weights
 from verify.elements.linear import check, leading_sign
 from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, stiffness_matrix
-from verify.elements.pencil import element_pencil
+from verify.elements.pencil import damped_stiffness, element_pencil
 from verify.elements.weighing import weighed
 from verify.models.arrays import Array, Indices
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.places import as_typed
-from verify.models.time_basis import TimeBasis, check_held
+from verify.models.time_basis import TimeBasis, check_held, own_ratios
 
 Nodal = Callable[[Indices], tuple[Array, Array]]
 """Node numbers -> deflection and slope (per element length) of all modes there, each (len(numbers), n)."""
@@ -34,7 +34,7 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
     check_held(beam)
     uniform = beam.supports == ("pinned", "pinned") and beam.uniform and not beam.section and n_elements > 1
     elements = build_elements(beam, n_elements)
-    omegas, nodal, method = _pinned(beam, n_elements) if uniform else _dense(elements)
+    omegas, nodal, method, ratios = _pinned(beam, n_elements) if uniform else _dense(elements)
     parts, basis = elements.parts, elements.basis
     node, on_mesh = _nodes(basis), _on_mesh(parts)
     layout: Literal["C", "F"] = "F" if uniform else "C"  # of what BLAS sums, as it rounds by it
@@ -61,6 +61,7 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
         edges=parts.nodes * parts.unit,
         degree=3,
         method=method,
+        ratios=ratios,
     )
 
 
@@ -95,7 +96,7 @@ def _on_mesh(parts: Parts) -> Callable[[Array], Array]:
     return lambda x: np.maximum(np.asarray(x) / unit, nodes[inner.searchsorted(x, side="right")])
 
 
-def _dense(elements: Elements) -> tuple[Array, Nodal, str]:
+def _dense(elements: Elements) -> tuple[Array, Nodal, str, Array | None]:
     beam, unit = elements.beam, elements.parts.unit
     pencil = element_pencil(elements)
     check_dense(pencil, "motion in time")
@@ -104,10 +105,12 @@ def _dense(elements: Elements) -> tuple[Array, Nodal, str]:
     nodal = elements.all_values(vectors / np.sqrt(beam.mass_per_length * unit))
     everywhere = np.ascontiguousarray((nodal * leading_sign(elements, nodal)[:, None]).T)
     omegas = np.sqrt(values) * beam.wave_constant / unit**2
-    return omegas, lambda i: (everywhere[deflections[i]], everywhere[slopes[i]]), "dense eigenvalues"
+    unlike = beam.loss_factor and beam.lossless
+    ratios = own_ratios(pencil, vectors, damped_stiffness(elements, pencil)) if unlike else None
+    return omegas, lambda i: (everywhere[deflections[i]], everywhere[slopes[i]]), "dense eigenvalues", ratios
 
 
-def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
+def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str, None]:
     """Equal elements between pinned ends: w_j = W sin(mu j), slopes T cos(mu j), two branches for each mu = m pi / N.
 
     The rows of the matrices at an inner node are scikit-fem's, of three elements. Frequencies come from the
@@ -127,7 +130,7 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
         deflections, slopes = scales * waves.take(nodes[:, None] * numbers % (2 * n), axis=1)
         return deflections, slopes
 
-    return np.sqrt(values) * beam.wave_constant / element**2, nodal, "two by two for every wavelength"
+    return np.sqrt(values) * beam.wave_constant / element**2, nodal, "two by two for every wavelength", None
 
 
 def _branches(n: int) -> tuple[Array, Array, Array, Array]:

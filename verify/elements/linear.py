@@ -157,9 +157,9 @@ def solve_harmonic(
     """The steady field of the elements under harmonic point forces, e^{+i omega t}.
 
     Stiffness stays factored, so the error has no floor that grows with the mesh. Damping: the beam's loss
-    factor, or `modal_damping` zeta of every mode (near a resonance eta = 2 zeta). Raises InputError; an
-    undamped resonance of the mesh is refused, and both dampings together where springs, an axial force or a
-    foundation have no loss.
+    factor, or `modal_damping` zeta of every mode (near a resonance eta = 2 zeta where all stiffness has the loss).
+    Raises InputError; an undamped resonance of the mesh is refused, and both dampings together where springs, an axial
+    force or a foundation have no loss.
     """
     forces = as_forces(forces)
     check_asked(beam, 1, n_elements, grading, theory)

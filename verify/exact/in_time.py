@@ -65,7 +65,7 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
         edges=_edges(beam, float(fourth[-1])),
         degree=DEGREE,
         method=f"the first {n_modes} exact modes, the rest following at once",
-        tail=lambda forces, frequency, damping: _tail(beam, omegas, shapes, forces, frequency, damping),
+        tail=lambda forces, frequency, damping: _tail(beam, omegas, shapes, forces, frequency, float(damping)),
     )
 
 

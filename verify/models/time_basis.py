@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from math import comb, factorial
+from typing import TypeAlias
 
 import numpy as np
 
@@ -9,7 +10,11 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
+from verify.models.pencil import FactoredPencil
 from verify.models.places import Numbers, as_asked, keep_lines, places
+
+Ratio: TypeAlias = float | Array
+"""Of damping: of all modes, or (n,), of each."""
 
 
 class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
@@ -34,11 +39,14 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
     """Of those polynomials."""
     method: str
     """Where the modes come from."""
-    tail: Callable[[Sequence[PointForce], float, float], Callable[[Array, int], ComplexArray]] | None = None
+    tail: Callable[[Sequence[PointForce], float, Ratio], Callable[[Array, int], ComplexArray]] | None = None
     """What modes beyond the last would add: (forces, frequency_hz, damping) -> (x, derivative) -> (len(x),) complex.
 
     None where no mode is cut off.
     """
+    ratios: Array | None = None
+    """(n,), what the beam's loss factor comes to at each mode's own frequency: half of it times the share of what has
+    loss in the mode's stiffness. None where all has: half of it is every mode's."""
     turns: Callable[[], Array] | None = None
     """() -> (n, bodies): how far the bodies of `beam.mass` turn; None where they turn as the shapes do there."""
 
@@ -54,6 +62,39 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
     def deflection(self, x: Numbers) -> Array:
         """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg); a number is a row of one. Raises InputError off it."""
         return as_asked(self.shapes(places("x", x, self.beam.length).ravel(), 0), x)
+
+
+def own_ratios(pencil: FactoredPencil, vectors: Array, lossy: ComplexArray) -> Array:
+    """`TimeBasis.ratios`, (n,), of modes (columns) and D with its losses, (m,): of the first order in them.
+
+    What a loss factor and what has none make of a mode together couples it to the others by no more than that.
+    """
+    energies = pencil.strain(vectors) ** 2
+    return np.asarray(0.5 * (lossy.imag @ energies) / (pencil.stiffness @ energies))
+
+
+def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:
+    """The damping ratio of every mode, one or (n,): `ratio` if given, else what the beam's loss factor comes to.
+
+    Raises InputError where a mode would not swing.
+    """
+    if ratio is not None or basis.ratios is None:
+        return 0.5 * basis.beam.loss_factor if ratio is None else ratio
+    if basis.ratios.max() >= 1.0:
+        worst = int(basis.ratios.argmax())
+        raise InputError(
+            f"beam.loss_factor = {basis.beam.loss_factor!r} comes to a ratio of {basis.ratios[worst]:.3g} in mode "
+            f"{worst + 1}, which does not swing: give a smaller one or modal_damping"
+        )
+    return basis.ratios
+
+
+def damping_in_words(damping: Ratio, beam: Beam) -> str:
+    """A ratio of every mode, or those that the beam's loss factor comes to."""
+    if isinstance(damping, np.ndarray):
+        ends = dict.fromkeys(f"{one:.3g}" for one in (damping.min(), damping.max()))
+        return f"what the loss factor {beam.loss_factor:g} comes to in each mode, a ratio of {' to '.join(ends)}"
+    return f"a ratio {damping:g} of every mode"
 
 
 def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:

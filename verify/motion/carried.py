@@ -73,8 +73,9 @@ def yielding_at(request: Request, x: float, at: Array, basis: TimeBasis | None) 
     Of the modes where there are any, else of the model's steady fields. Raises InputError.
     """
     if basis:
-        lifted = basis.shapes(at, 0).T @ modal_receptance(basis, x, request.omega, request.damping)
-        return np.asarray(lifted), modal_turning(basis, x, at, request.omega, request.damping)
+        damping = request.damping_in(basis)
+        lifted = basis.shapes(at, 0).T @ modal_receptance(basis, x, request.omega, damping)
+        return np.asarray(lifted), modal_turning(basis, x, at, request.omega, damping)
     unit = steady_field(request, (PointForce(position=x),))
     turned = steady_field(request, couple(request.beam, x, request.frequency_hz))
     return np.asarray(unit.deflection(at)), np.asarray(turned.slope(at))
@@ -82,7 +83,8 @@ def yielding_at(request: Request, x: float, at: Array, basis: TimeBasis | None) 
 
 def steady_field(request: Request, forces: tuple[PointForce, ...]) -> "HarmonicField":
     """The steady field of the request's model and damping under these forces. Raises InputError."""
-    return damped_field(request.model, request.count, request.beam, forces, request.frequency_hz, request.damping)
+    damping = request.damping if request.damping_replaced else None
+    return damped_field(request.model, request.count, request.beam, forces, request.frequency_hz, damping)
 
 
 def damped_field(
@@ -96,7 +98,7 @@ def damped_field(
     """The steady field of a model with this damping ratio, that of the beam itself unless given. Raises InputError."""
     check_count(name, count)
     model, settings = MODELS[name], {}
-    if damping is not None and damping != 0.5 * beam.loss_factor:
+    if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
         by_mode = "modal_damping" in model.field_settings
         beam = replace(beam, loss_factor=0.0 if by_mode else 2.0 * damping)
         settings = {"modal_damping": damping} if by_mode else {}
@@ -117,7 +119,7 @@ def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Cou
         x = put_on(request, request.slider)[0]
         q = q + weighed_down(basis, x, request.slider.normal_force)
         if stage.forced is None:
-            added = carried_along(basis, stage, x, request.slider, request.damping)
+            added = carried_along(basis, stage, x, request.slider, request.damping_in(basis))
             q, rates = q + added[0], rates + added[1]
     return stage.start(q, rates)
 

@@ -10,7 +10,7 @@ from verify.beam import PointForce
 from verify.errors import InputError
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.fields import RESONANCE, phasor, refuse_resonance
-from verify.models.time_basis import TimeBasis
+from verify.models.time_basis import Ratio, TimeBasis
 
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
@@ -61,7 +61,7 @@ class Answer(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return still.real, moving.real
 
 
-def modal(basis: TimeBasis, forces: Sequence[PointForce], damping: float) -> Modal:
+def modal(basis: TimeBasis, forces: Sequence[PointForce], damping: Ratio) -> Modal:
     """A basis with the ratio `damping` in every mode, under the forces."""
     loads = sum((phasor(f) * basis.loads(f.position) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
     return Modal(
@@ -161,13 +161,13 @@ def advanced(modes: Modal, z: Array, t: Any) -> Array:
     return np.asarray(np.exp(-modes.sigmas * t) * (z[0] * np.cos(modes.omegas * t) - z[1] * np.sin(modes.omegas * t)))
 
 
-def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: float) -> None:
+def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) -> None:
     """Raise InputError where an undamped mode is driven at its own frequency."""
-    if damping or not frequency_hz:
+    if not frequency_hz:
         return
     ratio = np.abs(2.0 * np.pi * frequency_hz / basis.omegas - 1.0)
     nearest = int(ratio.argmin())
-    if ratio[nearest] < RESONANCE:
+    if ratio[nearest] < RESONANCE and not np.broadcast_to(damping, ratio.shape)[nearest]:
         refuse_resonance(basis.model, frequency_hz, nearest + 1, float(basis.omegas[nearest] / (2.0 * np.pi)))
 
 
@@ -181,7 +181,7 @@ def check_phase(whose: str, hertz: float, duration: float, since: float = 0.0) -
         )
 
 
-def check_free_phases(basis: TimeBasis, damping: float, duration: float) -> None:
+def check_free_phases(basis: TimeBasis, damping: Ratio, duration: float) -> None:
     """Likewise for every free mode that is not damped out before, after GONE / (2 pi zeta) periods of it."""
     lasting = (damping * MOST_PERIODS * 2.0 * np.pi < GONE) | (basis.omegas >= COUNTED / duration)
     if lasting.any():

@@ -16,7 +16,7 @@ from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.fields import LARGEST_SLOPE
 from verify.models.intervals import extremes
 from verify.models.places import Numbers, as_typed, in_a_row, real_array
-from verify.models.time_basis import TimeBasis
+from verify.models.time_basis import Ratio, TimeBasis, damping_in, damping_in_words
 from verify.motion.forcing import check_free_phases, free_part, modal, state_of
 from verify.motion.result import EndState
 from verify.motion.surface import basis_of
@@ -53,8 +53,8 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     """Its name."""
     count: int | None
     """Elements or segments; None for the exact beam."""
-    damping: float
-    """Ratio zeta of every mode."""
+    damping: Ratio
+    """Ratio zeta of every mode, or (m,), of each where springs, ground or an axial force have no loss."""
     times: Array
     """(n,), seconds from the release."""
     points: Array
@@ -121,7 +121,8 @@ def free_vibration(
     What a model cannot take of a shape is left out in the mean square weighted by mass and rotary inertia, which gives
     every mode its share phi^T M w (`unread`; `notes` say what is missed at a table's own places); then every mode is
     q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
-    Vibrations, 1967, ch. 5). Damping is a ratio zeta of every mode, half the beam's loss factor unless given. The exact
+    Vibrations, 1967, ch. 5). Damping is a ratio zeta of every mode; unless given what the
+    beam's loss factor comes to at each mode's frequency, half of it where all of the beam's stiffness has it. The exact
     beam keeps `modes` modes, 400 unless given, the others all they have. `at` are p places in metres, or one, where
     `samples` values are kept from 0 to `duration`. A beam that supports and springs leave free to move as a whole is
     refused, as its shape may have a part in that. No slider rides here: let `simulate` go on with one
@@ -138,9 +139,10 @@ def free_vibration(
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     MODELS.named(model)
     basis = basis_of(beam, model, count, kept_modes(model, modes, EXACT_MODES))
-    check_free_phases(basis, zeta, duration)
+    damping = damping_in(basis, modal_damping)
+    check_free_phases(basis, damping, duration)
     q, rates, unread = _start(basis, shape, amplitude, velocity)
-    found = _told(basis, zeta, points, np.linspace(0.0, duration, samples), q, rates, unread)
+    found = _told(basis, damping, points, np.linspace(0.0, duration, samples), q, rates, unread)
     return msgspec.structs.replace(found, notes=(*found.notes, *_missed(basis, shape, q)))
 
 
@@ -317,7 +319,7 @@ def _quadrature(basis: TimeBasis, breaks: Array) -> _Known:
 
 
 def _told(
-    basis: TimeBasis, damping: float, points: Array, times: Array, q: Array, rates: Array, unread: float
+    basis: TimeBasis, damping: Ratio, points: Array, times: Array, q: Array, rates: Array, unread: float
 ) -> FreeVibration:
     """The motion from (q, dq/dt) at 0, in blocks of times that fit in memory."""
     modes = modal(basis, (), damping)
@@ -353,7 +355,7 @@ def _told(
             q=now[-1],
             rates=speed[-1],
         ),
-        notes=(f"modes: {_kept(basis)}", f"damping: a ratio {damping:g} of every mode"),
+        notes=(f"modes: {_kept(basis)}", f"damping: {damping_in_words(damping, basis.beam)}"),
     )
 
 

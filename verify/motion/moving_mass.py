@@ -7,7 +7,7 @@ import numpy as np
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE
-from verify.models.time_basis import TimeBasis
+from verify.models.time_basis import Ratio, TimeBasis
 from verify.models.underfoot import standing_at
 
 if TYPE_CHECKING:
@@ -18,13 +18,13 @@ PASSES = 4
 """Each shortens what is left of the way by (h/2) w'' and more."""
 
 
-def modal_receptance(basis: TimeBasis, x: float, omega: float, damping: float) -> ComplexArray:
+def modal_receptance(basis: TimeBasis, x: float, omega: float, damping: Ratio) -> ComplexArray:
     """Deflection of every mode under a unit force e^{i omega t} at x, (n,): phi / (omega_n^2 - omega^2 + ...)."""
     stiff = basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega
     return np.asarray(basis.shapes(np.array([x]), 0)[:, 0] / stiff)
 
 
-def receptance(basis: TimeBasis, x: float, omega: float, damping: float) -> complex:
+def receptance(basis: TimeBasis, x: float, omega: float, damping: Ratio) -> complex:
     """G(x, x) of the modes, m/N."""
     return complex(basis.shapes(np.array([x]), 0)[:, 0] @ modal_receptance(basis, x, omega, damping))
 
@@ -43,7 +43,7 @@ def weighed_down(basis: TimeBasis, x: float, load: float) -> Array:
     return np.asarray(still)
 
 
-def carried_along(basis: TimeBasis, stage: "Stage", x: float, slider: "Slider", damping: float) -> tuple[Array, Array]:
+def carried_along(basis: TimeBasis, stage: "Stage", x: float, slider: "Slider", damping: Ratio) -> tuple[Array, Array]:
     """What the slider's mass at rest at x adds to a steady beam at the stage's time 0: (q, dq/dt), (n,) each.
 
     W = W_0 / (1 - m omega^2 G): the mass pushes with m omega^2 W. Raises InputError where that is a resonance.

@@ -15,6 +15,7 @@ from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.division import part_counts
 from verify.models.fields import check_drive
 from verify.models.places import Numbers, in_a_row
+from verify.models.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP, check_phase
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
@@ -46,6 +47,9 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     modes: int
     start: str
     damping: float
+    """Ratio of every mode: as given, else half the beam's loss factor."""
+    own_damping: bool
+    """Whether none was given."""
     slider: Slider | None
     points: Array
     pieces: tuple[Growth, ...]
@@ -68,8 +72,13 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def damping_replaced(self) -> bool:
-        """Whether the ratio of every mode is another than half the beam's loss factor."""
-        return self.damping != 0.5 * self.beam.loss_factor
+        """Whether a ratio of every mode stands in place of what the beam's loss factor comes to."""
+        given = not self.own_damping and bool(self.beam.loss_factor and self.beam.lossless)
+        return given or self.damping != 0.5 * self.beam.loss_factor
+
+    def damping_in(self, basis: TimeBasis) -> Ratio:
+        """Of every mode of a basis, one number or (n,). Raises InputError where one does not swing."""
+        return damping_in(basis, self.damping if self.damping_replaced else None)
 
     @property
     def line(self) -> str:
@@ -95,7 +104,7 @@ class Modelled(msgspec.Struct, frozen=True, eq=False):
     modes: int | None
     """That the exact beam keeps; None is `otherwise`."""
     damping: float | None
-    """Ratio of every mode; None is half the beam's loss factor."""
+    """Ratio of every mode; None is what the beam's loss factor comes to."""
     otherwise: int = EXACT_MODES
 
 
@@ -144,6 +153,7 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
         modes=kept_modes(modelled.model, modelled.modes, modelled.otherwise),
         start=started.start,
         damping=zeta,
+        own_damping=modelled.damping is None,
         slider=slider,
         points=points,
         accounts=watched.ledger,

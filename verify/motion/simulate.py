@@ -11,7 +11,7 @@ from verify.checks import check_kind
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.places import Forces, Numbers, as_forces, as_typed
-from verify.models.time_basis import TimeBasis
+from verify.models.time_basis import TimeBasis, damping_in_words
 from verify.models.underfoot import ground_at
 from verify.motion.carried import Laid, begin, coupling_on, put_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
@@ -112,9 +112,10 @@ def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling 
     slider = request.slider
     if request.start == "rest":
         basis = basis_of(request.beam, request.model, request.count, request.modes, request.line)
-        check_no_resonance(basis, request.frequency_hz, request.damping)
-        check_free_phases(basis, request.damping, sum(piece.steps.n * piece.steps.dt for piece in request.pieces))
-        stages = stages_from_rest(basis, request.forces, request.omega, request.damping, request.pieces, request.origin)
+        damping = request.damping_in(basis)
+        check_no_resonance(basis, request.frequency_hz, damping)
+        check_free_phases(basis, damping, sum(piece.steps.n * piece.steps.dt for piece in request.pieces))
+        stages = stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, request.origin)
         return stages, basis, coupling_on(request, slider, stages[-1], basis) if slider else None
     stage = _steady(request, None)
     coupling = coupling_on(request, slider, stage, None) if slider else None
@@ -126,7 +127,8 @@ def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling 
 
 def _steady(request: Request, basis: TimeBasis | None) -> Stage:
     field = steady_field(request, request.forces)
-    return steady_stage(field, request.pieces[-1].steps, request.origin, basis, request.damping)
+    damping = request.damping_in(basis) if basis else request.damping
+    return steady_stage(field, request.pieces[-1].steps, request.origin, basis, damping)
 
 
 def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
@@ -149,6 +151,8 @@ def _damping_notes(request: Request, basis: TimeBasis | None) -> list[str]:
     notes = []
     if request.start == "steady" and eta and not request.damping_replaced:
         notes.append(f"damping: the loss factor {eta:g} in the steady field")
+    if basis and basis.ratios is not None and not request.damping_replaced:
+        return [*notes, f"damping: {damping_in_words(basis.ratios, request.beam)}"]
     if request.damping and (basis or not notes):
         notes.append(f"damping: {ratio}" + (f" in place of the loss factor {eta:g}" if eta else ""))
     elif eta and request.damping_replaced:

@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS, check_count
 from verify.models.places import SLACK
-from verify.models.time_basis import TimeBasis, taylor_table
+from verify.models.time_basis import Ratio, TimeBasis, taylor_table
 from verify.models.underfoot import LEFT_BEAM, Ground
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 
@@ -163,7 +163,7 @@ def stages_from_rest(
     basis: TimeBasis,
     forces: Sequence[PointForce],
     omega: float,
-    damping: float,
+    damping: Ratio,
     pieces: Sequence[Growth],
     origin: float,
 ) -> list[Stage]:
@@ -237,7 +237,7 @@ def to_the_end(edges: Array, beam: Beam) -> Array:
 NO_MODES = Modal(sigmas=np.empty(0), omegas=np.empty(0), squares=np.empty(0), loads=np.empty(0, dtype=complex))
 
 
-def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: float) -> Stage:
+def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio) -> Stage:
     """A beam in its steady state; with a basis its modes are there to be pushed, at rest at first."""
     edges, degree = steady_edges(field)
     if basis:

@@ -5,7 +5,7 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField
-from verify.models.time_basis import TimeBasis
+from verify.models.time_basis import Ratio, TimeBasis
 
 HAIR = 1e-3
 """Of 1/k, or of a fiftieth of the beam where that is shorter: between the forces that stand for a couple."""
@@ -32,7 +32,7 @@ def turned_by(field: HarmonicField, x: float) -> complex:
     return complex(field.slope([x])[0])
 
 
-def modal_turning(basis: TimeBasis, x: float, at: Array, omega: float, damping: float) -> ComplexArray:
+def modal_turning(basis: TimeBasis, x: float, at: Array, omega: float, damping: Ratio) -> ComplexArray:
     """Slopes at places `at` under a unit couple at x, (n,), rad/(N m): of all modes, and of those beyond the last.
 
     Where they were cut off these are kept too: their sum falls as slowly as 1/n.

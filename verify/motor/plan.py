@@ -97,16 +97,18 @@ def _basis(request: Request) -> TimeBasis | None:
     if request.start == "steady":
         return None
     basis = basis_of(request.beam, request.model, request.count, request.modes, "spline")
-    check_no_resonance(basis, request.frequency_hz, request.damping)
+    check_no_resonance(basis, request.frequency_hz, request.damping_in(basis))
     return basis
 
 
 def _stages(request: Request, basis: TimeBasis | None, origin: float) -> list[Stage]:
     if request.start == "rest":
         assert basis is not None
-        return stages_from_rest(basis, request.forces, request.omega, request.damping, request.pieces, origin)
+        damping = request.damping_in(basis)
+        return stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, origin)
     field = steady_field(request, request.forces)
-    return [steady_stage(field, request.pieces[-1].steps, origin, basis, request.damping)]
+    damping = request.damping_in(basis) if basis else request.damping
+    return [steady_stage(field, request.pieces[-1].steps, origin, basis, damping)]
 
 
 def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:

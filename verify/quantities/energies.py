@@ -50,7 +50,8 @@ class Released(Arguments, frozen=True, kw_only=True):
     speed: Annotated[float, Meta(description="of the lines there, m/s, at t = 0")] = 0.0
     time: Annotated[float, Meta(gt=0, description="seconds from the release")]
     modal_damping: (
-        Annotated[Relative, Meta(ge=0, lt=1, description="ratio of every mode; default half the loss factor")] | None
+        Annotated[Relative, Meta(ge=0, lt=1, description="ratio of every mode; default what the loss factor comes to")]
+        | None
     ) = None
 
     def __post_init__(self) -> None:

@@ -108,7 +108,7 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """Over which the forces grow: two from rest unless given. 0 is a step load, because cos(0) = 1, under which a
     slider's path does not converge with the size."""
     modal_damping: Relative | None = None
-    """Ratio of every mode; half the beam's loss factor unless given."""
+    """Ratio of every mode; what the beam's loss factor comes to in each unless given."""
     count: Count = 49
     """Segments and elements of the figures."""
     counts: Counts = (49, 98, 196)

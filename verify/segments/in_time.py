@@ -13,10 +13,10 @@ from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.places import as_typed
-from verify.models.time_basis import TimeBasis, check_held
+from verify.models.time_basis import TimeBasis, check_held, own_ratios
 from verify.options import LINES, LOADS, Attachment, Joints, Line, Load, Wall
 from verify.segments.assembly import build_chain, chain_pencil
-from verify.segments.linear import check, leading_sign
+from verify.segments.linear import check, damped, leading_sign
 from verify.segments.links import Chain
 from verify.segments.loads import joint_weights
 from verify.segments.reading import body_turns, corrected_reading, joint_positions, line_through
@@ -45,7 +45,7 @@ def time_basis(
     check_word("line", line, LINES)
     chain = build_chain(beam, n_segments, wall=wall, joints=joints, attachment=attachment)
     uniform = beam.supports == ("pinned", "pinned") and beam.uniform and not beam.section
-    omegas, read, method, turns = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
+    omegas, read, method, turns, ratios = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
 
     def loads(position: float) -> Array:
         weights: Any = joint_weights(chain, position, load)
@@ -63,6 +63,7 @@ def time_basis(
         edges=chain.nodes,
         degree=1 if line == "raw" else 3,
         method=method,
+        ratios=ratios,
         turns=turns,
     )
 
@@ -72,7 +73,7 @@ Read = Callable[[Any], Array]
 Turns = Callable[[], Array] | None
 
 
-def _pinned(beam: Beam, n: int) -> tuple[Array, Read, str, Turns]:
+def _pinned(beam: Beam, n: int) -> tuple[Array, Read, str, Turns, None]:
     """Equal links between pinned ends: y_j = a sin(n pi j / N), omega = 4 s^2 / sqrt(1 - 2 s^2/3) in link units."""
     mu = pi * np.arange(1, n) / n
     square = np.sin(0.5 * mu) ** 2
@@ -85,7 +86,7 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Read, str, Turns]:
     def joints(numbers: Any) -> Array:
         return np.asarray(scale[:, None] * sines[np.outer(np.arange(1, n), np.asarray(numbers, dtype=int)) % (2 * n)])
 
-    return omegas, joints, "closed-form dispersion", None
+    return omegas, joints, "closed-form dispersion", None, None
 
 
 def _mass_share(square: Array) -> Array:
@@ -93,15 +94,17 @@ def _mass_share(square: Array) -> Array:
     return np.asarray(1.0 - 2.0 * square / 3.0)
 
 
-def _dense(beam: Beam, chain: Chain) -> tuple[Array, Read, str, Turns]:
+def _dense(beam: Beam, chain: Chain) -> tuple[Array, Read, str, Turns, Array | None]:
     pencil = chain_pencil(chain)
     check_dense(pencil, "motion in time")
     values, vectors = modal_basis(pencil)
+    unlike = beam.loss_factor and beam.lossless
+    ratios = own_ratios(pencil, vectors, damped(beam, chain, pencil, 0.0)) if unlike else None
     vectors = vectors * (leading_sign(chain, vectors) / np.sqrt(beam.mass_per_length * chain.unit))
     raw = joint_positions(chain, vectors)
     omegas = np.sqrt(values) * beam.wave_constant / chain.unit**2
     turns = partial(body_turns, chain, len(beam.mass), vectors) if beam.mass else None
-    return omegas, lambda numbers: np.asarray(raw[:, numbers]), "dense eigenvalues", turns
+    return omegas, lambda numbers: np.asarray(raw[:, numbers]), "dense eigenvalues", turns, ratios
 
 
 def _straight(chain: Chain, joints: Read) -> Callable[[Array, int], Array]:

@@ -198,10 +198,10 @@ def solve_harmonic(
     `load` shares a force among the joints (`loads`). The field between the joints is the C2 spline of the
     paper's contact line (Section II.B) through the "corrected" or the "raw" joints, or that of the rigid "links"
     themselves: straight, its slope the link's, the mean of both at a joint. Damping: the beam's loss factor;
-    `modal_damping` zeta of every mode (equivalent near a resonance: eta = 2 zeta); `joint_dashpot` c in N m s
-    at every joint (eta = omega c / k); springs, ground and axial force have no loss. Raises InputError; an undamped
-    resonance of the chain is refused, and a loss factor with `modal_damping` where there are springs, axial force or
-    ground: the modes would couple.
+    `modal_damping` zeta of every mode (near a resonance eta = 2 zeta where all stiffness has the loss); `joint_dashpot`
+    c in N m s at every joint (eta = omega c / k); springs, ground and axial force have no loss. Raises InputError; an
+    undamped resonance of the chain is refused, and a loss factor with `modal_damping` where there are springs, axial
+    force or ground: the modes would couple.
     """
     forces = as_forces(forces)
     settings = settings_of(wall, joints, grading, theory, attachment)

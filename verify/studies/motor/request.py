@@ -57,7 +57,7 @@ class Motor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     soft_start_periods: float = 0.0
     """Of a beam at rest, over which its forces grow."""
     modal_damping: Relative | None = None
-    """Ratio of every mode, in a steady field too; half the loss factor of the beam unless given."""
+    """Ratio of every mode, in a steady field too; what the beam's loss factor comes to in each unless given."""
     steps_per_period: Annotated[int, Meta(ge=16, le=4096)] = STEPS_PER_PERIOD
     """At least; more where the contact is stiff."""
     chain: float | None = None
