@@ -118,6 +118,46 @@ def test_a_motion_s_series_has_the_slider_beside_the_beam(export):
         assert data["slider_friction"][3] == pytest.approx(run.friction[i], rel=1e-15, abs=1e-18)
 
 
+@pytest.mark.parametrize(("model", "to"), [("segment", "b.csv"), ("fem", "b.csv"), ("analytic", "b.csv")])
+def test_a_beam_alone_in_time_is_exported_too_its_parts_end_where_it_does(export, tmp_path, model, to):
+    """Forty-nine parts of two sections add up to 0.4000000000000004 m."""
+    (tmp_path / "mine.toml").write_text(
+        'name = "mine"\n[beam]\nlength = 0.4\nwidth = 0.02\nthickness = 0.004\nyoungs_modulus = 200e9\n'
+        "density = 7800\nsection = [{length = 0.25}, {length = 0.15, thickness = 0.002}]\n"
+        "[drive]\nfrequency_hz = 300\nforce = [{position = 0.1}]\n[motion]\nduration = 0.011\n"
+    )
+    count = () if model == "analytic" else ("--count", "49")
+    path = export("mine.toml", "--what", "motion", "--model", model, *count, "--samples", "5", to=to)
+    table = list(csv.reader(path.read_text("utf-8").splitlines()))
+    scene = load_scene(str(tmp_path / "mine.toml"))
+    from verify import simulate
+
+    x = 0.4 if model == "analytic" else [0.4 * 0.5, 0.4]
+    run = simulate(
+        scene.beam,
+        scene.forces,
+        300.0,
+        0.011,
+        model=model,
+        count=49 if count else None,
+        at=x,
+        samples=5,
+        soft_start_periods=2.0,
+    )
+    assert len(table) > 5
+    assert float(table[-1][-1]) == pytest.approx(run.deflection[-1, -1], abs=1e-15)
+
+
+@pytest.mark.parametrize("model", [segment_model, fem_beam])
+@pytest.mark.parametrize("count", [3, 49, 1000])
+def test_the_last_node_is_the_end_of_the_beam(model, count):
+    beam = load_scene("stepped-beam").beam
+    nodes = model.solve_modes(beam, 1, count).nodes
+    assert nodes[0] == 0.0
+    assert nodes[-1] == beam.length
+    assert (np.diff(nodes) > 0.0).all()
+
+
 @pytest.mark.parametrize("to", ["m.vtu", "m.pvd", "m.xdmf"])
 def test_pyvista_reads_the_same_numbers(export, to):
     pyvista = pytest.importorskip("pyvista", reason="pyvista is missing: pip install 'fem-segment-verify[viz]'")

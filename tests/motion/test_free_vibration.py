@@ -228,7 +228,7 @@ def test_a_slider_rides_where_simulate_goes_on():
         (sine(1), {"duration": 0.0}, "duration = 0.0"),
         (sine(1), {"modal_damping": 1.0}, "modal_damping = 1.0"),
         (sine(1), {"samples": 1}, "samples = 1"),
-        (sine(1), {"at": 0.5}, "at = [0.5] leaves the beam"),
+        (sine(1), {"at": 0.5}, "at = 0.5 lies off the beam"),
         (sine(1), {"count": None}, "count is missing"),
         (sine(1), {"model": "analytic", "count": 11}, "count = 11 is for models of parts"),
         (sine(1), {"model": "segmnt"}, "model = 'segmnt'"),

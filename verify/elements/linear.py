@@ -119,7 +119,7 @@ def _modes(elements: Elements, nodal: Array, pairs: Eigenpairs) -> Modes:
         length=beam.length,
         frequencies_hz=frequencies,
         shapes=shapes,
-        nodes=parts.nodes * unit,
+        nodes=np.append(parts.nodes[:-1] * unit, beam.length),  # which a sum may pass by a rounding
         readings={"nodal": lambda: nodal[:, basis.nodal_dofs[0]]},
         points=points * unit,
         sampled=lambda: interpolate(basis, nodal, points),

@@ -10,6 +10,7 @@ from verify.judge.workbench import Workbench, no_such_mode
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS, check_count
 from verify.models.modes import Modes
+from verify.motion.request import STEPS_PER_PERIOD
 from verify.options import READINGS
 from verify.patience import check_work
 from verify.quantities.motion_arguments import InTime, SliderInTime
@@ -187,7 +188,7 @@ def motion_sheet(scene: Scene, wanted: Wanted) -> Sheet:
         slider=slider,
         at=x.tolist(),
         samples=_instants(wanted, SAMPLES),
-        steps_per_period=steps_per_period(scene),
+        steps_per_period=steps_per_period(scene) if slider else STEPS_PER_PERIOD,
         patient=False,
     )
     if found.statistics.interrupted:

@@ -85,6 +85,11 @@ def places(field: str, value: object, length: float) -> Array:
     return found
 
 
+def places_in_a_row(field: str, value: object, length: float) -> Array:
+    """The same in a row, (n,), a copy: what a rounding puts off the beam is at its end. Raises InputError."""
+    return np.clip(places(field, in_a_row(field, value, "metres"), length), 0.0, length)
+
+
 def as_asked(found: Values, x: Numbers) -> Values:
     """What was read at x in a row, (..., n), in the arrangement of x, (..., *shape of x): a number is a row of one."""
     shape = np.shape(x)

@@ -15,7 +15,7 @@ from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.fields import LARGEST_SLOPE
 from verify.models.intervals import extremes
-from verify.models.places import Numbers, as_typed, in_a_row, real_array
+from verify.models.places import Numbers, as_typed, places_in_a_row, real_array
 from verify.models.time_basis import Ratio, TimeBasis, damping_in, damping_in_words
 from verify.motion.forcing import check_free_phases, free_part, modal, state_of
 from verify.motion.result import EndState
@@ -134,9 +134,7 @@ def free_vibration(
     check_whole("samples", samples, 2)
     if samples > MOST_SAMPLES:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
-    points = in_a_row("at", at, "metres").copy()  # which is kept
-    if not np.all((points >= 0.0) & (points <= beam.length)):
-        raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
+    points = places_in_a_row("at", at, beam.length)
     MODELS.named(model)
     basis = basis_of(beam, model, count, kept_modes(model, modes, EXACT_MODES))
     damping = damping_in(basis, modal_damping)

@@ -14,7 +14,7 @@ from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.division import part_counts
 from verify.models.fields import check_drive
-from verify.models.places import Numbers, in_a_row
+from verify.models.places import Numbers, places_in_a_row
 from verify.models.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP, check_phase
 from verify.motion.result import EndState, Motion
@@ -139,7 +139,7 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
     _check_samples(watched.samples)
     zeta = 0.5 * beam.loss_factor if modelled.damping is None else modelled.damping
     check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
-    points = _points(beam, watched.at)
+    points = places_in_a_row("at", watched.at, beam.length)
     longest = _longest(hertz, driven.duration, watched.step, watched.steps_per_period, slider)
     check_line(modelled.model, started.start, slider.line if slider else "spline")
     before = started.before.end if started.before else None
@@ -181,14 +181,6 @@ def _check_samples(samples: int) -> None:
     check_whole("samples", samples, 2)
     if samples > MOST_SAMPLES:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
-
-
-def _points(beam: Beam, at: Numbers) -> Array:
-    """Positions as an array, metres. Raises InputError off the beam."""
-    points = in_a_row("at", at, "metres").copy()  # which is kept
-    if not np.all((points >= 0.0) & (points <= beam.length)):
-        raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
-    return points
 
 
 def _check_start(model: str, started: Started) -> None:

@@ -154,7 +154,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     def curvatures() -> Array:
         return joint_curvatures(chain, vectors, pairs.values)
 
-    nodes = chain.nodes
+    nodes = np.append(chain.nodes[:-1], beam.length)  # which a sum of links may pass by a rounding
     return Modes(
         model="segment",
         count=chain.n_segments,
