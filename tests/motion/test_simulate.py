@@ -263,3 +263,15 @@ def test_what_is_kept_is_no_array_of_who_asked(verb):
         found = free_vibration(STRIP, 2, 1e-3, amplitude=1e-3, count=8, samples=2, at=given)
     given[:] = 0.0
     assert found.points.tolist() == [0.1, 0.2]
+
+
+def test_a_beam_alone_has_no_way_of_a_slider():
+    run = simulate(STRIP, FORCES, 310.0, 0.01, model="fem", count=9, at=0.2)
+    for name in ("displacement", "mean_speed"):
+        with pytest.raises(InputError, match="displacement and mean_speed are a slider's, and the beam moves alone"):
+            getattr(run, name)
+
+
+def test_a_steady_field_has_no_modes_to_keep():
+    with pytest.raises(InputError, match="modes = 5: a beam with start = 'steady' has a field and no modes"):
+        simulate(STRIP, FORCES, 310.0, 0.01, model="analytic", modes=5, start="steady", at=0.2)

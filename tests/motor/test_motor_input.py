@@ -37,6 +37,11 @@ def moved(slider, **given):
         (lambda: Foot(points=3), "slider.foot.points = 3", "slider.foot.length"),
         (lambda: Foot(length=0.1, points=0), "slider.foot.points = 0", "at least 1"),
         (lambda: Foot(inertia=1e-6), "slider.foot.inertia = 1e-06", "leave it out"),
+        (
+            lambda: Foot(length=0.02, points=5, pitches=False, inertia=1e-6),
+            "slider.foot.inertia = 1e-06",
+            "leave it out",
+        ),
         (lambda: Foot(face="left"), "slider.foot.face = 'left'", "lower"),
         (lambda: Foot(face="lower", mirrored=True), "slider.foot.mirrored = true", "upper"),
         (lambda: a_slider(contact=None, foot=(Foot(),)), "slider.foot", "slider.contact"),

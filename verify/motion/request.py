@@ -150,7 +150,7 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
         frequency_hz=hertz,
         model=modelled.model,
         count=modelled.count,
-        modes=kept_modes(modelled.model, modelled.modes, modelled.otherwise),
+        modes=_modes(modelled, alone_steady=started.start == "steady" and slider is None),
         start=started.start,
         damping=zeta,
         own_damping=modelled.damping is None,
@@ -161,6 +161,16 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
         before=before,
         pieces=laid_out(driven.duration, _grown(started, hertz), longest, watched.samples - 1),
     )
+
+
+def _modes(modelled: Modelled, alone_steady: bool) -> int:
+    """How many are kept. Raises InputError for a number of them where none is needed."""
+    kept = kept_modes(modelled.model, modelled.modes, modelled.otherwise)
+    if modelled.modes is not None and alone_steady:
+        raise InputError(
+            f"modes = {modelled.modes!r}: a beam with start = 'steady' has a field and no modes, leave it out"
+        )
+    return kept
 
 
 def _grown(started: Started, frequency_hz: float) -> tuple[tuple[float, Array], ...]:

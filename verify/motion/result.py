@@ -131,12 +131,14 @@ class Ride(Value, frozen=True, eq=False, kw_only=True):
 
     @property
     def displacement(self) -> float:
-        """Of the slider from its start to the end of the run, metres."""
+        """Of the slider from its start to the end of the run, metres. Raises InputError where none runs."""
+        if not len(self.travelled):
+            raise InputError("displacement and mean_speed are a slider's, and the beam moves alone: give slider")
         return float(self.travelled[-1])
 
     @property
     def mean_speed(self) -> float:
-        """Displacement over duration, m/s."""
+        """Displacement over duration, m/s. Raises InputError where no slider runs."""
         return self.displacement / self.duration
 
     @property

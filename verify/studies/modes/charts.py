@@ -321,7 +321,9 @@ def sensitivity_chart(study: "SensitivityFound") -> Chart:
     caption = f"Exact Euler-Bernoulli: {_moved_by(study)}."
     if study.published_hz:
         lines.append(_published(study.published_hz, moduli))
-        caption += " The dashed line is the published figure: every crossing is a material that fits it."
+        crossed = any(min(row) <= study.published_hz <= max(row) for row in study.frequencies_hz)
+        fits = "every crossing is a material that fits it" if crossed else "no material drawn here fits it"
+        caption += f" The dashed line is the published figure: {fits}."
     return Chart(
         id="sensitivity",
         title=f"Mode {study.mode} over modulus and density",
