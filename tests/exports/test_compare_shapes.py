@@ -108,7 +108,7 @@ def test_a_solid_mesh_is_averaged_over_its_cross_sections_and_other_motions_are_
     assert found["notes"][1:] == [
         "EigVec_2 bends it across its width, left out",
         "EigVec_6 leaves its middle line where it was, left out",
-        "no frequencies: no field data named after Hz or rad/s were read (a .vtu keeps them, a .vtk does not)",
+        "no frequencies: no field data named after Hz or rad/s were read (meshio writes none, to a .vtu or a .vtk)",
     ]
     assert found["nearest"][0]["words"] == "the exact beam"
 

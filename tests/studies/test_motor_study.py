@@ -244,7 +244,8 @@ def test_a_mean_within_twice_its_error_is_not_told():
 def doubted(study, **changed):
     (field,) = study.fields
     margins = {name: value for name, value in changed.items() if name in ("epsilon", "sag", "step", "chain")}
-    changed_field = replace(field, margins=replace(field.margins, **margins))
+    free = replace(field.free, contact_share=changed.get("share", field.free.contact_share))
+    changed_field = replace(field, free=free, margins=replace(field.margins, **margins))
     told = doubts([changed_field], small().slider, changed.get("k", 135.2), changed.get("h", 1e-3))
     return {line.partition(":")[0]: line for line in told}
 
@@ -259,6 +260,10 @@ def test_a_margin_that_is_not_small_has_its_sentence(study):
     assert "epsilon" not in doubted(study, k=None)
     assert "bends the beam by 30 µm, 2.1 times the amplitude under the slider" in doubted(study, sag=30e-6)["sag"]
     assert "push away or turn a beam that nothing holds" in doubted(study, sag=None)["sag"]
+    size = study.fields[0].amplitude / 1e-3
+    assert "climb: points touch for 97 % of the time" in doubted(study, share=0.97)["climb"]
+    assert f"of the order of A/h = {size:.2g} of mu times" in doubted(study, share=0.97)["climb"]
+    assert "climb" not in doubted(study, share=0.83)
     assert "step" in doubted(study, step=0.4)
     assert "chain" not in doubted(study, chain=1e-4)
 

@@ -30,7 +30,7 @@ FAR, MOST = 4, 500
 """Numbers in names beyond so many times the shapes are no mode numbers; and shapes that a file may have."""
 ACROSS = 0.5
 """Share of a shape's squares that has to lie across the thickness."""
-_UNHEARD = "no frequencies: no field data named after Hz or rad/s were read (a .vtu keeps them, a .vtk does not)"
+_UNHEARD = "no frequencies: no field data named after Hz or rad/s were read (meshio writes none, to a .vtu or a .vtk)"
 _HERTZ = re.compile(r"hz|hertz|freq", re.IGNORECASE)
 _RADIAN = re.compile(r"rad|omega", re.IGNORECASE)
 

@@ -145,7 +145,7 @@ _TOLD = {
     "motor-way": (
         "Starting, stopping, turning round",
         "Speed at the end of every period: from the slider's own speed; with the drive cut off at once; with all its "
-        "phases turned round at once.",
+        "phases turned round at once. The beam's field ends or turns with its drive: that it would ring is left out.",
         "speed, cm/s",
         1.0,
     ),

@@ -84,7 +84,8 @@ def _overview(found: "MotorFound") -> Table:
         "are means over the last quarter of a free run.",
         notes=(
             "Start, stop and turn: until 1 - 1/e of the way is made from the slider's own speed, with the drive cut "
-            "off at once, with its phases turned round at once. Shares are of contact points and of time, in per "
+            "off at once, with its phases turned round at once: a beam that does not swing on, which a real one does "
+            "for its own time. Shares are of contact points and of time, in per "
             "cent. Most power and best efficiency are those of the speeds below. Last column: run time over simulated "
             "time of the free run.",
             *unsettled(found.fields, found.hard),

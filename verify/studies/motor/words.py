@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 SAGS = 0.1
 """Of the amplitude under the slider: a static deflection that is felt."""
+STAYS = 0.9
+"""Of points and time that touch: feet that rise and fall with the surface."""
 COARSE = 1e-3
 """Relative error of a swing on the springs, which steps leave."""
 SETTLED = 0.01
@@ -63,9 +65,10 @@ def _of_field(one: "FieldFound") -> Iterator[str]:
     yield f"speed without load {where}: {_two_ways(one)}"
     yield f"standing still {where}: {_stall(one)}"
     times = {"start": one.start_time, "stop": one.stop_time, "turning round": one.reversal_time}
+    at_once = ", of a beam that is still or turned round at once" if one.stop_time or one.reversal_time else ""
     words = ", ".join(f"{name} {seconds_in_words(value)}" for name, value in times.items() if value is not None)
     none = "none, the speed is not reached within the run" if free.settled else "withheld, it comes to no speed"
-    yield f"time constants {where}: {words if words and free.settled else none}"
+    yield f"time constants {where}: {words + at_once if words and free.settled else none}"
     yield f"one second of motor {where}: {free.run_ms_per_ms:.2g} s of run time"
 
 
@@ -178,6 +181,13 @@ def doubts(
         told.append(
             f"sag: what presses bends the beam by {in_words(margins.sag)}, {margins.sag / one.amplitude:.2g} times "
             "the amplitude under the slider, which a one-way run leaves out"
+        )
+    touching = max(field.free.contact_share for field in fields)
+    if touching > STAYS:
+        told.append(
+            f"climb: points touch for {100 * touching:.3g} % of the time; how fast feet rise, times the slope under "
+            f"them, is left out of their slip: of the order of A/h = {one.amplitude / thickness:.2g} of mu times what "
+            "presses"
         )
     worst = max(field.margins.step**2 / 24.0 for field in fields)
     if worst > COARSE:
