@@ -52,6 +52,14 @@ def test_a_wide_strip_bends_as_a_cylinder_but_for_a_wave_that_keeps_to_its_edges
     assert lost[0] == pytest.approx(lost[1], rel=1e-6)
 
 
+@pytest.mark.parametrize("nu", [0.12, 0.33, 0.45, 0.49])
+def test_the_lowest_root_of_a_very_wide_strip_is_konenkovs_wave_along_an_edge(nu):
+    """Below what a strip that stays straight across gains."""
+    edge = np.sqrt((1 - nu) * (3 * nu - 1 + 2 * np.sqrt(1 - 2 * nu + 2 * nu**2)) / (1 - nu**2)) - 1.0
+    assert stiffening(1e5, nu) == pytest.approx(edge, rel=1e-9)
+    assert edge < 1.0 / np.sqrt(1.0 - nu**2) - 1.0
+
+
 def test_without_poissons_ratio_nothing_happens_across():
     assert stiffening(1.7, 0.0) == 0.0
 
