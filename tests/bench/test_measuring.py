@@ -266,9 +266,32 @@ def test_a_race_that_is_not_run_says_what_is_known_and_what_was_reached_in_digit
     assert "at 1e-05 % nothing is said, what a is held against is known to 4.1e-06 % alone" in told.text
 
 
-def test_the_time_of_the_exact_solution_has_a_unit_that_suits_it():
+def beside_exact(*sizes, seconds=(5.8e-6, 7e-6, 9e-6)):
+    """What is said of segments of these sizes beside the exact solution, which takes 1.93 s."""
     clock = Clock()
     exact = entry(clock, "exact", None, seconds=(1.93,), answer=EXACT, orders=None)
-    one = case(entry(clock, "a", 20, seconds=(5.8e-6,)), exact)
+    one = case(*(entry(clock, "a", n, seconds=(s,)) for n, s in zip(sizes, seconds, strict=False)), exact)
     (told,) = sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")
+    return told
+
+
+def test_the_time_of_the_exact_solution_has_a_unit_that_suits_it():
+    told = beside_exact(20, 40, 80)
     assert "the exact solution takes 1.93 s, the cheapest of parts within 1 %, a, N = 20, 5.8 µs: " in told.text
+    assert told.earned
+    assert told.ratio == pytest.approx(5.8e-6 / 1.93, rel=1e-6)
+
+
+def test_parts_of_one_size_are_not_called_the_cheapest_beside_the_exact_solution():
+    """A hundred thousand links are within 1 % too, and take a hundred thousand times as long."""
+    told = beside_exact(20)
+    assert told.text == (
+        "modes, mode 3: no time is set beside the exact solution's, a: one size shows no order; give three or more"
+    )
+    assert not told.earned
+    assert told.ratio is None
+
+
+def test_as_long_within_the_spread_is_no_ratio_of_the_exact_solution():
+    told = beside_exact(20, 40, 80, seconds=(1.93, 2.5, 3.9))
+    assert "as long by either within the spread" in told.text

@@ -249,20 +249,31 @@ def _condition(case: Case, found: Sequence[Outcome], scene: str) -> str:
 
 
 def _exact(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
-    """What the exact solution costs beside the cheapest of parts that is within what is asked of it at least."""
+    """What the exact solution costs beside the cheapest of parts that is within what is asked of it at least.
+
+    Of lines whose errors converge over the sizes that were run: one size may be near by chance, or far too fine.
+    """
     exact = next((one for one in found if one.entry.line.orders is None and one.row.model == "analytic"), None)
     near = [one for one in found if one.entry.line.orders and one.row.whole_s and abs(one.row.error or 0.0) <= NEAR]
     if exact is None or not exact.row.whole_s or not near:
         return []
-    least = min(near, key=lambda one: one.row.whole_s or 0.0)
-    own, other, name = exact.row.whole_s, least.row.whole_s or 0.0, exact.entry.line.name
+    stretches = {name: _stretch(case, found, name) for name in dict.fromkeys(one.entry.line.name for one in near)}
+    earned = [one for one in near if isinstance(stretches[one.entry.line.name], Stretch)]
+    own, name = exact.row.whole_s, exact.entry.line.name
+    if not earned:
+        first, why = next(iter(stretches.items()))
+        assert isinstance(why, Unearned)
+        text = f"{case.name}: no time is set beside the exact solution's, {first}: {why.why}; {why.remedy}"
+        return [_sentence(case, (name, first), text)]
+    least = min(earned, key=lambda one: one.row.whole_s or 0.0)
+    other, line = least.row.whole_s or 0.0, least.entry.line.name
+    spread = sum((one.row.spread_s or 0.0) / (one.row.whole_s or 1.0) for one in (exact, least))
     text = (
         f"{case.name}: the exact solution takes {in_words(own, 's')}, the cheapest of parts within {percent(NEAR)}, "
-        f"{least.entry.told}, {in_words(other, 's')}: {_slower(name, least.entry.line.name, other / own)} "
+        f"{least.entry.told}, {in_words(other, 's')}: {_told(name, line, _Ratio(other / own, other / own, spread))} "
         f"({_condition(case, found, scene)})"
     )
-    methods = (name, least.entry.line.name)
-    return [Sentence(set=case.set, about=case.about, methods=methods, text=text, earned=True, ratio=other / own)]
+    return [Sentence(set=case.set, about=case.about, methods=(name, line), text=text, earned=True, ratio=other / own)]
 
 
 def _sentence(
