@@ -6,7 +6,6 @@ import subprocess
 import sys
 from statistics import median
 from tempfile import TemporaryDirectory
-from time import process_time
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -17,9 +16,6 @@ from verify.bench.sets import SETS, all_cases
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from verify.bench.kind import Run
     from verify.scenes.scene import Scene
 
 ROUNDS = 3
@@ -74,8 +70,9 @@ def _child(code: str, environment: dict[str, str], given: str = "") -> str:
 
 
 def tell(name: str) -> None:
-    """In such a process: first less second run of each method's coarsest entry, as JSON on standard output."""
+    """In such a process: what each method's coarsest entry compiles, imports aside, as JSON on standard output."""
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import compiled
     from verify.scenes.checked import checked
     from verify.scenes.scene import scene_type
 
@@ -84,12 +81,7 @@ def tell(name: str) -> None:
     found: dict[str, float] = {}
     for entry in (entry for case in cases for entry in case.entries):
         if entry.line.name not in found:
-            first, second = (_seconds(entry.prepare) for _ in range(2))
-            found[entry.line.name] = max(first - second, 0.0)
-    sys.stdout.write(json.dumps(found))
-
-
-def _seconds(prepare: "Callable[[], Run]") -> float:
-    begun = process_time()
-    prepare()()
-    return process_time() - begun
+            before = len(compiled)
+            entry.prepare()()
+            found[entry.line.name] = sum(one.seconds for one in compiled[before:])
+    sys.stdout.write(json.dumps({name: seconds for name, seconds in found.items() if seconds}))
