@@ -36,7 +36,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     set_up_s: Seconds | None = None
     """Seconds before it, for models and modes that are made once; None where the run is all there is."""
     first_s: Seconds | None = None
-    """The first call in its process, with imports and compiled code brought in."""
+    """Its first call in this process: what it is the first of all to import or to bring in compiled is in that."""
     compile_s: Seconds | None = None
     """Of compiling what no method before it in its set has compiled, with nothing kept on disk; None where nothing is
     compiled or nobody asked."""
