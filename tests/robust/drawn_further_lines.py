@@ -209,8 +209,25 @@ def _changed(draw, text):
     return text[: draw.randrange(len(text)) if draw.often(5) else None].encode("utf-8", "surrogateescape")
 
 
+EXTREME = (-5.0, -1, 0, 1e-320, 5e-324, 1e308, -1e308)
+"""Numbers of the right kind that no clock and no beam gives."""
+
+
+def _numbers(data):
+    """(whose, name) of every number, wherever it stands."""
+    for name, value in list(data.items() if isinstance(data, dict) else enumerate(data)):
+        if isinstance(value, dict | list):
+            yield from _numbers(value)
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            yield data, name
+
+
 def _change(draw, data):
-    """Walk down and put something else there, or take it away."""
+    """Put an extreme number in the place of one, or walk down and put something else there, or take it away."""
+    if draw.often(50) and (numbers := list(_numbers(data))):
+        whose, name = draw.choice(numbers)
+        whose[name] = draw.choice(EXTREME)
+        return
     while True:
         names = list(data) if isinstance(data, dict) else list(range(len(data)))
         if not names:
