@@ -786,3 +786,13 @@ def test_a_beam_with_a_device_is_benched_in_what_knows_none():
     assert "harmonic is left out: its methods take no device" in found.notes
     with pytest.raises(InputError, match=r"a bench of harmonic knows no drive.device, and one stands at 0.4884 m"):
         found_of(scene, sets=("harmonic",), counts=(8, 12, 16))
+
+
+def test_a_wall_that_a_beam_with_steps_has_none_of_is_named_with_the_reason():
+    found = found_of(load_scene("stepped-beam"), sets=("modes",), counts=(8, 12, 16), modes=(1,))
+    assert any(
+        note.startswith("segments, wall welded takes no part: wall = 'welded' is for uniform") for note in found.notes
+    )
+    for without in ("steel-cantilever", "paper"):
+        notes = found_of(load_scene(without), sets=("modes",), counts=(8, 12, 16), modes=(1,)).notes
+        assert not any("welded takes no part" in note for note in notes)

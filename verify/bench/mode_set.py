@@ -1,6 +1,6 @@
 """Natural frequencies: segments by every rule that differs on the beam, elements, stock scikit-fem, the mean, exact."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,12 +9,13 @@ from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Referen
 from verify.bench.request import Settled
 from verify.errors import InputError
 from verify.judge.compare import EIGENVALUE_FLOOR, ORDER_FLOOR, relative_error
-from verify.judge.variants import Variant, every_rule
+from verify.judge.variants import Variant, every_rule, has_wall, models_with
 from verify.judge.workbench import Workbench, check_bracket, no_such_mode
 from verify.models.catalogue import MODELS, bounding, discrete
 from verify.models.eigen import solve_seconds
 from verify.models.modes import Modes
 from verify.models.naming import MEAN
+from verify.options import WALLS
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -37,6 +38,7 @@ def mode_cases(scene: "Scene", its: Settled, bench: Workbench) -> Iterator[Case]
     variants = (*(Variant(model.name) for model in able), *every_rule(scene.beam))
     beside, why_not = _beside(scene.beam, its)
     refused = [f"{m.title} takes no part: {why}" for m in discrete("solve_modes") if (why := m.refuses(scene.beam))]
+    why_not += _walls_without(scene.beam, variants, its)
     for mode in its.modes:
         theirs, absent = frequency_entries(scene, its, mode) if its.peers else ((), ())
         entries = [_variant_entry(scene.beam, one, n, mode) for one in variants for n in its.counts]
@@ -85,6 +87,16 @@ def _variant_entry(beam: "Beam", one: Variant, count: int, mode: int) -> Entry:
 
     seconds = OVERHEAD_S + solve_seconds(model.unknowns(beam, count, **how), mode)
     return Entry(line=_line(beam, one), size=1 / count, count=count, estimate_s=seconds, prepare=prepare, afresh=True)
+
+
+def _walls_without(beam: "Beam", variants: Sequence[Variant], its: Settled) -> Iterator[str]:
+    """Why a wall takes no part on a beam that has one."""
+    for one in (Variant(name, (("wall", wall),)) for name in models_with("wall") for wall in WALLS[1:]):
+        if has_wall(beam) and one not in variants:
+            try:
+                MODELS[one.model].check(beam, 1, max(its.counts), **dict(one.settings))
+            except InputError as error:
+                yield f"{one.title} takes no part: {error}"
 
 
 def _beside(beam: "Beam", its: Settled) -> tuple[list[Callable[["Beam", int, int], Entry]], list[str]]:
