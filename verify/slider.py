@@ -127,7 +127,9 @@ class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"slider.foot.inertia = {self.inertia!r} of a foot of one point, which does not turn: leave it out"
             )
         if not self.pitches and self.inertia is not None:
-            raise InputError(f"slider.foot.inertia = {self.inertia!r} of a foot that does not pitch: leave it out")
+            raise InputError(
+                f"slider.foot.inertia = {self.inertia!r} with pitches = false, which does not turn: leave it out"
+            )
         if self.mirrored and self.face != "upper":
             raise InputError(
                 "slider.foot.mirrored = true on the lower face: a foot between two beams is on the upper one"

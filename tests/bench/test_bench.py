@@ -778,16 +778,6 @@ def test_an_earlier_bench_of_another_scene_is_refused(tmp_path, capsys):
     assert "about the scene 'chain', not 'paper'" in capsys.readouterr().err
 
 
-def test_a_beam_with_a_device_is_benched_in_what_knows_none():
-    """Its modes are those of the beam alone."""
-    scene = load_scene("absorbing-end")
-    found = found_of(scene, counts=(8, 12, 16), modes=(1,))
-    assert {row.set for row in found.rows} == {"modes"}
-    assert "harmonic is left out: its methods take no device" in found.notes
-    with pytest.raises(InputError, match=r"a bench of harmonic knows no drive.device, and one stands at 0.4884 m"):
-        found_of(scene, sets=("harmonic",), counts=(8, 12, 16))
-
-
 def test_a_wall_that_a_beam_with_steps_has_none_of_is_named_with_the_reason():
     found = found_of(load_scene("stepped-beam"), sets=("modes",), counts=(8, 12, 16), modes=(1,))
     assert any(

@@ -285,7 +285,7 @@ def test_damped_motion_from_rest_ends_in_the_steady_state(model):
     asked |= {} if count else {"modes": 60}
     begun = simulate(STRIP, FORCES, FREQUENCY, 8.0, samples=2, **asked)
     late = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, continue_from=begun, samples=50, **asked)
-    exact = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, start="steady", samples=50, **asked)
+    exact = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, start="steady", samples=50, **asked | {"modes": None})
     phases = 2 * np.pi * FREQUENCY * np.array([late.times, exact.times])
     fits = [
         np.linalg.lstsq(np.array([np.cos(p), np.sin(p)]).T, m.deflection[:, 0], rcond=None)[0]

@@ -41,22 +41,18 @@ def _always(scene: "Scene") -> str:
 
 
 def _undriven(scene: "Scene") -> str:
-    if scene.devices:
-        return "its methods take no device"
     driven = scene.drive is not None and any(force.amplitude for force in scene.drive.force)
     return "" if driven else "nothing drives the beam"
 
 
 def _still(scene: "Scene") -> str:
-    if scene.devices:
-        return "its methods take no device"
     if scene.slider is not None and scene.motion is not None:
         return ""
     return f"the scene has no [{'slider' if scene.slider is None else 'motion'}]"
 
 
 def _unchained(scene: "Scene") -> str:
-    if not scene.devices and not _chained(scene):
+    if not _chained(scene):
         return "nothing in the scene asks for the nonlinear chain: name it in sets"
     return _undriven(scene)
 
@@ -118,7 +114,8 @@ SETS: dict[str, MethodSet] = {
 
 
 def settled(asked: Bench, scene: "Scene") -> Settled:
-    """What a scene's [bench] comes to."""
+    """What a scene's [bench] comes to. Raises InputError for a drive with devices."""
+    scene.refuse_devices("a bench")
     convergence, axial = getattr(scene, "convergence", None), getattr(scene, "axial_inertia", None)
     duration = scene.motion.duration if scene.motion else getattr(axial, "duration", None)
     if duration is None and scene.drive:
@@ -146,8 +143,6 @@ def all_cases(asked: Bench, scene: "Scene", bench: "Workbench") -> "tuple[list[C
     refused: list[str] = []
     for name in its.sets:
         try:
-            if name != "modes":
-                scene.refuse_devices(f"a bench of {name}")
             cases += SETS[name].cases(scene, its, bench)
         except InputError as error:
             refused.append(f"{name} is left out: {error}")

@@ -26,7 +26,7 @@ from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.models.places import Forces, Numbers, as_forces, as_typed, within
 from verify.models.response import forced_response, resonance_distance
 from verify.models.theory import check_theory
 from verify.options import THEORIES, Theory
@@ -119,7 +119,7 @@ def _modes(elements: Elements, nodal: Array, pairs: Eigenpairs) -> Modes:
         length=beam.length,
         frequencies_hz=frequencies,
         shapes=shapes,
-        nodes=np.append(parts.nodes[:-1] * unit, beam.length),  # which a sum may pass by a rounding
+        nodes=within(parts.nodes * unit, beam.length),
         readings={"nodal": lambda: nodal[:, basis.nodal_dofs[0]]},
         points=points * unit,
         sampled=lambda: interpolate(basis, nodal, points),

@@ -85,6 +85,13 @@ def places(field: str, value: object, length: float) -> Array:
     return found
 
 
+def within(nodes: Array, length: float) -> Array:
+    """Ends of parts, the last at the end of the beam where a sum of lengths leaves it by a rounding."""
+    if abs(nodes[-1] - length) <= SLACK * length:
+        nodes[-1] = length
+    return nodes
+
+
 def places_in_a_row(field: str, value: object, length: float) -> Array:
     """The same in a row, (n,), a copy: what a rounding puts off the beam is at its end. Raises InputError."""
     return np.clip(places(field, in_a_row(field, value, "metres"), length), 0.0, length)

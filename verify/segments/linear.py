@@ -18,7 +18,7 @@ from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.models.places import Forces, Numbers, as_forces, as_typed, within
 from verify.models.response import forced_response
 from verify.models.theory import check_theory
 from verify.options import ATTACHMENTS, LOADS, READINGS, THEORIES, Attachment, Joints, Load, Reading, Theory, Wall
@@ -154,7 +154,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     def curvatures() -> Array:
         return joint_curvatures(chain, vectors, pairs.values)
 
-    nodes = np.append(chain.nodes[:-1], beam.length)  # which a sum of links may pass by a rounding
+    nodes = within(chain.nodes, beam.length)
     return Modes(
         model="segment",
         count=chain.n_segments,

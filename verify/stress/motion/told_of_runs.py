@@ -51,7 +51,7 @@ def damping_error(number: float) -> float:
     wrong, model = 0, ("segment", "analytic")[int(number)]
     for start, loss, ratio, *said in DAMPINGS:
         more: dict[str, Any] = {} if ratio is None else {"modal_damping": ratio}
-        more |= {"start": start, "modes": 4} if number else {"start": start, "count": 6}
+        more |= {"start": start} | ({"count": 6} if not number else {"modes": 4} if start == "rest" else {})
         run = simulate(replace(STRIP, loss_factor=loss), FORCES, 37.0, 1e-3, model=model, samples=3, **more)
         told = [note.removeprefix("damping: ") for note in run.notes if note.startswith("damping: ")]
         wrong += told != ([said[int(number)]] if said[int(number)] else [])
@@ -79,9 +79,7 @@ def margins_error(parts: float) -> float:
     mode = int(np.argmin(abs(np.array(own) - omega))) + 1
     mu = mode * pi / COUNT
     found = {
-        model: simulate(
-            STRIP, FORCES, HERTZ, 1e-3, model=model, count=count, modes=None if count else 9, start="steady", samples=3
-        ).margins
+        model: simulate(STRIP, FORCES, HERTZ, 1e-3, model=model, count=count, start="steady", samples=3).margins
         for model, count in (("segment", COUNT), ("fem", COUNT), ("analytic", None))
     }
     exact = found["analytic"]
