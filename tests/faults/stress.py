@@ -123,6 +123,12 @@ def loads_read_off_the_shape(patch):
     patch.setattr(compression, "best_read", lambda held, shape, strains: held.strain(shape))
 
 
+def losses_of_all_stiffness(patch):
+    patch.setattr(
+        free_vibration, "damping_in", lambda basis, ratio: 0.5 * basis.beam.loss_factor if ratio is None else ratio
+    )
+
+
 def slow_answers_as_they_are_factorised(patch):
     patch.setattr(response, "_refined", lambda pencil, answer, *given: np.asarray(answer.unknowns))
 
@@ -985,6 +991,7 @@ FAULTS = {
         },
         unknowns_in_one_unit: {"nearly-floating"},
         slow_answers_as_they_are_factorised: {"nearly-floating"},
+        losses_of_all_stiffness: {"losses-of-held-beams"},
         ground_that_lifts_nothing: {"nearly-rigid"},
         loads_read_off_the_shape: {"softly-held-buckling"},
         slow_motions_unseen: {"tip-mass", "tip-mass-second-mode", "nearly-rigid"},

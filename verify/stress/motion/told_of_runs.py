@@ -1,6 +1,6 @@
 """What runs say of themselves: which damping acts, how far they can be believed, what they take; readings beside."""
 
-from math import pi, sqrt
+from math import log, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -11,11 +11,11 @@ from verify.models.arrays import Array
 from verify.stress.kind import Floor, Row
 from verify.stress.largest import largest
 from verify.stress.modes.any_beam import PLAIN
-from verify.stress.references.beams import STRIP
+from verify.stress.references.beams import STRIP, held
 
 FORCES = (PointForce(position=0.2, amplitude=0.7),)
 HERTZ, COUNT = 131.0, 9
-LOSS = 0.03
+LOSS, HELD_PARTS = 0.03, 60
 UNSEEN, STICKY = 1e-4, 0.1
 """What steps may miss of the surface's speed, and of friction's own rate in one."""
 DAMPINGS: tuple[tuple[str, float, float | None, str, str], ...] = (
@@ -183,6 +183,28 @@ def steps_error(step: float) -> float:
     return largest(worst, float(wrong))
 
 
+def held_loss_error(ground: float) -> float:
+    """Of what a loss factor takes of modes 1 and 2 in forty periods, on ground of so many EI/L^4, over bending's share.
+
+    EI k^4 over EI k^4 + k_f between pinned ends, by links and by elements.
+    """
+    from verify.models.catalogue import MODELS
+    from verify.motion.free_vibration import free_vibration
+
+    foundation = ground * STRIP.bending_stiffness / STRIP.length**4
+    beam, worst = replace(held("pinned", "pinned"), loss_factor=LOSS, foundation=foundation), 0.0
+    for model, mode in ((model, mode) for model in ("segment", "fem") for mode in (1, 2)):
+        bending = (mode * pi) ** 4
+        ratio = 0.5 * LOSS * bending / (bending + ground)
+        hertz = float(MODELS[model].solve_modes(beam, mode, HELD_PARTS).frequencies_hz[-1])
+        seconds = 40.0 / (hertz * sqrt(1.0 - ratio**2))
+        run = free_vibration(beam, mode, seconds, amplitude=1e-4, model=model, count=HELD_PARTS, samples=2)
+        energy = run.kinetic + run.elastic
+        told = -log(energy[-1] / energy[0]) / (4.0 * pi * hertz * seconds)
+        worst = largest(worst, abs(told / ratio - 1.0))
+    return worst
+
+
 THICK = replace(PLAIN, shear_stiffness=900.0, loss_factor=0.02, supports=("clamped", "free"))
 
 
@@ -242,6 +264,15 @@ ROWS: tuple[Row, ...] = (
         at=(0, 1),
         promise=0.5,
         error=damping_error,
+    ),
+    Floor(
+        id="losses-of-held-beams",
+        title="What a loss factor takes of modes on ground that has no loss, over the share of bending in them",
+        why="models/time_basis.py: half of it by the share of a mode's stiffness that has the loss; order 4, 60 parts.",
+        along="EI/L^4",
+        at=(1.0, 1e3, 1e6),
+        promise=3e-7,
+        error=held_loss_error,
     ),
     Floor(
         id="margins-of-runs",
