@@ -16,6 +16,8 @@ from verify.options import BenchSet
 
 LEAST = 0.1
 """Logarithm of a change below which nothing is said, whatever the spread."""
+SHORTEST_S = 1e-12
+"""Below which no clock tells a time: a row that a coarse clock saw take none has no ratio."""
 ERROR_MOVED = 1e-6
 """Relative change of an error that is no rounding, beside what its reference leaves open."""
 Key: TypeAlias = tuple[Any, ...]
@@ -95,7 +97,7 @@ def _nothing_moved(of: BenchSet, n_rows: int, n_beside_others: int, when: str) -
 
 
 def _timed(rows: Iterable[Row]) -> dict[Key, Row]:
-    return {_key(row): row for row in rows if row.whole_s}
+    return {_key(row): row for row in rows if (row.whole_s or 0.0) >= SHORTEST_S}
 
 
 def _key(row: Row) -> Key:

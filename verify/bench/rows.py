@@ -9,8 +9,6 @@ from verify.bench.kind import Setting
 from verify.options import BenchSet
 
 Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e12)]
-Taken: TypeAlias = Annotated[float, Meta(ge=1e-12, le=1e12)]
-"""Seconds of what was run, over which others are told: no clock gives less."""
 
 
 class Row(msgspec.Struct, frozen=True, kw_only=True):
@@ -29,7 +27,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     reference_uncertainty: float | None = None
     order: float | None = None
     """Observed from the coarser row before it."""
-    warm_s: Taken | None = None
+    warm_s: Seconds | None = None
     """Seconds of a run after its set-up, median of interleaved rounds."""
     spread_s: Seconds | None = None
     """Between the quartiles of the rounds, of all that each ran."""
