@@ -426,11 +426,11 @@ def test_a_run_that_diverges_stops_at_once_and_keeps_what_it_has(monkeypatch):
 def test_ctrl_c_returns_what_is_kept(monkeypatch):
     true, calls = kernels.march, []
 
-    def interrupted(*given):
-        calls.append(1)
+    def interrupted(flat, run, budget, work):
+        calls.extend([1] * (budget > 0))
         if len(calls) > 3:
             raise KeyboardInterrupt
-        return true(*given)
+        return true(flat, run, budget, work)
 
     monkeypatch.setattr(kernels, "march", interrupted)
     monkeypatch.setattr(chain_motion, "_BUDGET", 400)

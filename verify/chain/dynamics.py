@@ -66,7 +66,7 @@ def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
 def accelerations(system: ChainSystem, state: ChainState) -> Array:
     """Relative angular accelerations, (N,), rad/s^2."""
     out = np.zeros(system.n_links)
-    kernels.accelerate(flatten(system), state.time, *_arrays(system, state), workspace(system), out)
+    kernels.answer(flatten(system), state.time, *_arrays(system, state), workspace(system), out)
     return out
 
 

@@ -9,7 +9,7 @@ from verify.models.arrays import Array
 from verify.models.kernels import lean, part
 
 
-@lean(fastmath={"contract"})
+@part(fastmath={"contract"})
 def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -> tuple[float, float]:
     """Relative angular accelerations, (N,), into `out`; (power lost, power put in by loads, actuators and hub)."""
     lost, power = moments(f, t, q, v, work)
@@ -27,6 +27,12 @@ def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -
     for i in range(1, q.size):
         out[i] = work[i, 12] - work[i - 1, 12]
     return lost, power
+
+
+@lean(fastmath={"contract"})
+def answer(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -> None:
+    """The accelerations alone, for whoever steps no chain: `march` has its own, and compiles without this."""
+    accelerate(f, t, q, v, work, out)
 
 
 @part(fastmath={"contract"})
@@ -135,8 +141,13 @@ def _keep_samples(m: March, t: float, h: float) -> None:
 
 @lean(fastmath={"contract"})
 def march(f: Flat, m: March, budget: int, work: Array) -> int:
-    """At most `budget` steps, fixed or held to the tolerances of `scale`; each ends on the held points."""
+    """At most `budget` steps, fixed or held to the tolerances of `scale`; each ends on the held points.
+
+    Before the first, also of none, the rates of the start come into k[0].
+    """
     n, last = f.links.shape[0], m.k.shape[0] - 1
+    if m.counts[2] == 0:
+        derivative(f, m.clock[0], m.y, work, m.k[0])
     for _ in range(budget):
         if m.counts[3] >= m.samples.size:
             return DONE

@@ -117,7 +117,7 @@ def _steady(system: ChainSystem, rest: ChainState, omega: Array, duals: Array) -
 
 def _answer(system: ChainSystem, rest: ChainState) -> Array:
     out = np.zeros(system.n_links)
-    kernels.accelerate(flatten(system, ledger=False), 0.0, rest.angles, rest.rates, workspace(system), out)
+    kernels.answer(flatten(system, ledger=False), 0.0, rest.angles, rest.rates, workspace(system), out)
     return out
 
 

@@ -75,14 +75,27 @@ def _stand(t: float, edges: Array, feet: Feet) -> bool:
 
 
 @part()
-def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet: Feet) -> None:
-    """Every point sees the surface under it."""
+def _look(number: int, surface: Surface, given: GivenSurface, half: float, line: Line, feet: Feet) -> None:
+    """Every point sees the surface under it, in the middle of a step of that number."""
+    edges, reckoned = surface.edges, len(given.local) == 0
     for i in range(feet.points.shape[0]):
         x, piece = place(i, feet), feet.piece[i]
         if line.stamp[piece] != number:
-            draw(table, piece, line)
+            if reckoned:
+                draw(surface.table, piece, line)
+            else:
+                _copy(given.local[number], piece, line)
             line.stamp[piece] = number
         see(i, x, edges[piece], edges[piece + 1] - edges[piece], gone(i, feet), half, line, feet)
+        if not reckoned:
+            feet.touch[i, SURFACE] += between(given.along[number], edges, piece, x)
+
+
+@part()
+def _copy(local: Array, piece: int, line: Line) -> None:
+    """The polynomials of a piece as they are given."""
+    for d in range(local.shape[2]):
+        line.local[piece, STILL, d], line.local[piece, MOVING, d] = local[piece, STILL, d], local[piece, MOVING, d]
 
 
 @part()
@@ -198,6 +211,7 @@ def ride(
     n_steps: int,
     dt: float,
     surface: Surface,
+    given: GivenSurface,
     feet: Feet,
     rubbing: Rubbing,
     beam: BeamAnswer | None,
@@ -206,6 +220,8 @@ def ride(
     log: Log,
 ) -> int:
     """Advance beam and stage by n_steps from step tally[STEP]; why it came back.
+
+    A surface that is given does not feel the stage, and needs no modes.
 
     `before` is (points, 2), depth and sticking at the last mid-step. All arrays are advanced in place, together.
     """
@@ -218,7 +234,7 @@ def ride(
         drift(0.5 * dt, feet)
         rotate_half(modes)
         set_factors((number + 0.5) * dt, modes, surface.drive, line.factors)
-        _look(number, surface.table, surface.edges, rubbing.half, line, feet)
+        _look(number, surface, given, rubbing.half, line, feet)
         damped = press(dt, feet, before)
         if beam is None:
             _rub(dt, feet, rubbing.slope, before)
@@ -230,37 +246,6 @@ def ride(
         if tally[STEP] % log.every == 0:
             if len(log.points) > 0:
                 set_factors((number + 1.0) * dt, modes, surface.drive, line.factors)
-            stored(dt, feet)
-            keep(dt, feet, line, log)
-    stored(dt, feet)
-    return DONE
-
-
-@lean()
-def ride_given(
-    n_steps: int, dt: float, given: GivenSurface, feet: Feet, rubbing: Rubbing, line: Line, before: Array, log: Log
-) -> int:
-    """The same on a surface that is given in the middle of every step, which does not feel the stage."""
-    tally = log.tally
-    for _ in range(n_steps):
-        number = tally[STEP]
-        if not _stand(0.5 * dt, given.edges, feet):
-            stored(dt, feet)
-            return OFF_BEAM
-        drift(0.5 * dt, feet)
-        for i in range(feet.points.shape[0]):
-            x, piece = place(i, feet), feet.piece[i]
-            for d in range(given.local.shape[3]):
-                line.local[piece, STILL, d] = given.local[number, piece, STILL, d]
-                line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]
-            length = given.edges[piece + 1] - given.edges[piece]
-            see(i, x, given.edges[piece], length, gone(i, feet), rubbing.half, line, feet)
-            feet.touch[i, SURFACE] += between(given.along[number], given.edges, piece, x)
-        press(dt, feet, before)
-        _rub(dt, feet, rubbing.slope, before)
-        if not _take((number + 0.5) * dt, dt, before, feet, log):
-            return NOT_FINITE
-        if tally[STEP] % log.every == 0:
             stored(dt, feet)
             keep(dt, feet, line, log)
     stored(dt, feet)

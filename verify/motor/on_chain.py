@@ -15,6 +15,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.places import SLACK
 from verify.models.underfoot import LEFT_BEAM
+from verify.motion.records import READ, Drive, Surface
 from verify.motion.request import Modelled, Request
 from verify.motion.surface import Stage
 from verify.motor import records
@@ -79,28 +80,35 @@ def run_on_chain(
     moved = from_rest(system, links, axial, times, tolerance=TOLERANCE, most=MOST, progress=progress)
     ready = perf_counter()
     note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
-    given = surface_given(moved, plan)
-    runs = [_ride(replace(plan, placed=(one,)), given, (began, ready), progress) for one in placed]
+    given, edges = surface_given(moved, plan)
+    runs = [_ride(replace(plan, placed=(one,)), given, edges - one.start, (began, ready), progress) for one in placed]
     return tuple(
         replace(run, model=CHAIN, state=replace(run.state, model=CHAIN), notes=(note, *run.notes[1:])) for run in runs
     )
 
 
-def _ride(plan: Plan, given: GivenSurface, begun: tuple[float, float], progress: Callable[[float], None]) -> MotorRun:
-    """One slider on a chain that does not feel it, hence none of the others; `given` is the surface under all."""
+def _ride(
+    plan: Plan,
+    given: GivenSurface,
+    edges: Array,
+    begun: tuple[float, float],
+    progress: Callable[[float], None],
+) -> MotorRun:
+    """One slider on a chain that does not feel it, hence none of the others; `given` is the surface under all.
+
+    `edges` are metres from where the slider starts.
+    """
     stage = plan.stages[0]
     riding = Riding.fresh(plan.placed, plan.request, False)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
     begin(plan, riding, ())
     riding.look(stage.dt)
     riding.first = np.zeros(0)
-    given = given._replace(edges=given.edges - plan.placed[0].start)
-    riding.feet.piece[:] = np.clip(
-        np.searchsorted(given.edges[1:-1], riding.feet.points[:, records.OFFSET]), 0, len(given.edges) - 2
-    )
+    offsets = riding.feet.points[:, records.OFFSET]
+    riding.feet.piece[:] = np.clip(np.searchsorted(edges[1:-1], offsets), 0, len(edges) - 2)
     drawn = _drawn(given, riding)
-    stopped = _run(given, stage.n_steps, stage.dt, riding, progress)
-    stopped = _gone(given, stage, riding) if stopped == LEFT_BEAM else stopped
+    stopped = _run(given, edges, stage, riding, progress)
+    stopped = _gone(edges, stage, riding) if stopped == LEFT_BEAM else stopped
     state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
     began, ready = begun
     run = outcome(0, plan, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
@@ -113,29 +121,37 @@ def _drawn(given: GivenSurface, riding: Riding) -> float:
     return float(np.sqrt(np.mean(given.along[:, first : last + 2] ** 2)))
 
 
-def _run(given: GivenSurface, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
+def _run(given: GivenSurface, edges: Array, stage: Stage, riding: Riding, progress: Callable[[float], None]) -> str:
     """All steps on a surface that is given; why it ended."""
     from verify.motor import kernels
 
     pieces, _, terms = given.local.shape[1:]
-    line = fresh_line(pieces, terms, 0)
+    line, surface = fresh_line(pieces, terms, 0), _without_modes(edges)
 
     def advance(steps: int) -> int:
-        return kernels.ride_given(steps, dt, given, riding.feet, riding.rubbing, line, riding.before, riding.log)
+        return kernels.ride(
+            steps, stage.dt, surface, given, riding.feet, riding.rubbing, None, line, riding.before, riding.log
+        )
 
-    return in_chunks(n_steps, riding, advance, lambda n: progress(n / n_steps))
+    return in_chunks(stage.n_steps, riding, advance, lambda n: progress(n / stage.n_steps))
 
 
-def _gone(given: GivenSurface, stage: Stage, riding: Riding) -> str:
+def _without_modes(edges: Array) -> Surface:
+    """Pieces that neither modes nor a drive move."""
+    drive = Drive(omega=0.0, origin=0.0, unit=1.0, growth=np.zeros(0))
+    return Surface(np.zeros((READ + 1, 0)), drive, np.zeros((0, 0, 0)), edges)
+
+
+def _gone(edges: Array, stage: Stage, riding: Riding) -> str:
     """What a slider has done that went beyond the links under it: those kept, or the last before a step."""
-    edges, (first, last) = given.edges + riding.start, span_of(riding, stage.dt)
+    edges, (first, last) = edges + riding.start, span_of(riding, stage.dt)
     end = 0 if edges[0] - first > last - edges[-1] else -1
     stepped = stage.ends[end] != LEFT_BEAM and abs(edges[end] - stage.edges[end]) < SLACK * stage.edges[-1]
     return stage.ends[end] if stepped else "left the links that it was put on"
 
 
-def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> GivenSurface:
-    """The contact line on the links under all feet and beside them, at every other time kept: in mid-steps.
+def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> tuple[GivenSurface, Array]:
+    """The contact line on the links under all feet and beside them, at every other time kept: in mid-steps; its edges.
 
     Edges are metres from the left end. Links beyond a step of the surface are left out.
     """
@@ -153,7 +169,7 @@ def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> GivenSurfac
     rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
     local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)
     edges = system.nodes[first : last + 2]
-    return GivenSurface(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 2]), edges)
+    return GivenSurface(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 2])), edges
 
 
 def _link_at(system: ChainSystem, x: float) -> int:

@@ -134,14 +134,12 @@ class Line(NamedTuple):
 
 
 class GivenSurface(NamedTuple):
-    """A surface that is given in the middle of every step."""
+    """A surface that is given in the middle of every step; of no steps where it is reckoned from modes and drive."""
 
     local: Array
     """(n, pieces, 2, degree + 1), polynomials of deflection and velocity."""
     along: Array
     """(n, pieces + 1), speed of the edges along x, m/s; between them it changes evenly."""
-    edges: Array
-    """(pieces + 1,), metres from where the slider started."""
 
 
 class Log(NamedTuple):

@@ -17,7 +17,7 @@ from verify.motion.stepping import CHUNK
 from verify.motion.surface import Stage
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of, fresh_log, hard_of, rubbing_of
-from verify.motor.records import BeamAnswer, Feet, Hard, Line, Log, Rubbing
+from verify.motor.records import BeamAnswer, Feet, GivenSurface, Hard, Line, Log, Rubbing
 
 ROUNDS, DAMPED_ROUNDS = 4.0, 6.0
 """In a step, in which each point's force is spread over all pieces between the points: with dashpots it is found anew.
@@ -208,6 +208,11 @@ def fresh_line(pieces: int, terms: int, rows: int) -> Line:
     return Line(local=np.zeros((pieces, 2, terms)), stamp=stamp, factors=np.zeros((2, rows)))
 
 
+def reckoned() -> GivenSurface:
+    """No surface is given."""
+    return GivenSurface(np.zeros((0, 0, 2, 0)), np.zeros((0, 0)))
+
+
 def in_chunks(n_steps: int, riding: Riding, advance: Callable[[int], int], tell: Callable[[int], None]) -> str:
     """All steps of a stage, as many at once as `advance` is given; why it ended. `tell` hears of all steps so far."""
     done = riding.log.tally
@@ -231,7 +236,7 @@ def _run_stage(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[i
 
     def advance(steps: int) -> int:
         return kernels.ride(
-            steps, stage.dt, surface, riding.feet, riding.rubbing, None, line, riding.before, riding.log
+            steps, stage.dt, surface, reckoned(), riding.feet, riding.rubbing, None, line, riding.before, riding.log
         )
 
     return in_chunks(stage.n_steps, riding, advance, tell)
@@ -252,7 +257,9 @@ def _run_felt(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[in
         nonlocal near
         first, own, beam, line = near
         feet.piece[:] -= first
-        why = int(kernels.ride(steps, stage.dt, own, feet, riding.rubbing, beam, line, riding.before, riding.log))
+        why = int(
+            kernels.ride(steps, stage.dt, own, reckoned(), feet, riding.rubbing, beam, line, riding.before, riding.log)
+        )
         feet.piece[:] += first
         if why != records.OFF_BEAM:
             return why

@@ -112,15 +112,15 @@ def under_feet_error(place: float) -> float:
     first, last = max(int(ends[0]) - 1 - 2, 1), min(int(ends[1]) - 1 + 2, LINKS - 1)
     worst = 0.0
     for moved in (swung.rigid, swung.stretching(np.zeros(len(swung.times)))):
-        given = surface_given(moved, plan)
-        if len(given.edges) != last + 2 - first or abs(given.edges - nodes[first : last + 2]).max() > 1e-15:
+        given, edges = surface_given(moved, plan)
+        if len(edges) != last + 2 - first or abs(edges - nodes[first : last + 2]).max() > 1e-15:
             return 1.0
         along = swung.speeds[1::2, first : last + 2, 0]
         worst = largest(worst, float(abs(given.along - along).max() / abs(along).max()))
         for which, rows in enumerate((swung.places, swung.speeds)):
             line = contact_line(straight_chain(swung.system), rows[1::2, :, 1])
             for share in (0.0, 0.3, 0.9):
-                exact = np.stack([line(a + share * (b - a)) for a, b in pairwise(given.edges)], axis=1)
+                exact = np.stack([line(a + share * (b - a)) for a, b in pairwise(edges)], axis=1)
                 found = given.local[:, :, which] @ share ** np.arange(4.0)
                 worst = largest(worst, float(abs(found - exact).max() / abs(exact).max()))
     return worst

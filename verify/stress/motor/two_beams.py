@@ -190,9 +190,8 @@ def left_error(number: float) -> float:
         feet = feet_of((Placed(replace(RIDER, foot=()), 0.3, travelled * 10.0),))
         feet.body[0, records.X] = 0.9 * travelled
         riding: Any = SimpleNamespace(start=0.3, feet=feet)
-        given: Any = SimpleNamespace(edges=np.array(edges) - 0.3)
         stage: Any = SimpleNamespace(dt=0.01, ends=(LEFT_BEAM, "came to a step"), edges=np.array([0.12, 0.41]))
-        wrong += _gone(given, stage, riding) != why
+        wrong += _gone(np.array(edges) - 0.3, stage, riding) != why
     return float(wrong + sum(_told_otherwise()))
 
 
