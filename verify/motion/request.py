@@ -76,9 +76,9 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         given = not self.own_damping and bool(self.beam.loss_factor and self.beam.lossless)
         return given or self.damping != 0.5 * self.beam.loss_factor
 
-    def damping_in(self, basis: TimeBasis) -> Ratio:
-        """Of every mode of a basis, one number or (n,). Raises InputError where one does not swing."""
-        return damping_in(basis, self.damping if self.damping_replaced else None)
+    def damping_in(self, basis: TimeBasis | None) -> Ratio:
+        """Of all modes of a basis, a number or (n,); without one, as asked. Raises InputError where one does not swing."""
+        return self.damping if basis is None else damping_in(basis, self.damping if self.damping_replaced else None)
 
     @property
     def line(self) -> str:

@@ -64,15 +64,15 @@ def simulate(
     `step` and `steps_per_period` are a slider's, refused without one: unless given, its step is at most that part of
     the drive's period, follows what the start excites (`step_size`) and, of a slider that the beam feels, is halved
     until its way stands (`judged_step`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
-    given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode, half the
-    beam's loss factor unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and
-    in the steady state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept,
-    (n, p), at n = `samples` times, or as many as part all stretches of growth where those are more. They stand evenly
-    on each stretch, not over all of them (`times`). `continue_from` is a run from the same `start`, or with start =
-    'rest' a beam let go. Returns what was reached where the run was interrupted or the slider left the beam or came to
-    a step of its surface, and says so. Without `patient` a slider's run longer than is waited for (`patience`) is
-    refused; so is one both ways, from rest and booked (`ledger`), in which the slider gave the beam far more than was
-    put in. Raises InputError.
+    given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode; unless
+    given, half the beam's loss factor times what bending has of a mode's stiffness. A slider that pushes back lies on
+    the beam from the start: its weight bends it, and in the steady state its mass is part of it. `at` are p places in
+    metres, or one, where the deflection is kept, (n, p), at n = `samples` times, or as many as part all stretches of
+    growth where those are more. They stand evenly on each stretch, not over all of them (`times`). `continue_from` is a
+    run from the same `start`, or with start = 'rest' a beam let go. Returns what was reached where the run was
+    interrupted or the slider left the beam or came to a step of its surface, and says so. Without `patient` a slider's
+    run longer than is waited for (`patience`) is refused; so is one both ways, from rest and booked (`ledger`), in
+    which the slider gave the beam far more than was put in. Raises InputError.
     """
     began = perf_counter()
     check_kind("patient", patient, bool)
@@ -127,7 +127,7 @@ def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling 
 
 def _steady(request: Request, basis: TimeBasis | None) -> Stage:
     field = steady_field(request, request.forces)
-    damping = request.damping_in(basis) if basis else request.damping
+    damping = request.damping_in(basis)
     return steady_stage(field, request.pieces[-1].steps, request.origin, basis, damping)
 
 

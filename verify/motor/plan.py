@@ -107,7 +107,7 @@ def _stages(request: Request, basis: TimeBasis | None, origin: float) -> list[St
         damping = request.damping_in(basis)
         return stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, origin)
     field = steady_field(request, request.forces)
-    damping = request.damping_in(basis) if basis else request.damping
+    damping = request.damping_in(basis)
     return [steady_stage(field, request.pieces[-1].steps, origin, basis, damping)]
 
 
