@@ -77,7 +77,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return given or self.damping != 0.5 * self.beam.loss_factor
 
     def damping_in(self, basis: TimeBasis | None) -> Ratio:
-        """Of all modes of a basis, a number or (n,); without one, as asked. Raises InputError where one does not swing."""
+        """Of all modes of a basis, a number or (n,), else as asked. Raises InputError where a mode does not swing."""
         return self.damping if basis is None else damping_in(basis, self.damping if self.damping_replaced else None)
 
     @property

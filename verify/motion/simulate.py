@@ -65,7 +65,7 @@ def simulate(
     the drive's period, follows what the start excites (`step_size`) and, of a slider that the beam feels, is halved
     until its way stands (`judged_step`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
     given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode; unless
-    given, half the beam's loss factor times what bending has of a mode's stiffness. A slider that pushes back lies on
+    given, what the beam's loss factor comes to in each (`free_vibration`). A slider that pushes back lies on
     the beam from the start: its weight bends it, and in the steady state its mass is part of it. `at` are p places in
     metres, or one, where the deflection is kept, (n, p), at n = `samples` times, or as many as part all stretches of
     growth where those are more. They stand evenly on each stretch, not over all of them (`times`). `continue_from` is a
