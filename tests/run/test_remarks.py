@@ -2,15 +2,21 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from verify import load_scene
 from verify.cli import status_of
+from verify.exact.harmonic import solve_harmonic
+from verify.exact.modes import exact_frequency_hz
 from verify.run.plan import plan_scene
 from verify.run.remarks import remarks_on
 from verify.run.scale import scale_in_words
 from verify.scenes.scene import packaged_scenes
 
+GATE = """gate=[{id = "g", quantity = "mode.frequency", arguments = {model = "analytic", mode = 1}, at_least = 1.0, \
+why = "It is asked."}]"""
+THEORIES = ("euler-bernoulli", "timoshenko")
 ARM = """
 name = "arm"
 [beam]
@@ -98,3 +104,37 @@ def test_the_scale_is_the_first_frequency_and_how_far_a_driven_beam_bends(tmp_pa
     )
     (why,) = [one.why for one in plan_scene(pushed).skipped if one.what == "harmonic response"]
     assert why.endswith("fields are solved for how far the beam deflects alone")  # told above, and not skipped
+
+
+def test_the_scale_is_by_the_theories_that_are_asked_for(tmp_path):
+    """A stub that shear makes softer: no figure of another theory stands under what was asked."""
+    stub = (
+        "beam.thickness=0.031",
+        "beam.length=0.1",
+        'beam.supports=["clamped", "clamped"]',
+        "spectrum.theory=timoshenko",
+    )
+    push = "drive={frequency_hz = 3000.0, force = [{position = 0.03, amplitude = 2.0}]}"
+    both = arm(tmp_path, *stub, push, GATE)
+    plain, soft = (exact_frequency_hz(both.beam, 1, theory=theory) for theory in THEORIES)
+    assert 0.55 * plain < soft < 0.8 * plain
+    assert scale_in_words(arm(tmp_path, *stub)) == f"The beam's first mode is at {soft:.5g} Hz by Timoshenko theory."
+    told = scale_in_words(both)
+    assert f"at {plain:.5g} Hz by Euler-Bernoulli theory and {soft:.5g} Hz by Timoshenko theory; driven at" in told
+    x = np.linspace(0.0, 0.1, 201)
+    fields = [solve_harmonic(both.beam, both.forces, 3000.0, theory=theory) for theory in THEORIES]
+    first, second = (float(abs(field.deflection(x)).max()) for field in fields)
+    assert second > 1.3 * first
+    assert told.endswith(
+        f"up to {1e9 * first:.3g} nm by Euler-Bernoulli theory and {1e9 * second:.3g} nm by Timoshenko theory in the "
+        "steady state."
+    )
+
+
+@pytest.mark.parametrize(("force", "said"), [(0.03, ""), (1.9, "of its length: linear"), (40.0, " times its length: ")])
+def test_what_bends_farther_than_linear_theory_goes_is_not_told_without_a_word(tmp_path, force, said):
+    told = scale_in_words(
+        arm(tmp_path, f"drive={{frequency_hz = 0.11, force = [{{position = 0.137, amplitude = {force}}}]}}")
+    )
+    assert told.endswith("in the steady state.") == (not said)
+    assert said in told
