@@ -295,3 +295,16 @@ def test_parts_of_one_size_are_not_called_the_cheapest_beside_the_exact_solution
 def test_as_long_within_the_spread_is_no_ratio_of_the_exact_solution():
     told = beside_exact(20, 40, 80, seconds=(1.93, 2.5, 3.9))
     assert "as long by either within the spread" in told.text
+
+
+@pytest.mark.parametrize(("seconds", "said"), [(3.1e-6, True), (6.4e-6, False)])
+def test_what_is_cheaper_and_as_near_at_no_order_is_named_beside_the_cheapest_whose_errors_converge(seconds, said):
+    clock = Clock()
+    exact = entry(clock, "exact", None, seconds=(1.93,), answer=EXACT, orders=None)
+    parts = [entry(clock, "a", n, seconds=(s,)) for n, s in ((20, 5.8e-6), (40, 7e-6), (80, 9e-6))]
+    one = case(*parts, entry(clock, "b", 31, seconds=(seconds,)), exact)
+    (told,) = sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")
+    assert told.earned
+    assert told.ratio == pytest.approx(5.8e-6 / 1.93, rel=1e-6)
+    assert ("the cheapest of parts within 1 % whose errors converge over these sizes, a, N = 20" in told.text) == said
+    assert ("; b, N = 31, is within it in 3.1 µs: one size shows no order" in told.text) == said

@@ -268,12 +268,25 @@ def _exact(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
     least = min(earned, key=lambda one: one.row.whole_s or 0.0)
     other, line = least.row.whole_s or 0.0, least.entry.line.name
     spread = sum((one.row.spread_s or 0.0) / (one.row.whole_s or 1.0) for one in (exact, least))
+    converge, cheaper = _cheaper(near, other, stretches)
     text = (
-        f"{case.name}: the exact solution takes {in_words(own, 's')}, the cheapest of parts within {percent(NEAR)}, "
-        f"{least.entry.told}, {in_words(other, 's')}: {_told(name, line, _Ratio(other / own, other / own, spread))} "
-        f"({_condition(case, found, scene)})"
+        f"{case.name}: the exact solution takes {in_words(own, 's')}, the cheapest of parts within {percent(NEAR)}"
+        f"{converge}, {least.entry.told}, {in_words(other, 's')}: "
+        f"{_told(name, line, _Ratio(other / own, other / own, spread))}{cheaper} ({_condition(case, found, scene)})"
     )
     return [Sentence(set=case.set, about=case.about, methods=(name, line), text=text, earned=True, ratio=other / own)]
+
+
+def _cheaper(near: Sequence[Outcome], seconds: float, stretches: dict[str, Stretch | Unearned]) -> tuple[str, str]:
+    """What is to be said where something cheaper is as near in lines whose errors do not converge: before, behind."""
+    cheaper = [one for one in near if (one.row.whole_s or 0.0) < seconds]
+    if not cheaper:
+        return "", ""
+    least = min(cheaper, key=lambda one: one.row.whole_s or 0.0)
+    why = stretches[least.entry.line.name]
+    assert isinstance(why, Unearned)
+    own = f"{least.entry.told}, is within it in {in_words(least.row.whole_s or 0.0, 's')}: {why.why}"
+    return " whose errors converge over these sizes", f"; {own}"
 
 
 def _sentence(
