@@ -266,3 +266,13 @@ def test_a_slider_that_friction_still_speeds_up_has_no_free_speed(given, pushed)
         quantity = QUANTITIES[f"slider.{name}"]
         with pytest.raises(InputError, match=rf"no steady end.*{pushed} push it on"):
             quantity.evaluate(quantity.arguments(model="analytic", **given), scene, Workbench(scene.beam))
+
+
+def test_a_slider_that_begins_at_its_free_speed_takes_no_time_to_get_there():
+    quantity, at_once = QUANTITIES["slider.start_time"], load_scene("preloaded-motor", ("slider.speed=0.0",))
+    asked = quantity.arguments(model="analytic")
+    assert quantity.evaluate(asked, at_once, Workbench(at_once.beam)) > 1e-3
+    speed = QUANTITIES["slider.free_speed"].evaluate(asked, at_once, Workbench(at_once.beam))
+    there = load_scene("preloaded-motor", (f"slider.speed={speed!r}",))
+    with pytest.raises(InputError, match=r"periods = .*the slider begins at -0\.0266.* no way takes a time; give slider"):
+        quantity.evaluate(asked, there, Workbench(there.beam))

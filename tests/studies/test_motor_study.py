@@ -22,6 +22,7 @@ from verify.studies.motor.from_rest import FromRest, RestField, RestHeld, what_s
 from verify.studies.motor.request import case_of
 from verify.studies.motor.tables import at_speed_as_plain
 from verify.studies.motor.words import doubts, in_short_of
+from verify.units import in_words
 
 SMALL = (
     'motor.models=["segment"]',
@@ -457,6 +458,29 @@ def test_a_free_run_that_is_still_on_its_way_is_told_beside_the_speed_that_is_he
     for share, told in ((0.995, "runs at"), (0.95, "at the end of its free run, without force at")):
         free = replace(field.free, speed=share * field.no_load.speed)
         assert told in in_short_of(replace(study, fields=(replace(field, free=free),)))
+
+
+def test_a_speed_within_its_own_scatter_has_no_way_and_no_times(study):
+    (field,) = study.fields
+    still = 3e-5
+    for speed, spread, goes in ((still, 0.9 * still, True), (-still, 1.1 * still, False)):
+        found = replace(study, fields=(replace(field, free=replace(field.free, speed=speed, spread=spread)),))
+        assert (
+            "comes to no speed beyond 0.003 cm/s, by which halves of its free run differ," in found.in_short()
+        ) != goes
+        facts = " ".join(found.facts())
+        assert ("withheld, it comes to no speed beyond 0.003 cm/s" in facts) != goes
+        overview = found.tables()[0]
+        for head in ("start", "stop", "turn"):
+            assert (overview.rows[0][[column.head for column in overview.columns].index(head)] is None) != goes
+
+
+def test_a_force_that_stands_beside_another_that_repeats_itself_is_not_told_alone(study):
+    (field,) = study.fields
+    assert " or, by how it began," not in study.in_short()
+    other = replace(field.shooting, force=0.8 * field.stall.force)
+    told = replace(study, fields=(replace(field, shooting=other),)).in_short()
+    assert f" or, by how it began, with {in_words(other.force, 'N', '+.4g')} standing still" in told
 
 
 def test_what_has_not_settled_is_told_with_its_spread_and_what_stands_on_it_is_withheld(study):

@@ -124,9 +124,17 @@ def _free(a: FreeRun, scene: "Scene", bench: Workbench) -> Any:
 
 def _start_time(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
     """Raises InputError where it is not under way by then."""
-    from verify.motor.figures import started_of
+    from verify.motor.figures import mean_speed, started_of
 
-    found = started_of(_free(a, scene, bench), _free_speed(a, scene, bench))
+    run, speed = _free(a, scene, bench), _free_speed(a, scene, bench)
+    spread, first = mean_speed(run, a.last)[1], float(run.speed[0])
+    if abs(speed - first) <= spread:
+        raise InputError(
+            f"periods = {a.periods!r} with last = {a.last!r}: the slider begins at {first:.6g} m/s and comes to "
+            f"{speed:.2g} m/s, the same within the {spread:.2g} m/s by which halves of its end differ: no way takes a "
+            "time; give slider.speed another start"
+        )
+    found = started_of(run, speed)
     if found is None:
         raise InputError(f"periods = {a.periods!r}: the slider is not under way by then, give more")
     return found

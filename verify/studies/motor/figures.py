@@ -98,6 +98,11 @@ class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
     stopped: str
     """'end', or why it ended before."""
 
+    @property
+    def goes(self) -> bool:
+        """Whether it comes to a speed that is more than its scatter: else it has no way, and no time to get there."""
+        return self.settled and abs(self.speed) > self.spread
+
 
 class FieldFound(msgspec.Struct, frozen=True, kw_only=True):
     """The motor on one field."""

@@ -36,6 +36,8 @@ def in_short_of(found: "MotorFound") -> str:
     runs = f"runs at {100 * speed:+.4g} cm/s without load"
     if not one.free.settled:
         runs = "does not come to a speed in its free run"
+    elif not one.free.goes:
+        runs = f"comes to no speed beyond {_small(one)}, by which halves of its free run differ,"
     elif abs(held - speed) > SETTLED * abs(held):
         runs = (
             f"is at {100 * speed:+.4g} cm/s at the end of its free run, without force at {100 * held:+.4g} cm/s held,"
@@ -43,9 +45,17 @@ def in_short_of(found: "MotorFound") -> str:
     if not one.stall.settled("force"):
         does = "bounces so that" if one.stall.bounces else "stays on the surface, but"
         return f"The motor {runs} and {does} its force standing still has not settled, on the {one.title}."
-    return (
-        f"The motor {runs} and pushes with {in_words(one.stall.force, 'N', '+.4g')} standing still, on the {one.title}."
-    )
+    return f"The motor {runs} and pushes with {_pushes(one)} standing still, on the {one.title}."
+
+
+def _pushes(one: "FieldFound") -> str:
+    """The force standing still; both where another motion repeats itself as well."""
+    held = in_words(one.stall.force, "N", "+.4g")
+    if one.shooting is None or abs(one.shooting.force - one.stall.force) <= max(
+        one.stall.spread, SETTLED * abs(one.stall.force)
+    ):
+        return held
+    return f"{held} or, by how it began, with {in_words(one.shooting.force, 'N', '+.4g')}"
 
 
 def facts_of(found: "MotorFound") -> tuple[str, ...]:
@@ -67,8 +77,9 @@ def _of_field(one: "FieldFound") -> Iterator[str]:
     times = {"start": one.start_time, "stop": one.stop_time, "turning round": one.reversal_time}
     at_once = ", of a beam that is still or turned round at once" if one.stop_time or one.reversal_time else ""
     words = ", ".join(f"{name} {seconds_in_words(value)}" for name, value in times.items() if value is not None)
-    none = "none, the speed is not reached within the run" if free.settled else "withheld, it comes to no speed"
-    yield f"time constants {where}: {words + at_once if words and free.settled else none}"
+    none = "none, the speed is not reached within the run" if free.goes else "withheld, it comes to no speed"
+    none += f" beyond {_small(one)}" if free.settled and not free.goes else ""
+    yield f"time constants {where}: {words + at_once if words and free.goes else none}"
     yield f"one second of motor {where}: {free.run_ms_per_ms:.2g} s of run time"
 
 
