@@ -274,5 +274,7 @@ def test_a_slider_that_begins_at_its_free_speed_takes_no_time_to_get_there():
     assert quantity.evaluate(asked, at_once, Workbench(at_once.beam)) > 1e-3
     speed = QUANTITIES["slider.free_speed"].evaluate(asked, at_once, Workbench(at_once.beam))
     there = load_scene("preloaded-motor", (f"slider.speed={speed!r}",))
-    with pytest.raises(InputError, match=r"periods = .*the slider begins at -0\.0266.* no way takes a time; give slider"):
+    with pytest.raises(
+        InputError, match=r"periods = .*the slider begins at -0\.0266.* no way takes a time; give slider"
+    ):
         quantity.evaluate(asked, there, Workbench(there.beam))

@@ -513,6 +513,23 @@ def test_a_slider_that_leaves_the_steady_wave_has_no_mean_speed_there(tmp_path):
     assert "m/s" not in found
 
 
+def test_the_mean_speed_on_the_steady_wave_is_that_after_the_start(tmp_path):
+    """Whatever speed it starts at; a heavy slider on hardly any friction still has that of its start, and says so."""
+    from verify.studies.slider.figures import slider_study
+
+    def told(*given):
+        scene = load_scene(stranger(tmp_path), given)
+        return next(one for one in slider_study(scene).findings if "steady wave" in one.what)
+
+    still, pushed = told(), told("slider.speed=0.003")
+    assert "from 0.3 cm/s; phases reversed" in pushed.what
+    speeds = [[float(word.split()[0]) for word in one.found.split("; ")] for one in (still, pushed)]
+    assert speeds[1] == pytest.approx(speeds[0], rel=1e-2)
+    assert speeds[0][0] * speeds[0][1] < 0.0
+    heavy = told("slider.speed=0.003", "slider.mass=0.2", "slider.mu=0.3", "slider.slope=0.5")
+    assert heavy.found.count("not settled, +") == 2
+
+
 @pytest.mark.parametrize(("left_out", "named"), [("slider", "slider"), ("motion", "motion")])
 def test_a_claim_about_a_run_that_the_scene_has_not_names_what_is_missing(left_out, named):
     whole = load_scene("paper-slider")
