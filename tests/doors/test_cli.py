@@ -425,6 +425,24 @@ def test_maps_of_standing_waves_and_gaps_are_drawn(verify, sweep, said):
     assert said in " ".join(out.split())
 
 
+def test_a_ratio_that_is_infinite_is_no_gap_and_what_is_largest_is_told_beside_it(verify):
+    """Forces in phase and against phase: a standing wave at every frequency."""
+    words = ("table", "paper", "--sweep", "frequency_hz=4000:4600:4", "--sweep", "phase_deg=0:180:3", "model=segment")
+    out = " ".join(verify(*words, "count=49")[1].split())
+    assert (
+        "infinite at 8 of 12 points, elsewhere largest wave.standing_wave_ratio = 4.93535 at frequency_hz = 4400" in out
+    )
+    data = json.loads(verify(*words, "count=49", "--json")[1])
+    assert data["infinite"] == [[i, j] for i in range(4) for j in (0, 2)]
+    assert [row[::2] for row in data["values"]] == [[None, None]] * 4
+    rows = list(csv.DictReader(io.StringIO(verify(*words, "count=49", "--csv")[1])))
+    assert [float(row["wave.standing_wave_ratio"]) == float("inf") for row in rows] == [True, False, True] * 4
+    (line,) = (
+        found for found in verify("table", "paper", "--sweep", "phase_deg=0:0:3")[1].splitlines() if "finite" in found
+    )
+    assert line == "no point has a finite figure, it is infinite at 3 of 3"
+
+
 def test_a_map_under_one_force_is_drawn_or_refused(verify, tmp_path):
     (tmp_path / "one.toml").write_text(
         'name = "one"\n[beam]\nlength = 0.5\nwidth = 0.02\nthickness = 0.001\nyoungs_modulus = 70e9\ndensity = 2700.0\n'

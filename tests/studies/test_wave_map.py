@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from verify import load_scene
 from verify.judge.workbench import Workbench
@@ -42,8 +43,11 @@ def test_a_value_that_stands_for_larger_ones_is_told_as_that_or_more():
     study = studied()
     chart = next(one for one in wave_charts(study) if one.map)
     assert chart.map.most == CLIPPED
-    cut = Map(name="ratio", x=(1.0, 2.0), y=(3.0,), values=((2.5, 7.0),), most=7.0)
+    rows = ((2.5, 7.0, 7.0), (7.0, 3.5, 4.0))
+    cut = Map(name="ratio", x=(1.0, 2.0, 2.5), y=(3.0, 5.0), values=rows, most=7.0)
     assert "The least ratio is 2.5, at" in _map_words(cut, chart)
-    assert "The largest ratio is 7 or more, at" in _map_words(cut, chart)
-    whole = Map(name="ratio", x=(1.0, 2.0), y=(3.0,), values=((2.5, 7.0),))
+    assert "The ratio is 7 or more at 3 of 6 points;" in _map_words(cut, chart)
+    assert "largest" not in _map_words(cut, chart)  # which of the three it is, is cut off
+    whole = replace(cut, most=None)
+    assert "The largest ratio is 7, at" in _map_words(whole, chart)
     assert "or more" not in _map_words(whole, chart)

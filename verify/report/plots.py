@@ -123,11 +123,20 @@ def _map_words(found: Map, chart: Chart) -> str:
     ]
     if not cells:
         return f"No point has a {found.name}."
-    return " ".join(
-        f"The {word} {found.name} is {number(value, 4)}{' or more' if value == found.most else ''}, at {chart.x.title} "
-        f"{number(x, 5)} and {chart.y.title} {number(y, 4)}."
-        for word, (value, x, y) in (("least", min(cells)), ("largest", max(cells)))
-    )
+    told = [("least", min(cells)), ("largest", max(cells))]
+    beyond = sum(value == found.most for value, *_ in cells)
+    words = [
+        f"The {word} {found.name} is {number(value, 4)}, at {chart.x.title} {number(x, 5)} and {chart.y.title} "
+        f"{number(y, 4)}."
+        for word, (value, x, y) in told
+        if value != found.most
+    ]
+    if beyond:
+        words.append(
+            f"The {found.name} is {number(found.most or 0.0, 4)} or more at {beyond} of {len(cells)} points; how much "
+            "more is not told here."
+        )
+    return " ".join(words)
 
 
 def _data(chart: Chart, drawing: Drawing) -> dict[str, Any]:

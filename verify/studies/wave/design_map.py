@@ -74,12 +74,18 @@ class DesignMap(Found, frozen=True, eq=False, kw_only=True):
         """Whose it is, its extremes, and how many points it has."""
         finite = np.isfinite(self.values)
         if not finite.any():
-            return f"{self.quantity} of {self.of}", "no point has a finite figure", self._how()
-        extremes = (("least", np.argmin, np.inf), ("largest", np.argmax, -np.inf))
+            endless = f", it is infinite at {n} of {self.values.size}" if (n := self._n_endless) else ""
+            return f"{self.quantity} of {self.of}", f"no point has a finite figure{endless}", self._how()
+        endless = f"infinite at {n} of {self.values.size} points, elsewhere " if (n := self._n_endless) else ""
+        extremes = (("least", np.argmin, np.inf), (f"{endless}largest", np.argmax, -np.inf))
         places = [
             self._extreme(word, int(pick(np.where(finite, self.values, other)))) for word, pick, other in extremes
         ]
         return (f"{self.quantity} of {self.of}", *places, self._how())
+
+    @property
+    def _n_endless(self) -> int:
+        return int(np.isinf(self.values).sum())
 
     def _how(self) -> str:
         left_out = self.values.size - prod(map(min, self._grid(), COARSE))
@@ -112,16 +118,16 @@ class DesignMap(Found, frozen=True, eq=False, kw_only=True):
         )
 
     def records(self) -> list[dict[str, Any]]:
-        """Every point."""
+        """Every point; nothing where there is no figure, which infinity is."""
         names = [axis.name for axis in self.axes]
         points = product(*(axis.values for axis in self.axes))
         return [
-            {**dict(zip(names, point, strict=True)), self.quantity: finite_or_none(float(value))}
+            {**dict(zip(names, point, strict=True)), self.quantity: None if np.isnan(value) else float(value)}
             for point, value in zip(points, self.values.ravel(), strict=True)
         ]
 
     def plain(self) -> dict[str, Any]:
-        """Axes and values, nested as the axes are."""
+        """Axes and values, nested as the axes are; which of those without a number are infinite, by their places."""
         rows = self.values.tolist()
         flat = self.values.ndim == 1
         return {
@@ -129,6 +135,7 @@ class DesignMap(Found, frozen=True, eq=False, kw_only=True):
             "unit": self.unit,
             "axes": msgspec.to_builtins(self.axes),
             "values": [finite_or_none(v) if flat else [finite_or_none(one) for one in v] for v in rows],
+            "infinite": np.argwhere(np.isinf(self.values)).tolist(),
             "method": self.method,
             "reasons": list(self.reasons),
         }
