@@ -15,6 +15,8 @@ ASTRAY = 1.0
 """How far an observed order may lie from the known one for times to be compared."""
 NO_ANSWER = 0.5
 """An error from which on a figure is none: what falls from there on falls at no order."""
+ROUNDED = 1e-6
+"""Above it an error that has changed its sign and grows is on its way to its order, and no rounding of any method."""
 LEAST = 3
 """Points between which an order is seen twice."""
 
@@ -139,7 +141,9 @@ def converging(
     if found is None:
         words = ", ".join("a change of sign" if order is None else f"{order:.2f}" for order in seen)
         grows = abs(above[-1].error) >= min(abs(p.error) for p in above[:-1])
-        return Unearned(f"errors fall not at order {known} but at {words}", "give coarser ones" if grows else finer)
+        turned = None in seen and abs(above[-1].error) > ROUNDED
+        remedy = "give coarser ones" if grows and not turned else finer
+        return Unearned(f"errors fall not at order {known} but at {words}", remedy)
     first, last = found
     kept = tuple(order for order in seen[first:last] if order is not None)
     return Stretch(tuple(above[first : last + 1]), kept, len(above) - 1 - last)

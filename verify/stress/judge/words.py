@@ -121,6 +121,8 @@ def costs_error(order: float) -> float:
         f"errors fall not at order {order:g} but at a change of sign, a change of sign, 0.19"
     )
     wrong |= not turned.endswith("give finer ones")
+    wrong |= not told((0.1, 0.003, -0.002, -0.004)).endswith(", -1.00: give finer ones")
+    wrong |= not told((0.1, 3e-9, -2e-9, -4e-9)).endswith(", -1.00: give coarser ones")
     one, other = Point(0.1, 0.3, 1.0), Point(0.1, 0.2, 1.0)
     wrong |= observed(one, other, 0.0) is not None or too_few(2) != "2 sizes show no order"
     points = [Point(1.0 / n, error, n, 0.1 / n) for n, error in zip((10.0, 20.0, 40.0, 80.0), fine, strict=True)]
