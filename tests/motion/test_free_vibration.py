@@ -301,6 +301,26 @@ def test_what_a_start_misses_of_a_table_at_its_own_places_is_told(model):
     assert not any(note.startswith("start: ") for note in freed(sine(2), model=model).notes)
 
 
+@pytest.mark.parametrize("model", MODELS)
+def test_corners_have_more_elastic_energy_with_every_mode_and_notes_say_so(model):
+    """A tip force's static shape has EI w''^2/2 = F^2 L^3 / 6 EI of it; pulled up straight it has a corner at the wall."""
+
+    def bent(x):
+        return 7e-4 * (x / L) ** 2 * (3.0 - x / L)
+
+    smooth = freed(bent, beam=CANTILEVER, model=model)
+    assert smooth.elastic[0] == pytest.approx(0.5 * EI * 12.0 * 7e-4**2 / L**3, rel=2e-3)
+    assert not any(note.startswith("energies") for note in smooth.notes)
+    counts = {"count": 2 * MODELS[model]} if MODELS[model] else {"modes": 800}
+    straight, finer = (freed(lambda x: 1.4e-3 * x / L, beam=CANTILEVER, model=model, **more) for more in ({}, counts))
+    assert finer.elastic[0] > 1.8 * straight.elastic[0] > 3.0 * smooth.elastic[0]
+    (note,) = (note for note in straight.notes if note.startswith("energies"))
+    share = straight.amplitudes**2 * straight.frequencies_hz**2
+    assert note.startswith(
+        f"energies: {100 * share[len(share) // 2 :].sum() / share.sum():.2g} % of the elastic energy"
+    )
+
+
 @pytest.mark.parametrize("length", [0.031, 47.0])
 def test_how_far_a_mode_may_move_is_told_in_lengths_of_its_beam(length):
     """To slopes of 1e100, whose squares are still numbers."""

@@ -46,6 +46,10 @@ NEAR = 1e-3
 """Of its largest value: what a mode's shape has where it first moves off its left end."""
 
 
+CORNERED = 0.05
+"""Of the elastic energy: what the faster half of the modes have of a shape without corners at most."""
+
+
 class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     """A beam that vibrates freely from an initial shape and velocity."""
 
@@ -66,7 +70,8 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     kinetic: Array
     """(n,), joules."""
     elastic: Array
-    """(n,), joules; what is missing from the sum at the start is damped."""
+    """(n,), joules; what is missing from the sum at the start is damped. Of a shape with corners it grows with the
+    modes that are kept, as `notes` say."""
     frequencies_hz: Array
     """(m,), of the model's modes, undamped, ascending."""
     amplitudes: Array
@@ -353,7 +358,26 @@ def _told(
             q=now[-1],
             rates=speed[-1],
         ),
-        notes=(f"modes: {_kept(basis)}", f"damping: {damping_in_words(damping, basis.beam)}"),
+        notes=(
+            f"modes: {_kept(basis)}",
+            f"damping: {damping_in_words(damping, basis.beam)}",
+            *_cornered(q**2 * modes.squares),
+        ),
+    )
+
+
+def _cornered(energies: Array) -> tuple[str, ...]:
+    """That the elastic energy at the start is no figure of the shape, where the faster half of the modes have of it.
+
+    A corner, as where straight lines of a table meet, takes endlessly much; so does a slope where the beam is clamped.
+    """
+    total, slower = float(energies.sum()), len(energies) // 2
+    share = float(energies[slower:].sum()) / total if total > 0.0 else 0.0
+    if share <= CORNERED:
+        return ()
+    return (
+        f"energies: {100.0 * share:.2g} % of the elastic energy at the start is in the faster half of the modes, as of "
+        "a shape with corners, and grows with their number: give a smooth function for an energy that is the shape's",
     )
 
 
