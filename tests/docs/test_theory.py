@@ -175,23 +175,21 @@ def test_a_free_end_takes_the_highest_frequency_of_elements_to_59_88_from_below_
 
 
 def test_orders_under_tension_are_those_of_links_that_a_clamped_end_s_layer_is_long_for():
-    """A steel strip of 1.4 m under 90 N, pinned and clamped: 50 links are two layers long each, 400 a quarter of one."""
+    """A steel strip of 1.4 m, a hundred layers long: 50 links are two layers long each, 400 a quarter of one."""
     page = " ".join((DOCS / "your-beam.md").read_text("utf-8").split())
-    assert "with links of two such layers is 0.51 % off with them, 0.14 % in series" in page
-    assert "with links of a quarter of one 7.6e-6 and 2.5e-5" in page
+    assert "with links of two such layers is 0.50 % off with them, 0.13 % in series" in page
+    assert "with links of a quarter of one 7.2e-6 and 2.4e-5" in page
     strip = Beam(
         length=1.4, width=0.016, thickness=4e-4, youngs_modulus=200e9, density=7800.0, supports=("pinned", "clamped")
     )
-    layer = np.sqrt(strip.bending_stiffness / 90.0)
-    assert [round(1.4 / count / layer, 2) for count in (50, 400)] == [2.03, 0.25]
-    taut = replace(strip, tension=90.0)
+    taut = replace(strip, tension=strip.bending_stiffness * (100.0 / 1.4) ** 2)
     exact = analytic_modes.solve_modes(taut, 1).frequencies_hz[0]
 
     def off(count, joints):
         return abs(segment_model.solve_modes(taut, 1, count, joints=joints).frequencies_hz[0] / exact - 1.0)
 
-    assert [f"{100 * off(50, joints):.2f}" for joints in ("tensioned", "series")] == ["0.51", "0.14"]
-    assert [f"{off(400, joints):.1e}" for joints in ("tensioned", "series")] == ["7.6e-06", "2.5e-05"]
+    assert [f"{100 * off(50, joints):.2f}" for joints in ("tensioned", "series")] == ["0.50", "0.13"]
+    assert [f"{off(400, joints):.1e}" for joints in ("tensioned", "series")] == ["7.2e-06", "2.4e-05"]
     taut = replace(strip, tension=strip.bending_stiffness * (20.0 / 1.4) ** 2)  # twenty layers
     exact = analytic_modes.solve_modes(taut, 1).frequencies_hz[0]
     assert "one of twenty layers 2.6 % and 0.44 %, then 3.9e-5 and 1.8e-4" in page

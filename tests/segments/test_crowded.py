@@ -51,6 +51,15 @@ def test_a_bracket_beside_a_wall_and_two_flanges_together_move_as_on_the_beam(be
     assert abs(errors(beam, count)).max() < worst
 
 
+@pytest.mark.parametrize("inertia", [0.0, 1e-5, 1e-3, 3e-3, 1e-2])
+def test_a_bracket_of_any_rotary_inertia_is_as_far_off_as_the_page_on_beams_says(inertia):
+    (own,) = BRACKET.mass
+    beam = replace(BRACKET, mass=(replace(own, rotary_inertia=inertia),))
+    coarse, fine = (abs(errors(beam, count)).max() for count in (20, 60))
+    assert 2e-3 < coarse < 1.4e-2
+    assert 3e-5 < fine < 3e-4
+
+
 def test_two_flanges_closer_than_a_link_keep_order_four():
     coarse, fine = (abs(errors(FLANGES, n))[3] for n in (30, 120))
     assert np.log2(coarse / fine) / 2 > 3.9
