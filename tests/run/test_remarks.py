@@ -53,6 +53,9 @@ def test_no_packaged_scene_is_remarked_on(name):
             ("beam.length = 137, beam.width = 9.3, beam.thickness = 0.71 are read as metres", "weigh 7070 t"),
         ),
         (("beam.length=137",), ("beam.length = 137", "its own weight would bend it by")),
+        (("beam.thickness=0.71",), ("beam.thickness = 0.71 are read", "would be 0.71 m thick and 0.137 m long")),
+        (("beam.width=9.3",), ("beam.width = 9.3, ", "would be 9.3 m wide and 0.137 m long; 20 mm is 0.02 m")),
+        (("beam.density=7.81e6", "beam.youngs_modulus=206e9"), ("beam.density = 7.81e+06 ", "more than 25000; 7.85 g")),
     ],
 )
 def test_each_field_that_looks_like_another_unit_is_named_with_what_it_would_mean(tmp_path, overrides, said):
@@ -68,6 +71,7 @@ def test_each_field_that_looks_like_another_unit_is_named_with_what_it_would_mea
         ("beam.length=1200", "beam.width=0.6", "beam.thickness=8", "beam.tension=1e7"),
         ("beam.length=30", "beam.width=0.3", "beam.thickness=0.6"),
         ("beam.youngs_modulus=1e6", "beam.density=1100"),
+        ("beam.thickness=0.13", "beam.width=0.6", "beam.density=22600"),
         ("beam.youngs_modulus=1.05e12", "beam.density=3500"),
     ],
 )

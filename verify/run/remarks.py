@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 
 SOUND = (30.0, 30_000.0)
 """Speeds of sound along a bar, sqrt(E/rho), that materials have, from soft rubber to diamond, m/s."""
+DENSE = 25_000.0
+"""Above osmium, kg/m^3."""
+WIDE = 5.0
+"""Times its length: a strip so wide is none."""
 HEAVY_KG = 1e5
 """A beam in millimetres that is read as metres weighs a thousand million times as much as it does."""
 LONG_M = 5.0
@@ -33,7 +37,8 @@ def _material(piece: "Piece") -> str:
     density = piece.mass_per_length / piece.area
     speed = (piece.youngs_modulus / density) ** 0.5
     if SOUND[0] <= speed <= SOUND[1]:
-        return ""
+        heavier = f"beam.density = {number(density, 6)} is read as kg/m³: no solid has more than {DENSE:g}"
+        return f"{heavier}; 7.85 g/cm³ is 7850 kg/m³" if density > DENSE else ""
     return (
         f"beam.youngs_modulus = {number(piece.youngs_modulus, 6)} and beam.density = {number(density, 6)} are read as "
         f"Pa and kg/m³: sound would travel at {_short(speed)} m/s in this material; 206 GPa is 206e9 Pa, 7.85 g/cm³ is "
@@ -42,7 +47,13 @@ def _material(piece: "Piece") -> str:
 
 
 def _lengths(beam: Beam) -> "Iterator[str]":
-    """That it is heavier than what is built in one piece, or cannot bear its own weight."""
+    """That it is thicker than long, heavier than what is built in one piece, or cannot bear its own weight."""
+    known = [(2.0 * piece.extreme_fibre, piece.area) for piece in beam.pieces if piece.extreme_fibre and piece.area]
+    thick, wide = (max((size(*one) for one in known), default=0.0) for size in (lambda h, a: h, lambda h, a: a / h))
+    if thick > beam.length:
+        yield f"{_read_so(beam)}: it would be {_short(thick)} m thick and {_short(beam.length)} m long; 2 mm is 0.002 m"
+    elif wide > WIDE * beam.length:
+        yield f"{_read_so(beam)}: it would be {_short(wide)} m wide and {_short(beam.length)} m long; 20 mm is 0.02 m"
     if beam.length < LONG_M:
         return
     mass = sum(piece.mass_per_length * piece.length for piece in beam.pieces)
