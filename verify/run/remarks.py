@@ -49,7 +49,8 @@ def _material(piece: "Piece") -> str:
 def _lengths(beam: Beam) -> "Iterator[str]":
     """That it is thicker than long, heavier than what is built in one piece, or cannot bear its own weight."""
     known = [(2.0 * piece.extreme_fibre, piece.area) for piece in beam.pieces if piece.extreme_fibre and piece.area]
-    thick, wide = (max((size(*one) for one in known), default=0.0) for size in (lambda h, a: h, lambda h, a: a / h))
+    thick = max((height for height, _ in known), default=0.0)
+    wide = max((area / height for height, area in known), default=0.0)
     if thick > beam.length:
         yield f"{_read_so(beam)}: it would be {_short(thick)} m thick and {_short(beam.length)} m long; 2 mm is 0.002 m"
     elif wide > WIDE * beam.length:
