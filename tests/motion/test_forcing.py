@@ -468,3 +468,23 @@ def test_a_motor_goes_on_from_its_own_start(first, then):
     with pytest.raises(InputError, match=f"start = '{then}': continue_from is (no |a )run with start = 'steady'"):
         run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=motor, count=9, start=then, samples=3, continue_from=begun)
     run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=motor, count=9, start=first, samples=3, continue_from=begun)
+
+
+def test_a_slider_goes_on_where_it_was_and_is_put_nowhere_else():
+    """Its mass and friction may be others; a place or a speed that would not count is refused."""
+    slider = replace(ON_BEAM, speed=0.031)
+    begun = simulate(STRIP, FORCES, FREQUENCY, 1e-3, slider=slider, **ASKED)
+    for put in (slider, replace(slider, mass=3e-2, mu=0.1), replace(slider, position=None, speed=0.0),
+                replace(slider, position=begun.end.position, speed=begun.end.speed)):  # fmt: skip
+        went = simulate(STRIP, FORCES, FREQUENCY, 1e-3, slider=put, continue_from=begun, **ASKED)
+        assert (went.position[0], went.speed[0]) == pytest.approx((begun.end.position, begun.end.speed), rel=1e-12)
+    for name, value in (("position", 0.19), ("speed", 0.3)):
+        with pytest.raises(
+            InputError, match=rf"^slider\.{name} = {value}: the slider goes on as continue_from left it"
+        ):
+            simulate(
+                STRIP, FORCES, FREQUENCY, 1e-3, slider=replace(slider, **{name: value}), continue_from=begun, **ASKED
+            )
+    bare = simulate(STRIP, FORCES, FREQUENCY, 1e-3, **ASKED)
+    went = simulate(STRIP, FORCES, FREQUENCY, 1e-3, slider=slider, continue_from=bare, **ASKED)
+    assert (went.position[0], went.speed[0]) == pytest.approx((0.17, 0.031), rel=1e-12)

@@ -143,6 +143,8 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
     longest = _longest(hertz, driven.duration, watched.step, watched.steps_per_period, slider)
     check_line(modelled.model, started.start, slider.line if slider else "spline")
     before = started.before.end if started.before else None
+    if slider is not None and started.before is not None:
+        _check_goes_on(started.before, slider)
     check_phase("the drive", hertz, driven.duration, before.time if before else 0.0)
     return Request(
         beam=beam,
@@ -210,6 +212,20 @@ def _check_start(model: str, started: Started) -> None:
         raise InputError(f"{given} with {moves}: a beam that moves already has no start, leave it out")
     if soft and grows:
         raise InputError(f"soft_start_periods = {soft!r} and envelope = {shown(envelope)}: give one of the two")
+
+
+def _check_goes_on(before: "Motion | FreeVibration", slider: Slider) -> None:
+    """Raise InputError for a slider that is put elsewhere than where the one of the run before is by now."""
+    own = getattr(before, "slider", None)
+    if own is None:
+        return
+    for name, unit, ended in (("position", "m", before.end.position), ("speed", "m/s", before.end.speed)):
+        given = getattr(slider, name)
+        if given and given not in (getattr(own, name), ended):
+            raise InputError(
+                f"slider.{name} = {given!r}: the slider goes on as continue_from left it, at {ended!r} {unit}; give "
+                f"the {name} of that run's slider, {getattr(own, name)!r}, or none"
+            )
 
 
 def _longest(

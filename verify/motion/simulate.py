@@ -65,11 +65,12 @@ def simulate(
     the drive's period, follows what the start excites (`step_size`) and, of a slider that the beam feels, is halved
     until its way stands (`judged_step`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
     given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode; unless
-    given, what the beam's loss factor comes to in each (`free_vibration`). A slider that pushes back lies on
-    the beam from the start: its weight bends it, and in the steady state its mass is part of it. `at` are p places in
-    metres, or one, where the deflection is kept, (n, p), at n = `samples` times, or as many as part all stretches of
-    growth where those are more. They stand evenly on each stretch, not over all of them (`times`). `continue_from` is a
-    run from the same `start`, or with start = 'rest' a beam let go. Returns what was reached where the run was
+    given, what the beam's loss factor comes to in each (`free_vibration`). A slider that pushes back lies on the beam
+    from the start: its weight bends it, and in the steady state its mass is part of it. `at` are p places in metres, or
+    one, where the deflection is kept, (n, p), at n = `samples` times, or as many as part all stretches of growth where
+    those are more. They stand evenly on each stretch, not over all of them (`times`). `continue_from` is a run from
+    rest, or a beam let go, where this one has start = 'rest', and one whose slider pushes back on a steady field where
+    it has 'steady'; a slider goes on at the place and the speed that it had. Returns what was reached where the run was
     interrupted or the slider left the beam or came to a step of its surface, and says so. Without `patient` a slider's
     run longer than is waited for (`patience`) is refused; so is one both ways, from rest and booked (`ledger`), in
     which the slider gave the beam far more than was put in. Raises InputError.
