@@ -468,6 +468,11 @@ def test_a_motor_goes_on_from_its_own_start(first, then):
     with pytest.raises(InputError, match=f"start = '{then}': continue_from is (no |a )run with start = 'steady'"):
         run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=motor, count=9, start=then, samples=3, continue_from=begun)
     run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=motor, count=9, start=first, samples=3, continue_from=begun)
+    faster = replace(motor, speed=0.23)
+    with pytest.raises(
+        InputError, match=r"by its end, and slider.speed = 0.23 m/s: it goes on as it goes, leave its sp"
+    ):
+        run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=faster, count=9, start=first, samples=3, continue_from=begun)
 
 
 def test_a_slider_goes_on_where_it_was_and_is_put_nowhere_else():

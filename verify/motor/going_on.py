@@ -23,6 +23,12 @@ def check_runs(runs: Sequence[MotorRun], request: Request, placed: Sequence[Plac
                 f"continue_from is of a slider that was put on at {written(run.start)} m, and slider.position = "
                 f"{written(one.start)} m: it goes on from where it is, leave its position as it was"
             )
+        own = run.slider.speed if run.slider else 0.0
+        if one.slider.speed not in (0.0, own, run.state.speed):
+            raise InputError(
+                f"continue_from is of a slider that goes at {written(run.state.speed)} m/s by its end, and "
+                f"slider.speed = {written(one.slider.speed)} m/s: it goes on as it goes, leave its speed as it was"
+            )
 
 
 def _check_one_motion(first: MotorRun, run: MotorRun) -> None:
