@@ -14,6 +14,7 @@ from verify.run.remarks import remarks_on
 from verify.run.scale import scale_in_words
 from verify.scenes.scene import packaged_scenes
 
+PUSH = "drive={frequency_hz = 3000.0, force = [{position = 0.03, amplitude = 2.0}]}"
 GATE = """gate=[{id = "g", quantity = "mode.frequency", arguments = {model = "analytic", mode = 1}, at_least = 1.0, \
 why = "It is asked."}]"""
 THEORIES = ("euler-bernoulli", "timoshenko")
@@ -110,6 +111,25 @@ def test_the_scale_is_the_first_frequency_and_how_far_a_driven_beam_bends(tmp_pa
     assert why.endswith("fields are solved for how far the beam deflects alone")  # told above, and not skipped
 
 
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        (("beam.section=[{length = 0.05, density = 2700.0}, {length = 0.087}]",), "a beam of 2 sections has more than"),
+        (("beam.section=[]",), ""),
+        (("motion.duration=0.1", PUSH), ""),  # it says how gates and benches in time are run
+    ],
+)
+def test_a_section_that_no_study_answers_is_remarked_on(tmp_path, capsys, overrides, said):
+    overrides = ("sensitivity.mode=2", *overrides)
+    found = remarks_on(arm(tmp_path, *overrides))
+    assert len(found) == bool(said)
+    if said:
+        assert found[0].startswith(f"[sensitivity] is left out: {said}")
+        line = ["run", str(tmp_path / "arm.toml"), "--no-report", *(f"--set={one}" for one in overrides)]
+        assert status_of(line) == 0
+        assert "remark: [sensitivity] is left out" in capsys.readouterr().out
+
+
 def test_the_scale_is_by_the_theories_that_are_asked_for(tmp_path):
     """A stub that shear makes softer: no figure of another theory stands under what was asked."""
     stub = (
@@ -118,8 +138,7 @@ def test_the_scale_is_by_the_theories_that_are_asked_for(tmp_path):
         'beam.supports=["clamped", "clamped"]',
         "spectrum.theory=timoshenko",
     )
-    push = "drive={frequency_hz = 3000.0, force = [{position = 0.03, amplitude = 2.0}]}"
-    both = arm(tmp_path, *stub, push, GATE)
+    both = arm(tmp_path, *stub, PUSH, GATE)
     plain, soft = (exact_frequency_hz(both.beam, 1, theory=theory) for theory in THEORIES)
     assert 0.55 * plain < soft < 0.8 * plain
     assert scale_in_words(arm(tmp_path, *stub)) == f"The beam's first mode is at {soft:.5g} Hz by Timoshenko theory."

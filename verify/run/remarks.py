@@ -1,4 +1,4 @@
-"""What looks like another unit in a scene: remarks, which refuse nothing."""
+"""What looks like another unit in a scene, and what is asked in vain: remarks, which refuse nothing."""
 
 from typing import TYPE_CHECKING
 
@@ -25,9 +25,20 @@ GRAVITY = 9.81
 
 
 def remarks_on(scene: "Scene") -> tuple[str, ...]:
-    """A sentence for each field of the beam that looks like another unit; none says that it is one."""
+    """A sentence for each field that looks like another unit, none says that it is one, and each section in vain."""
     beam = scene.beam
-    return (*dict.fromkeys(said for piece in beam.pieces if (said := _material(piece))), *_lengths(beam))
+    materials = dict.fromkeys(said for piece in beam.pieces if (said := _material(piece)))
+    return (*materials, *_lengths(beam), *_in_vain(scene))
+
+
+def _in_vain(scene: "Scene") -> "Iterator[str]":
+    """Sections of a study's own that has nothing to find in such a scene."""
+    from verify.studies.catalogue import STUDIES
+
+    for name in STUDIES.built_in:
+        own = getattr(scene, name, None) if STUDIES[name].section is not None else None
+        if own is not None and STUDIES[name].asked(scene) is None:
+            yield f"[{name}] is left out: {STUDIES[name].skipped(scene)}"
 
 
 def _material(piece: "Piece") -> str:
