@@ -50,7 +50,8 @@ def number(value: float, digits: int) -> str:
 
 def work_in_words(solves: int, fields: int, motions: int, others: dict[str, int] | None = None) -> str:
     """What a run solved, by kind, `others` by their names; kinds of which there is nothing are left out."""
-    kinds = {"modal solves": solves, "driven fields": fields, "motions in time": motions} | (others or {})
+    own = {"modal solve{}": solves, "driven field{}": fields, "motion{} in time": motions}
+    kinds = {name.format("s" * (n != 1)): n for name, n in own.items()} | (others or {})
     return ", ".join(f"{n} {name}" for name, n in kinds.items() if n) or "closed forms only"
 
 

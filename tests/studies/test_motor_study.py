@@ -460,6 +460,18 @@ def test_a_free_run_that_is_still_on_its_way_is_told_beside_the_speed_that_is_he
         assert told in in_short_of(replace(study, fields=(replace(field, free=free),)))
 
 
+def test_a_field_that_pushes_at_no_speed_has_no_power_and_no_efficiency(study):
+    """The other way round it drives: its slider is braked at every speed of the curve."""
+    (field,) = study.fields
+    assert field.most_power > 0.0
+    assert field.best_efficiency > 0.0
+    against = [-abs(at.speed) * np.sign(at.force) for at in field.curve]
+    braked = replace(
+        field, curve=tuple(replace(at, speed=speed) for at, speed in zip(field.curve, against, strict=True))
+    )
+    assert (braked.most_power, braked.best_efficiency) == (None, None)
+
+
 def test_a_speed_within_its_own_scatter_has_no_way_and_no_times(study):
     (field,) = study.fields
     still = 3e-5

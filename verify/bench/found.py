@@ -61,7 +61,7 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
         rows = tuple((one.what, one.seconds) for one in self.costs)
         columns = (Column("once in a process", left=True), Column("time", "duration"))
         notes = (f"Of {self.date} on {machine}.", *told_once(self.notes))
-        return (Table(title="What is paid once", columns=columns, rows=rows, notes=notes),)
+        return (Table(title="What is paid once" if rows else "On what", columns=columns, rows=rows, notes=notes),)
 
     def charts(self) -> tuple[Chart, ...]:
         """One for each set: run time against error."""

@@ -142,14 +142,14 @@ class FieldFound(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def most_power(self) -> float | None:
-        """Of the speeds of the curve whose force has settled, W; None of none."""
-        return max((one.power for one in self.curve if one.settled("force")), default=None)
+        """Of the speeds of the curve whose force has settled, W; None of none, and where it pushes at none of them."""
+        return max((one.power for one in self.curve if one.settled("force") and one.power > 0.0), default=None)
 
     @property
     def best_efficiency(self) -> float | None:
         """Of those whose powers have settled too; None where the slider drives the surface at all of them."""
         told = (one.efficiency for one in self.curve if one.settled("force", "powers"))
-        return max((one for one in told if one is not None), default=None)
+        return max((one for one in told if one), default=None)
 
 
 class Drawn(msgspec.Struct, frozen=True, kw_only=True, eq=False):

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 WINDOW_S = 3e-5
 """Of one mode of a beam that is not uniform, in one window around the slider."""
+NO_ERROR = 1e-14
+"""Relative: errors up to that are none, and fall at no order."""
 AGREED = 0.6
 """Spread of a ratio of times from which on repetitions do not agree on it."""
 
@@ -331,6 +333,11 @@ def _unfit(name: str, line: list[WorkRow], work: Work, due: int | None) -> NotCo
     if not all(row.run_ms_per_ms and row.set_up_ms for row in line):
         return NotCompared(why=f"a time of {name} is below the resolution of the clock", remedy="give larger counts")
     low, high = min(row.error for row in line), max(row.error for row in line)
+    if max(-low, high) <= NO_ERROR:
+        return NotCompared(
+            why=f"{name} are right to rounding at every count, the wave hardly moves the slider",
+            remedy="give it less speed, more mu or another position",
+        )
     span = f"between {100 * low:+.3g} % and {100 * high:+.3g} %"
     calmer = "give a longer soft start, a smaller slope K or a finer step (steps_per_period), or larger counts"
     if low <= 0.0 <= high:
