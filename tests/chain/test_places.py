@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from test_dynamics import odd_chain
 
-from verify.chain import places, stretching
+from verify.chain import places, stretching, stretching_kernels
 from verify.chain.stretching import ElasticMotion
 from verify.chain.system import Actuator, Rotation
 from verify.motion.result import Statistics
@@ -106,7 +106,7 @@ def test_forces_on_stretching_links_are_the_slopes_of_their_energy():
     u = np.vstack([[0.0, 0.0], np.cumsum(rng.uniform(-0.03, 0.02, (5, 2)), axis=0)])
     stages = np.zeros((4, 6, 2))
     flat = stretching._flattened(system, AXIAL, False)
-    stretching.kernels.march(flat, 0.0, 1e-9, 1, u.copy(), np.zeros((6, 2)), stages, np.zeros((2, 6, 2)))
+    stretching_kernels.march(flat, 0.0, 1e-9, 1, u.copy(), np.zeros((6, 2)), stages, np.zeros((2, 6, 2)))
     shifts = h * np.eye(12)[2:].reshape(10, 6, 2)
     ahead, behind = (moved(system, u + s * shifts, np.zeros((10, 6, 2)), AXIAL).energies for s in (1.0, -1.0))
     forces = (joint_mass(system) @ stages[0])[1:].ravel()

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.chain import kernels, places, records
+from verify.chain import places, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular
@@ -65,6 +65,8 @@ def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
 
 def accelerations(system: ChainSystem, state: ChainState) -> Array:
     """Relative angular accelerations, (N,), rad/s^2."""
+    from verify.chain import kernels
+
     out = np.zeros(system.n_links)
     kernels.answer(flatten(system), state.time, *_arrays(system, state), workspace(system), out)
     return out

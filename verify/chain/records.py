@@ -1,4 +1,4 @@
-"""What the compiled kernels of the planar chain of rigid links see, by name. SI; frozen but for the arrays in it."""
+"""What the compiled kernels of the planar chain see, by name. SI; frozen but for the arrays in it."""
 
 from typing import NamedTuple
 
@@ -111,3 +111,16 @@ class Modal(NamedTuple):
     """(3, N)."""
     force: Array
     """(m,)."""
+
+
+class Elastic(NamedTuple):
+    """A chain of stretching links as the kernels see it. SI."""
+
+    links: Array
+    """(N, 5): length, mass, EA / l, joint spring, dashpot."""
+    loads: Array
+    """(n_loads, 7): share of the link's length, F_x, F_y, moment, circular frequency, phase, link from 0."""
+    gravity: Array
+    """(2,)."""
+    factors: Array
+    """(N + 1, 2, 2): of the mass matrix over joints, for x and y: coupling to the joint before, reciprocal pivot."""

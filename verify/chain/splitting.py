@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.chain import kernels, records, splitting_kernels
+from verify.chain import records
 from verify.chain.dynamics import at_rest, flatten, linearise, project, workspace
 from verify.chain.modes import lowest_modes
 from verify.chain.result import ChainMotion, ChainStatistics
@@ -116,6 +116,8 @@ def _steady(system: ChainSystem, rest: ChainState, omega: Array, duals: Array) -
 
 
 def _answer(system: ChainSystem, rest: ChainState) -> Array:
+    from verify.chain import kernels
+
     out = np.zeros(system.n_links)
     kernels.answer(flatten(system, ledger=False), 0.0, rest.angles, rest.rates, workspace(system), out)
     return out
@@ -301,6 +303,8 @@ class _Modal:
 
     def march(self) -> str:
         """Step until every sample is kept; why it stopped."""
+        from verify.chain import splitting_kernels
+
         try:
             while True:
                 status = splitting_kernels.march_modal(

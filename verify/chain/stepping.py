@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from verify.chain import kernels, records
+from verify.chain import records
 from verify.chain.dynamics import PIVOT_LOSS, flatten, held_rows, keep_pivots, project, workspace
 from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
@@ -182,6 +182,8 @@ class _Run:
 
     def march(self, most: float, progress: Callable[[float], None]) -> str:
         """Step until every sample is kept; why it stopped. Raises InputError where that would be too much work."""
+        from verify.chain import kernels
+
         budget = max(_BUDGET // self.system.n_links, 16)
         pace = _Pace(self, most)
         try:
@@ -274,6 +276,8 @@ def _largest(apply: Callable[[Array], Array], n: int) -> float:
 
 def _slopes(system: ChainSystem, state: ChainState) -> tuple[Callable[[Array], Array], Callable[[Array], Array]]:
     """Derivatives of the accelerations by angles and by rates, as maps."""
+    from verify.chain import kernels
+
     flat, work, n = flatten(system, ledger=False), workspace(system), system.n_links
     run = _fresh(state, RK4, np.zeros(0))
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.chain import stretching_kernels as kernels
+from verify.chain import records
 from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
 from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
@@ -140,9 +140,11 @@ def simulate_elastic(
 
 
 def _march(
-    flat: kernels.Elastic, samples: Array, steps: int, u: Array, v: Array
+    flat: records.Elastic, samples: Array, steps: int, u: Array, v: Array
 ) -> tuple[list[tuple[Array, Array]], str]:
     """(displacements, velocities) at the samples reached, so many steps apart, and why it stopped."""
+    from verify.chain import stretching_kernels as kernels
+
     k, w = np.zeros((4, *u.shape)), np.zeros((2, *u.shape))
     spacing, kept = float(samples[1] - samples[0]), [(u.copy(), v.copy())]
     try:
@@ -179,7 +181,7 @@ def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) ->
     return samples
 
 
-def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -> kernels.Elastic:
+def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -> records.Elastic:
     """The chain as the kernels see it."""
     lengths = system.lengths
     free = np.ones((system.n_links + 1, 2))
@@ -190,7 +192,7 @@ def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -
         for p in system.loads
     ]
     links = np.stack([lengths, system.masses, stiffness / lengths, system.stiffness, system.dashpots], axis=1)
-    return kernels.Elastic(
+    return records.Elastic(
         links=links,
         loads=np.array(loads, dtype=float).reshape(len(loads), 7),
         gravity=np.array(system.gravity, dtype=float),

@@ -5,25 +5,11 @@ mass matrix is constant and tridiagonal, the same along x and y, and no joint fo
 straight chain are the state, so that small stretches keep their digits.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
+from verify.chain.records import Elastic
 from verify.models.arrays import Array
 from verify.models.kernels import lean, part
-
-
-class Elastic(NamedTuple):
-    """A chain of stretching links as the kernels see it. SI."""
-
-    links: Array
-    """(N, 5): length, mass, EA / l, joint spring, dashpot."""
-    loads: Array
-    """(n_loads, 7): share of the link's length, F_x, F_y, moment, circular frequency, phase, link from 0."""
-    gravity: Array
-    """(2,)."""
-    factors: Array
-    """(N + 1, 2, 2): of the mass matrix over joints, for x and y: coupling to the joint before, reciprocal pivot."""
 
 
 @part(fastmath={"contract"})

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from verify.chain.records import FREE, Flat, March, Modal
+from verify.chain.records import FREE, Elastic, Flat, March, Modal
 from verify.models.compiling import Call
 
 
@@ -44,7 +44,7 @@ def stretching() -> Iterator[Call]:
     from verify.chain import stretching_kernels
 
     flat, one, cube = np.zeros((1, 1)), np.zeros(1), np.zeros((1, 1, 1))
-    links = stretching_kernels.Elastic(links=flat, loads=flat, gravity=one, factors=cube)
+    links = Elastic(links=flat, loads=flat, gravity=one, factors=cube)
     yield stretching_kernels.march, (links, 0.0, 0.0, 1, flat, flat, cube, cube)
 
 
