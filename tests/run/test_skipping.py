@@ -93,6 +93,18 @@ KINDS = {
         {"msgspec", "click", "numpy", "scipy"},
         {"elements", "chain", "waves"},
     ),
+    "a wave's study": (
+        BEAM + DRIVEN + "wave = {}\n",
+        {"fields": 86},
+        {"msgspec", "click", "numpy", "scipy", "skfem"},
+        {"chain"},
+    ),
+    "a row of the stress table": (
+        BEAM + 'stress = { rows = ["closed-form-frequencies"] }\n',
+        {},
+        {"msgspec", "click", "numpy"},
+        {"identify", "exports", "pictures"},
+    ),
     "a nonlinear chain": (
         BEAM + gate("tip", "chain.cantilever_tip", "{ segments = 9, load = 3.0 }"),
         {"chain equilibria": 1},
@@ -121,6 +133,42 @@ def test_a_scene_loads_solves_and_steps_what_it_asks_for_once_and_nothing_else(t
         assert kind in kinds or not found.times(name), name
     assert found.times("contact") or kind not in STEPPED
     assert [path.name for path in tmp_path.iterdir()] == ["strip.toml"]
+
+
+FOOT = """
+slider = { mass = 0.01, mu = 0.2, law = "coulomb", preload = 2.0, coupling = "one-way", contact = { stiffness = 6e4 } }
+"""
+
+
+def test_gates_of_one_motor_hold_its_slider_once_and_run_it_nowhere_else(tmp_path):
+    """On one model at one speed: no free run, no other model, no chain, no figure."""
+    asked = '{ model = "segment", count = 17 }'
+    gates = gate("holds", "slider.normal_mean", asked) + gate("again", "slider.contact_share", asked)
+    (tmp_path / "strip.toml").write_text(BEAM + DRIVEN + FOOT + gates)
+    found = counted(tmp_path, "run", "strip.toml", "--no-report", "--json")
+    assert found.times("held sliders") == 1
+    assert not set(found.work) & {
+        "free runs of motors",
+        "simulations",
+        "chain motions",
+        "charts",
+        "pages",
+        "files",
+        "solves",
+    }
+    assert found.libraries & LIBRARIES <= {"msgspec", "click", "numpy", "scipy", "numba"}
+    assert not found.rooms & {"elements", "chain", "waves", "pictures", "exports"}
+
+
+def test_a_bench_of_modes_moves_nothing_drives_nothing_and_compiles_nothing(tmp_path):
+    bench = 'bench = { sets = ["modes"], modes = [1], counts = [9, 17], seconds = 0.3, imports = false }\n'
+    (tmp_path / "strip.toml").write_text(BEAM + bench)
+    found = counted(tmp_path, "run", "strip.toml", "--no-report", "--json")
+    assert found.status == 0
+    assert set(found.work) <= {"solves", "eigen-solves", "factorisations", "timed"}
+    assert found.libraries & LIBRARIES <= {"msgspec", "click", "numpy", "scipy", "skfem"}
+    assert not found.rooms & {"chain", "waves", "pictures", "exports"}
+    assert len(found.told["bench"]["rows"]) >= 8
 
 
 @pytest.mark.parametrize("kind", KINDS)
