@@ -6,7 +6,9 @@ import msgspec
 import pytest
 from msgspec.structs import replace
 
-from verify.bench.against import moved, read_earlier
+from verify.bench.against import Earlier, beside, moved, read_earlier
+from verify.bench.found import BenchFound
+from verify.bench.machine import load
 from verify.bench.rows import Row
 from verify.errors import InputError
 
@@ -123,3 +125,30 @@ def test_what_json_wrote_is_read_again(tmp_path):
     path = tmp_path / "old.json"
     path.write_text(json.dumps({"scene": "s", "date": "d", "rows": msgspec.to_builtins(ROWS), "more": 1}))
     assert read_earlier(path).rows == ROWS
+
+
+@pytest.mark.parametrize(
+    ("then", "now", "said"),
+    [
+        (0.6, 0.9, ""),
+        (None, None, ""),
+        (3.2, 0.8, " (3.2 processes to a core then)"),
+        (0.5, 2.7, " (2.7 processes to a core now)"),
+        (1.4, 1.6, " (1.4 processes to a core then, 1.6 processes to a core now)"),
+    ],
+)
+def test_a_busy_machine_is_named_beside_what_moved(then, now, said):
+    """Ratios of the same code moved by a quarter under a load of three to seven."""
+    found = BenchFound(
+        scene="s", date="d", machine={}, versions={}, costs=(), rows=doctored(1, warm_s=9e-3), sentences=(), load=now
+    )
+    (told,) = beside(found, Earlier(scene="s", rows=ROWS, date="2026-01-02", load=then)).moved
+    assert told.text.startswith(f"against 2026-01-02{said}: Hermite elements in modes, mode 5")
+
+
+def test_the_load_is_told_for_a_core_and_not_where_nobody_counts(monkeypatch):
+    monkeypatch.setattr("os.getloadavg", lambda: (3.14159, 9.0, 9.0))
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    assert load() == 1.6
+    monkeypatch.delattr("os.getloadavg")
+    assert load() is None

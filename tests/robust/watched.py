@@ -23,7 +23,9 @@ LIMIT_S = 40
 LONGEST = 4000
 """Characters of an error stream with one sentence; each further one has 300 more."""
 TIMES = re.compile(r"[-+]?\d[\d.e+-]*\s*(?:ns|µs|us|ms|s|minutes|min)\b")
-TIMED = re.compile(r"(?:seconds|_s$|_ms(?:_|$)|time|date|_spread$|^sentences$|^rounds$|^order$|^left_out$|^moved$)")
+TIMED = re.compile(
+    r"(?:seconds|_s$|_ms(?:_|$)|time|date|_spread$|^sentences$|^rounds$|^order$|^left_out$|^moved$|^load$)"
+)
 """Names of what times go into; the sentences of a bench are all about them, its rounds
 end with them, and what is left out for want of them leaves the next row another order."""
 KEPT = re.compile(r"\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d(?:-\d+)?")

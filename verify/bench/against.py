@@ -18,6 +18,8 @@ LEAST = 0.1
 """Logarithm of a change below which nothing is said, whatever the spread."""
 SHORTEST_S = 1e-12
 """Below which no clock tells a time: a row that a coarse clock saw take none has no ratio."""
+BUSY = 1.0
+"""Processes to a core from which on they wait for each other, which ratios may feel beyond their spread."""
 ERROR_MOVED = 1e-6
 """Relative change of an error that is no rounding, beside what its reference leaves open."""
 Key: TypeAlias = tuple[Any, ...]
@@ -31,6 +33,7 @@ class Earlier(msgspec.Struct, frozen=True, kw_only=True):
     date: str = ""
     machine: dict[str, str] = {}
     versions: dict[str, str] = {}
+    load: float | None = None
 
 
 def read_earlier(path: Path) -> Earlier:
@@ -55,6 +58,8 @@ def _when(found: BenchFound, earlier: Earlier) -> str:
     own, then = found.machine | found.versions, earlier.machine | earlier.versions
     other = [_named(name, was) for name, was in then.items() if own.get(name) != was]
     other += [f"without {name}" for name in found.versions if then and name not in then]
+    busy = {"then": earlier.load, "now": found.load}
+    other += [f"{load:g} processes to a core {at}" for at, load in busy.items() if load and load > BUSY]
     return (earlier.date or "before") + (f" ({', '.join(other)})" if other else "")
 
 

@@ -30,6 +30,8 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
     """Sets and cases that are asked for and cannot be run, each with the reason."""
     estimate_s: float = 0.0
     """Seconds that the work was estimated to take, from above."""
+    load: float | None = None
+    """Processes that ran or waited when it ended, over the cores, this one among them; None where nobody counts."""
     moved: tuple[Sentence, ...] = ()
     """Against an earlier run: what moved."""
 
@@ -60,7 +62,8 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
         machine = ", ".join((*self.machine.values(), *(f"{name} {v}" for name, v in self.versions.items())))
         rows = tuple((one.what, one.seconds) for one in self.costs)
         columns = (Column("once in a process", left=True), Column("time", "duration"))
-        notes = (f"Of {self.date} on {machine}.", *told_once(self.notes))
+        busy = "" if self.load is None else f", {self.load:g} processes to a core"
+        notes = (f"Of {self.date} on {machine}{busy}.", *told_once(self.notes))
         return (Table(title="What is paid once" if rows else "On what", columns=columns, rows=rows, notes=notes),)
 
     def charts(self) -> tuple[Chart, ...]:

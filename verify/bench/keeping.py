@@ -10,6 +10,7 @@ from verify.words import cell
 def page(found: BenchFound, command: str) -> str:
     """The whole page, of what a command found, without a name of the machine."""
     made = (*found.machine.values(), *(f"{name} {version}" for name, version in found.versions.items()))
+    made += () if found.load is None else (f"{found.load:g} processes to a core at its end",)
     parts = [
         f"# Run time against error: {found.scene}\n",
         _wrapped(

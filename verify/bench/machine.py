@@ -33,6 +33,16 @@ def _processor() -> str:
     return next(names, "") or platform.processor() or platform.machine()
 
 
+def load() -> float | None:
+    """Processes that ran or waited, mean of the last minute, over the cores there are; None where nobody counts."""
+    if not hasattr(os, "getloadavg"):
+        return None
+    try:
+        return float(f"{os.getloadavg()[0] / (os.cpu_count() or 1):.2g}")
+    except OSError:
+        return None
+
+
 def versions() -> dict[str, str]:
     """Of Python, this package and what it computes with."""
     return {"Python": platform.python_version()} | {name: metadata.version(name) for name in PACKAGES}

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from verify.bench.costs import compile_costs, import_costs
 from verify.bench.found import BenchFound
 from verify.bench.kind import Case
-from verify.bench.machine import machine, today, versions
+from verify.bench.machine import load, machine, today, versions
 from verify.bench.measuring import Clock, Outcome, fitting, measured
 from verify.bench.peer_set import breaks
 from verify.bench.peer_set import versions as engine_versions
@@ -65,6 +65,7 @@ def benched(
         date=today(),
         machine=machine(),
         versions=versions() | engine_versions(),
+        load=load(),
         costs=(*imports, *(ChildCost(f"compile {name}, {one}", s) for (name, one), s in compiling.items())),
         rows=tuple(_compiled(one.row, compiling) for _, found in outcomes for one in found),
         sentences=tuple(told for case, found in outcomes for told in sentences_of(case, found, scene.name)),
