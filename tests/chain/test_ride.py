@@ -12,7 +12,7 @@ from chain_reference import rigid_motion, stretching_motion
 from msgspec.structs import replace
 
 from verify import segment_model
-from verify.beam import PointForce
+from verify.beam import Beam, PointForce
 from verify.chain import far
 from verify.chain.dynamics import at_rest, linearise
 from verify.chain.problems import contact_line_error
@@ -313,3 +313,31 @@ def test_a_step_in_which_a_slider_would_not_see_the_drive_is_refused(paper_beam)
     """A third of a period; a quarter is taken."""
     with pytest.raises(InputError, match=r"is 0.333 periods of the drive, which a slider would not see: give at most"):
         ride_from_rest(paper_beam, forces(1.0), 4276.0, SLIDER, 9, 1e-3, step=1.0 / (3.0 * 4276.0))
+
+
+@pytest.mark.parametrize(("way", "done"), [(1, 4), (-1, 2)])
+def test_steps_on_a_surface_that_is_given_are_counted_to_the_last_one_that_ends_on_its_piece(way, done):
+    """0.3 m/s off either end of a piece from -0.07 to 0.13 m, in steps of 0.1 s, without friction."""
+    from verify.motion.kernels import slide_given
+    from verify.motion.records import Given, Law, Rider
+    from verify.motion.stepping import contact_space, fresh_motion
+
+    still = Law(
+        kinetic=0.0, static=None, slope=1.0, mass=1.0, half=0.0, gravity=0.0, following=False, held=False, load=0.0
+    )
+    given = Given(local=np.zeros((21, 2, 4)), along=np.zeros((21, 2)), edges=np.array([-0.07, 0.13]))
+    kept = np.zeros((11, 4))
+    found = slide_given(10, 0.1, given, Rider(fresh_motion(0.03 * 10 * way), still, None), kept, contact_space())
+    assert found == done
+    assert kept[: done + 1, 0] == pytest.approx(0.03 * way * np.arange(done + 1), abs=1e-15)
+
+
+def test_a_force_at_the_end_of_the_beam_to_rounding_is_a_load_of_the_chain():
+    beam = Beam(length=0.73, width=0.03, thickness=0.002, youngs_modulus=113e9, density=4470.0)
+    for share, taken in ((1.0 + 4e-13, True), (1.0 + 3e-12, False)):
+        force = PointForce(position=share * beam.length, amplitude=0.7)
+        if taken:
+            assert len(build_system(beam, 7, (force,), 31.0).loads)
+        else:
+            with pytest.raises(InputError, match="lies off the beam: give a position up to"):
+                build_system(beam, 7, (force,), 31.0)

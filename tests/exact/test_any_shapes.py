@@ -201,3 +201,16 @@ def test_equations_that_stay_singular_beside_a_resonance_are_refused(monkeypatch
     beam = Beam(length=0.61, width=0.03, thickness=0.004, youngs_modulus=9e10, density=3100.0)
     with pytest.raises(InputError, match="mode: no shape is found at this frequency"):
         general_shapes(beam, [2], np.array([0.17]), 0, "euler-bernoulli")
+
+
+def test_what_rounding_takes_of_a_product_is_known_exactly():
+    """By fractions; both factors have digits below their 27th."""
+    from fractions import Fraction
+
+    from verify.exact.modes import _product_error
+
+    a, b = np.random.default_rng(11).uniform(0.3, 900.0, (2, 50))
+    assert (a * 134217729.0 - (a * 134217729.0 - a) != a).all()
+    errors = _product_error(a, b, a * b)
+    exact = [Fraction(float(x)) * Fraction(float(y)) - Fraction(float(x * y)) for x, y in zip(a, b, strict=True)]
+    assert [Fraction(float(error)) for error in errors] == exact

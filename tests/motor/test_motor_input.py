@@ -122,6 +122,9 @@ def test_verbs_of_a_slider_that_never_leaves_refuse_one_that_may():
             verb()
     with pytest.raises(InputError, match=r"slider\.contact is missing"):
         moved(a_slider(contact=None))
+    for amplitude in (0.0, -1e-7):
+        with pytest.raises(InputError, match=rf"^amplitude = {amplitude!r}: give a .* above 0"):
+            terminal_speed(BEAM, a_slider(law="tanh", contact=None), amplitude, 3130.0)
 
 
 def test_sliders_on_one_beam_rub_and_are_coupled_alike():

@@ -109,8 +109,7 @@ def _stretched(phi: float, r: float, epsilon: float) -> float:
 def _stretches(phi: float, r: float, epsilon: float) -> Iterator[float]:
     """The same, stretch by stretch of sticking and slipping."""
     s, c = -phi, sin(phi) - r * phi  # of y = sin s - r s + c, nought at the start
-    rate, limit = cos(phi) - r, epsilon * sin(phi)
-    slips = 0 if abs(rate) <= limit else 1 if rate > 0.0 else -1
+    slips = 0  # what slips from the start sticks for no time
     while s < phi:
         if slips:
             end = min(_sticks_at(s, r, epsilon * slips, slips), phi)

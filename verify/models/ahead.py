@@ -106,8 +106,7 @@ class _Crew:
         if not self._claimed(found[0]):
             for hear in compiling.hearers:
                 hear(compiling.COMPILING)
-            os.lseek(self.locks, found[0], os.SEEK_SET)
-            os.lockf(self.locks, os.F_LOCK, 1)
+            self._lock(found[0], os.F_LOCK)
             for hear in compiling.hearers:
                 hear("")
         return True
@@ -146,9 +145,8 @@ class _Crew:
         """Of a kernel."""
         if os.pread(self.locks, 1, index) == DONE:
             return READY
-        os.lseek(self.locks, index, os.SEEK_SET)
         try:
-            os.lockf(self.locks, os.F_TEST, 1)
+            self._lock(index, os.F_TEST)
         except OSError:
             return BEGUN
         return FREE
@@ -173,16 +171,19 @@ class _Crew:
 
     def _claimed(self, index: int) -> bool:
         """Whether nobody else compiles this, from here on."""
-        os.lseek(self.locks, index, os.SEEK_SET)
         try:
-            os.lockf(self.locks, os.F_TLOCK, 1)
+            self._lock(index, os.F_TLOCK)
         except OSError:
             return False
         return True
 
     def _give_back(self, index: int) -> None:
+        self._lock(index, os.F_ULOCK)
+
+    def _lock(self, index: int, how: int) -> None:
+        """On the byte of a call. Raises OSError where another process has it and `how` does not wait."""
         os.lseek(self.locks, index, os.SEEK_SET)
-        os.lockf(self.locks, os.F_ULOCK, 1)
+        os.lockf(self.locks, how, 1)
 
     @contextmanager
     def keeping(self, kernel: Any, types: Any) -> Iterator[None]:
@@ -192,8 +193,7 @@ class _Crew:
             return
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
         try:
-            os.lseek(self.locks, len(self.calls), os.SEEK_SET)
-            os.lockf(self.locks, os.F_LOCK, 1)
+            self._lock(len(self.calls), os.F_LOCK)
             yield
         finally:
             self._give_back(len(self.calls))

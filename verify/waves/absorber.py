@@ -31,8 +31,6 @@ from verify.models.places import as_typed
 
 _ENDS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Derivatives of the deflection that a support sets to zero."""
-_IDLE = {False: ("pinned", "clamped"), True: ("clamped", "guided")}
-"""Supports on which a device across (False) or against turning (True) does nothing."""
 _WAYS = np.array([1j, 1.0])
 """Of e^{-q k x} away from where it starts: a wave, and a near field."""
 
@@ -64,16 +62,13 @@ def ending(
     """
     check_number("position", distance, "metres from the end", at_least=0)
     told = distance if position is None else position
-    idle = f"position = {told!r} m stands on a {support} support, where a device does nothing: move it"
-    if distance == 0.0 and support in _IDLE[turning]:
-        raise InputError(idle)
     if not beam.uniform:
         raise InputError(f"beam.{beam.added[0]}: the impedance of a half-infinite beam is that of a uniform one")
     k, omega = wavenumber(beam, frequency_hz), 2.0 * np.pi * frequency_hz
     unit = 4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3 / omega
     moved = _moved(k, distance, support, turning)
     if moved == 0.0:  # to rounding
-        raise InputError(idle)
+        raise InputError(f"position = {told!r} m stands on a {support} support, where a device does nothing: move it")
     own = complex(unit / (1j * moved))
     back = _sent_back(k, distance, support, np.array([np.exp(-1j * k * distance), 0.0]))
     seen = k * (1j - back @ _WAYS) if turning else 1.0 + back.sum()
