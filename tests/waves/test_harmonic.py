@@ -319,6 +319,15 @@ def held(model, beam, frequency, kind="displacement"):
     return driven_field(lambda forces, f: solve(beam, forces, f, *given), FORCES, frequency, kind)
 
 
+@pytest.mark.parametrize("model", SOLVERS)
+@pytest.mark.parametrize("length", [0.037, 9.1])
+def test_the_mode_of_a_resonance_is_named_whatever_the_length_of_the_beam(titanium_strip, model, length):
+    beam, solve = replace(titanium_strip, length=length, supports=("clamped", "free")), SOLVERS[model]
+    frequency = float(sys.modules[solve.__module__].solve_modes(beam, 19, 41).frequencies_hz[18])
+    with pytest.raises(ResonanceError, match=rf"resonance of mode 19 of the {model} model"):
+        solve(beam, [PointForce(position=0.3 * length)], frequency, 41)
+
+
 @pytest.mark.parametrize("model", ["analytic", *SOLVERS])
 def test_a_resonance_under_forces_is_none_of_the_beam_held_at_its_actuators(titanium_strip, model):
     """There the held field is as smooth as beside it: the mean of both sides, to the curvature over 1e-6."""
