@@ -214,10 +214,13 @@ def test_at_rest_the_linearisation_is_the_segment_model(supports):
     assert linear.frequencies() == pytest.approx(exact, rel=3e-11)
 
 
-def test_the_linearisation_is_the_derivative_of_the_accelerations_at_a_bent_equilibrium():
+@pytest.mark.parametrize("axial_inertia", [True, False])
+def test_the_linearisation_is_the_derivative_of_the_accelerations_at_a_bent_equilibrium(axial_inertia):
+    """Without inertia along x masses depend on the directions themselves, that of the base among them."""
     system = odd_chain(
         11,
         6,
+        axial_inertia=axial_inertia,
         tip="roller",
         axial_spring=40.0,
         rotation=Rotation(offset=0.2),

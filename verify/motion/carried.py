@@ -114,13 +114,13 @@ def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Cou
     if request.before is not None:
         check_goes_on(request.before, request.beam, request.model, request.count, n, request.start)
         return stage.start(request.before.q, request.before.rates)
-    q, rates = np.zeros(n), np.zeros(n)
+    q, rates = np.zeros(n), np.zeros(n)  # of a beam at rest, and of what a steady one moves beside its field
     if basis and request.slider and coupling and coupling.pushes_back:
         x = put_on(request, request.slider)[0]
         q = q + weighed_down(basis, x, request.slider.normal_force)
         if stage.forced is None:
             added = carried_along(basis, stage, x, request.slider, request.damping_in(basis))
-            q, rates = q + added[0], rates + added[1]
+            q, rates = q + added[0], added[1]
     return stage.start(q, rates)
 
 
