@@ -267,3 +267,17 @@ def test_mended_joints_before_an_elastic_clamp_keep_order_four(theory, end, hold
     beam = replace(THICK, supports=(("pinned", "free"), ("free", "pinned"))[end], spring=(clamp,))
     assert order(beam, 1, (80, 160), theory, joints="tensioned") == pytest.approx(4.0, abs=0.12)
     assert abs(errors(beam, 1, (160,), theory, joints="tensioned")[0]) < 1e-9
+
+
+def test_walls_that_take_more_off_a_thick_beams_mass_than_its_links_have_are_refused():
+    """Five joints at either end of two links; by its own theory no figure is asked of them in vain."""
+    beam = Beam(
+        length=1.0, bending_stiffness=1.0, mass_per_length=1.0, rotary_inertia=0.27, supports=("clamped", "clamped")
+    )
+    asked = {"wall": "five-joint", "theory": "rayleigh"}
+    with pytest.raises(
+        InputError, match=r"^n_segments = 2: joints = 'tensioned' and wall = 'five-joint' take more off"
+    ):
+        solve_modes(beam, 1, 2, joints="tensioned", **asked)
+    assert solve_modes(beam, 1, 2, **asked).frequencies_hz[0] > 0.0
+    assert solve_modes(beam, 1, 9, joints="tensioned", **asked).frequencies_hz[0] > 0.0

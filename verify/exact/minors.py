@@ -239,7 +239,7 @@ def _pinned(c: float, p: float, q: float) -> int:
         return 0
     root = 0.5 * sqrt(gap)
     high = half + root if half >= 0.0 else product / (half - root)
-    low = product / high if half >= 0.0 and high != 0.0 else half - root
+    low = product / high if half >= 0.0 and high != 0.0 else 0.0  # below nought where half is
     first, second = (floor(sqrt(square) / pi) if square > 0.0 else 0 for square in (low, high))
     twice = c > 0.0 and 1.0 + p * c < 0.0  # above the cut-off: the section's turning alone, and a second family
     return second - first + (2 * first if twice and q > 0.0 else 0) + twice
