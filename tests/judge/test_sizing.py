@@ -270,3 +270,15 @@ def test_a_law_is_told_where_it_speaks_of_the_mode(titanium_strip):
     clamped = Workbench(replace(titanium_strip, supports=("clamped", "free")))
     (chain,) = sizing.choose(clamped, 3, 1e-3, (Variant("segment"),))
     assert chain.expected_error == pytest.approx(chain.error, rel=0.3)
+
+
+@pytest.mark.parametrize(("mode", "error"), [(4, 1e-3), (9, 2e-3), (1, 7e-4)])
+def test_sizes_are_looked_through_until_the_shortest_section_has_parts_of_its_own(mode, error):
+    """4 mm of half a metre: with one part for them errors rise again from 144 parts on, and fall with two at 200."""
+    bench = Workbench(load_scene("patched-strip").beam)
+    found = sizing.enough_from(bench, "segment", mode, error)
+    assert found.count == 200
+    assert abs(bench.frequency_error("segment", 199, mode)) > error
+    assert abs(bench.frequency_error("segment", 100, mode)) < error
+    sizes = [*range(200, 300, 7), *range(300, 500, 23)]
+    assert all(abs(bench.frequency_error("segment", size, mode)) < error for size in sizes)

@@ -107,7 +107,7 @@ def test_guides_of_a_stepped_chain_have_its_order(tmp_path):
     from verify.run.runner import run_scene
 
     charts = {chart.id: chart for chart in run_scene(load_scene("stepped-beam")).found["convergence"].charts()}
-    guides = {line.name for line in charts["convergence"].lines if line.guide}
+    guides = {line.name for line in charts["errors-over-size"].lines if line.guide}
     assert guides == {"slope 2", "slope 4"}
 
 

@@ -6,6 +6,8 @@ from strip import STRIP
 from verify import run_scene
 from verify.report.answer import answers_of, gates_in_short
 from verify.run.runner import RunResult
+from verify.scenes.checked import checked
+from verify.scenes.scene import scene_type
 
 
 @pytest.fixture(scope="module", params=["driven-cantilever", "driving-layer", "heavy-slider", "stick-slip-belt"])
@@ -70,3 +72,40 @@ def test_a_figure_that_stands_alone_says_of_which_model_it_is(asked, told, tmp_p
     path.write_text(STRIP.partition("[[gate]]")[0] + LONE.format(asked=asked))
     answer, *_ = answers_of(run_scene(str(path)))
     assert answer == f"mode.frequency (frequency of one mode) is {told}"
+
+
+OWN = {"length": 0.61, "width": 0.03, "thickness": 0.002, "youngs_modulus": 7.1e10, "density": 2710.0}
+
+
+def gate(name, **band):
+    reference = band.pop("reference", None)
+    return {
+        "id": name,
+        "quantity": "mode.frequency",
+        "arguments": {"model": "analytic", "mode": len(name)},
+        "why": "It is asked.",
+        **({"reference": reference} if reference else {}),
+        **band,
+    }
+
+
+def judged(*gates):
+    return run_scene(checked({"name": "own", "beam": OWN, "gate": list(gates)}, scene_type()))
+
+
+def test_a_figure_that_is_not_met_and_one_of_the_suite_itself_are_no_known_figures():
+    """Those that are: 1 in 10 000 off, and exact."""
+    right = [one.measured for one in judged(gate("a", at_least=0.0), gate("bb", at_least=0.0)).gates]
+    met = gate("a", expect=1.0001 * right[0], within=1.0), gate("bb", expect=right[1], within=1.0)
+    missed = gate("ccc", expect=2.0 * right[0], within=1e-9)
+    own = gate("dddd", expect=1.3 * right[0], within=1e9, reference="regression")
+    (told,) = gates_in_short(judged(*met, missed, own).gates)
+    assert "2 known figures are met to 0.0100 % or better" in told
+
+
+def test_the_nearest_to_its_edge_is_of_those_whose_bands_have_a_size():
+    first = judged(gate("a", at_least=0.0)).gates[0].measured
+    near = gate("a", expect=first, within=first)
+    assert "held; the nearest to its edge is a, at 0 % of its band" in " ".join(answers_of(judged(near)))
+    found = judged(near, gate("bb", at_least=-1e-9))
+    assert "held; of 1 whose band has a size the nearest to its edge is a" in " ".join(answers_of(found))

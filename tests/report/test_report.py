@@ -88,10 +88,10 @@ def test_what_is_under_the_cursor_is_what_was_found(html):
         "model-form",
         "error-split",
         "mode-shapes",
-        "convergence",
+        "errors-over-size",
         "bracket",
         "work-precision",
-        "sensitivity",
+        "modulus-density",
     ]
     segments = charts["mode-errors"]["lines"][0]
     assert segments["x"][-1] == 22
@@ -362,7 +362,7 @@ def test_the_mean_of_a_chain_at_the_literatures_wall_has_the_walls_order():
     coarse, fine = (row.mean_error for row in found.rows)
     assert coarse / fine == pytest.approx(4.0, rel=0.02)
     assert mean_in_words(found) == "The mean of both is of order 2, the segments' own at this wall: nothing cancels."
-    (chart,) = (chart for chart in found.charts() if chart.id == "convergence")
+    (chart,) = (chart for chart in found.charts() if chart.id == "errors-over-size")
     assert {line.name for line in chart.lines if line.guide} == {"slope 2", "slope 4"}
 
 

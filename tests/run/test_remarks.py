@@ -161,3 +161,15 @@ def test_what_bends_farther_than_linear_theory_goes_is_not_told_without_a_word(t
     )
     assert told.endswith("in the steady state.") == (not said)
     assert said in told
+
+
+@pytest.mark.parametrize(("uncertainty", "remarked"), [(0.4, False), (0.6, True)])
+def test_a_gate_that_judges_by_less_than_its_reference_is_known_to_is_remarked_on(tmp_path, uncertainty, remarked):
+    gate = (
+        'gate=[{id = "g", quantity = "mode.frequency", arguments = {model = "analytic", mode = 1}, expect = 31.4, '
+        f'within = 0.5, reference = "published", uncertainty = {uncertainty}, source = "page 3", why = "It is asked."}}]'
+    )
+    found = remarks_on(arm(tmp_path, gate))
+    assert len(found) == remarked
+    if remarked:
+        assert found[0].startswith("gate.g.uncertainty = 0.6 is more than its within = 0.5: ")

@@ -161,7 +161,7 @@ def test_no_two_lines_of_a_chart_look_alike():
     shown = spectrum(tube(), Spectrum(modes=3, count=13, theory=THEORIES, joints=("series", "tensioned"))).charts()
     swept = Convergence(modes=(1,), counts=(9, 14), theory=THEORIES, joints=("series", "tensioned"))
     charts = {chart.id: chart for chart in (*shown, *convergence(tube(), swept).charts())}
-    for name in ("mode-errors", "model-form", "convergence", "rules"):
+    for name in ("mode-errors", "model-form", "errors-over-size", "rules"):
         looks = strokes(charts[name])
         assert len(looks) >= 8
         assert len(set(looks.values())) == len(looks), name

@@ -26,6 +26,7 @@ from verify.identify.sizing import Enough, enough
 from verify.identify.told import Compared
 from verify.identify.twins import twin_of
 from verify.identify.yielding import CREDIBLE
+from verify.judge.compare import HARDLY
 from verify.models.arrays import Array
 from verify.options import Support
 from verify.patience import check_work
@@ -167,6 +168,14 @@ def _by_shapes(
     if shapes is None:
         return data, (), {}
     pairs, likeness, told = by_shape(scene.beam, shapes, elastic.kept)
+    worst = int(likeness.argmin())
+    if likeness[worst] < HARDLY:
+        words = (
+            f"shapes are hardly those of the beam as the scene holds it, that of entry "
+            f"{int(elastic.kept[pairs.entries[worst]]) + 1} has a MAC of {likeness[worst]:.2f} with mode "
+            f"{int(pairs.modes[worst]) + 1}, the nearest: check beam.supports; frequencies are taken in their order"
+        )
+        return data, (*told, Found(kind="unlike", words=words)), {}
     told = (*told, *swapped(pairs), *missing(pairs, elastic.kept))
     paired = msgspec.structs.replace(data, paired=pairs)
     rises = bool((np.diff(data.listed) >= 0.0).all())

@@ -35,7 +35,7 @@ UNITS = {
     0.5e-3 / pi: "too small by 2000 pi: they are in rad/ms, or divided by 2 pi and 1000",
 }
 """Factors that a wrong unit brings, and which."""
-_NEAR_UNIT = 0.2
+_NEAR_UNIT = 0.06
 """Difference in log frequency up to which a common factor may be a wrong unit and something else."""
 _UNKNOWN_NOISE = 1e-4
 """Relative; of a list that is too short to show its own."""

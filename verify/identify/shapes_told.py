@@ -5,6 +5,7 @@ from typing import Any
 import msgspec
 
 from verify.identify.told import Compared
+from verify.judge.compare import HARDLY
 from verify.run.gates import Band, GateResult
 from verify.studies.told import Column, Found, Table
 from verify.words import percent
@@ -95,8 +96,14 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
     def gates(self) -> tuple[GateResult, ...]:
         """Whether every shape is a mode's, in their order; then those of the frequencies."""
         wrong = [one.words for one in self.unlike]
+        wrong += [f"{row.name} is hardly mode {row.mode} (MAC {row.likeness:.2f})" for row in self._hardly]
         wrong += [f"shapes stand in another order: they are modes {self._order()}"] * self.exchanged
         return (_gate(len(wrong), "; ".join(wrong)), *(self.compared.gates if self.compared else ()))
+
+    @property
+    def _hardly(self) -> list[ShapeRow]:
+        """Those whose nearest mode they are not much like."""
+        return [row for row in self.rows if row.likeness < HARDLY]
 
     @property
     def passed(self) -> bool:
@@ -119,7 +126,8 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
         off = f"the worst {percent(worst.error, sign=False)} off at mode {worst.mode} (MAC {worst.likeness:.6f})"
         said += off if worst.error > ROUNDING else f"{'each ' * (len(modes) > 1)}in form the exact one but for rounding"
         frequencies = f" By its frequencies: {self.compared.answer}" if self.compared else ""
-        return f"{said}. {self._open()}{self._nearest()}.{frequencies}"
+        held = " That is hardly a mode of the beam as the scene holds it: check beam.supports." if self._hardly else ""
+        return f"{said}.{held} {self._open()}{self._nearest()}.{frequencies}"
 
     def _open(self) -> str:
         """What so few places do not tell apart."""

@@ -23,6 +23,8 @@ RESTING = 1e-11
 """Share of its typical size below which a shape is at rest: mode 3 of a pinned beam at the nodes of three parts."""
 LIKENESS = 0.5
 """A mode pairs with an exact one only above this MAC."""
+HARDLY = 0.8
+"""Below it what pairs is hardly a mode of the beam as it is held."""
 
 
 def relative_error(value: T, exact: T) -> T:

@@ -18,7 +18,7 @@ from verify.exact.error_laws import (
     smallest_count,
 )
 from verify.judge.known import by_law, kept, largest_error, solved, unbuilt, worst_of
-from verify.judge.variants import Rules, Variant, falls_within, without_effect
+from verify.judge.variants import Rules, Variant, falls_within, shared_from, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.patience import check_work
@@ -122,13 +122,13 @@ def enough_from(
 
     `mode` may be a range: all its modes are within. Where the discrete dispersion is known, it proves it. Elsewhere an
     error may change its sign and dip under `error` before it stays there: sizes are gone through from the smallest to
-    twice the last that fails, and to where the error law is certain of larger ones. Where a body, a spring or a step
-    falls anywhere within a part, the error goes up and down with N, and those after the last that fails are solved one
-    by one (`walked`). What holds beyond is the law's word, where there is one and every size tried keeps to it
-    (`known`). Where the law asks for more than 2000 parts, and for modes beyond the hundredth, its answer alone is
-    looked around. Raises InputError where no size up to 200 000 reaches the error, or, where it goes up and down, where
-    one beyond 2000 fails, and as soon as sizes to be gone through would take longer, with `before_s` seconds of work
-    done before, than is waited for.
+    twice the last that fails, to where the error law is certain of larger ones, and to where every section has parts of
+    its own (`shared_from`). Where a body, a spring or a step falls anywhere within a part, the error goes up and down,
+    and those after the last that fails are solved one by one (`walked`). What holds beyond is the law's word, where
+    there is one and every size tried keeps to it (`known`). Where the law asks for more than 2000 parts, and for modes
+    beyond the hundredth, its answer alone is looked around. Raises InputError where no size up to 200 000 reaches the
+    error, or, where it goes up and down, where one beyond 2000 fails, and as soon as sizes to be gone through would
+    take longer, with `before_s` seconds of work done before, than is waited for.
     """
     check_reachable(bench.beam, model, settings)
     modes = _several(mode)
@@ -147,7 +147,7 @@ def enough_from(
     reached = _reached(bench, model, modes, error, settings)
     uneven = falls_within(bench.beam)
     each_s = _part_s(bench.beam, modes[-1])
-    certain = max(certain_from(model, bench.beam, one, error) for one in modes) if law else 0
+    certain = max(certain_from(model, bench.beam, one, error) for one in modes) if law else shared_from(bench.beam)
     count, smaller, does = _scanned(reached, smallest, max(guess, certain), model, error, uneven, each_s, before_s)
     worst = worst_of(bench, model, modes, count - 1, settings)
     beyond = kept(bench, model, modes, count, does) if law and max(does) >= certain else ""

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from itertools import product
+from math import ceil
 from typing import Annotated, Any, TypeAlias
 
 import msgspec
@@ -22,6 +23,8 @@ DEFAULTS: dict[str, str | float] = {
 }
 """Of the settings that models share, in the order in which they are told."""
 
+SHARED, MOST_SHARED = 2.0, 2000
+"""Parts of the shortest section, and of all at most, up to which sizes are looked through for one that fails again."""
 Grading: TypeAlias = Annotated[float, Meta(gt=0)]
 
 
@@ -123,6 +126,15 @@ def falls_within(beam: Beam) -> bool:
     """Whether something may fall anywhere within a part, so that errors go up and down with the number of parts."""
     places = [m.position for m in beam.mass] + [s.position for s in beam.spring]
     return len(beam.pieces) > 1 or any(0.0 < place < beam.length for place in places)
+
+
+def shared_from(beam: Beam) -> int:
+    """From how many parts on the shortest section has some of its own: below, errors may fall and rise once more.
+
+    As long as it has one it is longer or shorter than those beside it, by more or less with every number of them.
+    """
+    shortest = min(piece.length for piece in beam.pieces) / beam.length
+    return min(ceil(SHARED / shortest), MOST_SHARED) if len(beam.pieces) > 1 else 0
 
 
 def told_by_lever(beam: Beam) -> bool:

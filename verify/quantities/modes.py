@@ -335,7 +335,8 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "mode.count_needed",
         "1",
-        "Segments or elements from which on the frequency error stays within `error`, or the least that happen to.",
+        "Segments or elements from which on the frequency error stays within `error`, as far as larger ones were "
+        "looked through, or the least that happen to.",
         ToError,
         "modes",
         _count_needed,

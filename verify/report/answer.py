@@ -41,8 +41,10 @@ def _nearest(gates: "tuple[GateResult, ...]") -> Iterator[str]:
     judged = [gate for gate in gates if gate.share is not None and gate.passed]
     if judged:
         worst = max(judged, key=lambda gate: gate.share or 0.0)
-        share = percent(worst.share, sign=False).split(".")[0]
-        yield f"Every gate that applies is held; the nearest to its edge is {worst.id}, at {share} % of its band."
+        share = f"{100.0 * (worst.share or 0.0):.0f}"
+        others = sum(bool(gate.passed) and gate.share is None for gate in gates)
+        of = f"of {len(judged)} whose band has a size " if others else ""
+        yield f"Every gate that applies is held; {of}the nearest to its edge is {worst.id}, at {share} % of its band."
 
 
 def gates_in_short(gates: "tuple[GateResult, ...]") -> Iterator[str]:
@@ -55,7 +57,8 @@ def gates_in_short(gates: "tuple[GateResult, ...]") -> Iterator[str]:
     off = [f"{_parts(one)} are {percent(_apart(one.measured, first.measured))} off" for one in others]
     unit = "" if first.unit == "1" else f" {first.unit}"
     told = f"{_named(first)} is {figure(first.measured)}{unit}{_at(first)}{'' if others else _of(first)}"
-    sure = [abs(_apart(gate.measured, gate.band.expect)) for gate in known if _value(gate.band.expect)]
+    met = [gate for gate in known if gate.passed and gate.reference != "regression"]
+    sure = [abs(_apart(gate.measured, gate.band.expect)) for gate in met if _value(gate.band.expect)]
     n = len(sure)
     agree = f"{n} known figures are met to {percent(max(sure), sign=False)} or better" if n > 1 else ""
     yield "; ".join(part for part in (told, ", ".join(off), agree) if part) + "."

@@ -25,10 +25,20 @@ GRAVITY = 9.81
 
 
 def remarks_on(scene: "Scene") -> tuple[str, ...]:
-    """A sentence for each field that looks like another unit, none says that it is one, and each section in vain."""
+    """A sentence for each field that looks like another unit, each section in vain, each gate judged by too little."""
     beam = scene.beam
     materials = dict.fromkeys(said for piece in beam.pieces if (said := _material(piece)))
-    return (*materials, *_lengths(beam), *_in_vain(scene))
+    return (*materials, *_lengths(beam), *_in_vain(scene), *_uncertain(scene))
+
+
+def _uncertain(scene: "Scene") -> "Iterator[str]":
+    """Gates whose reference is known less well than they judge."""
+    for gate in scene.gate:
+        if gate.within is not None and gate.uncertainty is not None and gate.uncertainty > gate.within:
+            yield (
+                f"gate.{gate.id}.uncertainty = {gate.uncertainty:g} is more than its within = {gate.within:g}: its "
+                "reference may lie outside the band itself, widen the band or find a better one"
+            )
 
 
 def _in_vain(scene: "Scene") -> "Iterator[str]":

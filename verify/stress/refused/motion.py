@@ -83,16 +83,21 @@ def steadily(*sliders: Slider) -> Ask:
     return lambda: check_together("segment", "steady", sliders)
 
 
-def after(*places: float | None, count: int = 6, on: Beam = STRIP, **more: Any) -> Ask:
+def after(*places: float | None, count: int = 6, on: Beam = STRIP, speed: float = 0.0, **more: Any) -> Ask:
     """Sliders at 0.1 m and 0.2 m that go on from runs of sliders put on at places, the last of which ended otherwise.
 
-    By `more`: at another time, or with other motions of the beam, (2,).
+    By `more`: at another time, or with other motions of the beam, (2,). All went at 0.3 m/s by their ends.
     """
     still = {"beam": STRIP, "model": "segment", "count": 6, "time": 0.5, "q": np.zeros(2), "rates": np.zeros(2)}
+    still |= {"speed": 0.3}
     ends = [still] * (len(places) - 1) + [still | more] * bool(places)
-    runs: Any = [SimpleNamespace(state=SimpleNamespace(**end), start=at) for end, at in zip(ends, places, strict=True)]
+    runs: Any = [
+        SimpleNamespace(state=SimpleNamespace(**end), start=at, slider=replace(TOUCHING, speed=0.1))
+        for end, at in zip(ends, places, strict=True)
+    ]
     request: Any = SimpleNamespace(beam=on, model="segment", count=count)
-    return lambda: check_runs(runs, request, (Placed(TOUCHING, 0.1), Placed(TOUCHING, 0.2)))
+    put = replace(TOUCHING, speed=speed)
+    return lambda: check_runs(runs, request, (Placed(put, 0.1), Placed(put, 0.2)))
 
 
 def apart(*places: float) -> Ask:
@@ -181,6 +186,10 @@ ROWS: tuple[Row, ...] = (
         Case("continue_from has 1 runs for 2 sliders", after(0.1), after(0.1, 0.2)),
         Case("continue_from has 3 runs for 2 sliders", after(0.1, 0.2, 0.3), after()),
         Case("continue_from is of a slider that was put on at 0.3 m", after(0.1, 0.3), after(None, 0.2)),
+        Case(
+            "continue_from is of a slider that goes at 0.3 m/s", after(0.1, 0.2, speed=0.2), after(0.1, 0.2, speed=0.3)
+        ),
+        Case("continue_from is of a slider that goes at", after(0.1, 0.2, speed=-0.1), after(0.1, 0.2, speed=0.1)),
         Case("continue_from is of model = 'segment', count = 6", after(0.1, 0.2, count=7)),
         Case("continue_from is of another beam", after(0.1, 0.2, on=STEPPED)),
         Case("continue_from holds runs that end at", after(0.1, 0.2, time=0.6), after(0.1, 0.2, time=0.5)),

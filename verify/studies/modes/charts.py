@@ -206,7 +206,7 @@ def _convergence(found: "ConvergenceFound") -> Chart:
     orders = dict.fromkeys([*(order for _, order in found.slopes), *([_mean_order(found)] if means else [])])
     guides = [_slope(found, order) for order in orders]
     return Chart(
-        id="convergence",
+        id="errors-over-size",
         title="Convergence with the number of segments or elements",
         caption=(mean_in_words(found) + " " if means else "")
         + "Grey: the slopes that theory gives these models on this beam. "
@@ -325,7 +325,7 @@ def sensitivity_chart(study: "SensitivityFound") -> Chart:
         fits = "every crossing is a material that fits it" if crossed else "no material drawn here fits it"
         caption += f" The dashed line is the published figure: {fits}."
     return Chart(
-        id="sensitivity",
+        id="modulus-density",
         title=f"Mode {study.mode} over modulus and density",
         caption=caption,
         x=Axis("Young's modulus, GPa"),
