@@ -15,6 +15,12 @@ from verify.models.places import Forces, Numbers, as_asked, as_forces, in_a_row,
 
 LARGEST_SLOPE = 1e100
 """Of a beam under a force, F L^2 / EI."""
+SLOW = 0.01
+"""Of (kL)^2: drives under which what a beam moves as a whole may be far more than it bends."""
+SAMPLED = 41
+"""Places at which that is seen."""
+ROUNDING, LOST = 64.0 * 2.2e-16, 1e-3
+"""Of a deflection that parts are placed by (measured: up to 50 roundings), and of a derivative that is no figure."""
 RESONANCE = 1e-9
 """An undamped beam is not driven closer than this (relative) to a resonance: the answer would be rounding."""
 
@@ -62,14 +68,38 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
         return as_asked(self.shapes(self._on_beam(x), 0), x)
 
     def slope(self, x: Numbers) -> ComplexArray:
-        """Complex slope at x (metres), of the shape of `deflection`, radians. Raises InputError off the beam."""
-        return as_asked(self.shapes(self._on_beam(x), 1), x)
+        """Complex slope at x (metres), of the shape of `deflection`, radians. Raises InputError as `derivative`."""
+        return self.derivative(x, 1)
+
+    def derivative(self, x: Numbers, order: int) -> ComplexArray:
+        """A derivative of the deflection at x (metres), of the shape of `deflection`, metres per metre^order.
+
+        Raises InputError off the beam, and where the beam moves nearly as a whole so far that its parts keep no digit
+        of how it bends.
+        """
+        at = self._on_beam(x)
+        if order and self.count is not None and self.omega * self.beam.length**2 < SLOW * self.beam.wave_constant:
+            self._check_digits(self.count, order)
+        return as_asked(self.shapes(at, order), x)
+
+    def _check_digits(self, count: int, order: int) -> None:
+        """Raise InputError where rounding of the parts' places may be a thousandth of a derivative, or more of it."""
+        sample = np.linspace(0.0, self.beam.length, SAMPLED)
+        size, told = (float(abs(self.shapes(sample, n)).max()) for n in (0, order))
+        if ROUNDING * size * (count / self.beam.length) ** order > LOST * told:
+            raise InputError(
+                f"frequency_hz = {self.frequency_hz!r}: the beam moves by {size:.2g} m nearly as a whole, so that "
+                f"count = {count} parts keep no digits of how it bends: give fewer parts, model = analytic, or a "
+                "faster drive"
+            )
 
     def turn(self, x: Numbers) -> ComplexArray:
         """Complex turn of the section at x (metres), of the shape of `deflection`, radians: w' where nothing shears.
 
         Raises InputError off the beam, and for a Timoshenko field of a model that gives none.
         """
+        if self.turned is None and self.theory != "timoshenko":
+            return self.derivative(x, 1)
         return as_asked(self.turns(self._on_beam(x), 0), x)
 
     def turns(self, x: Array, derivative: int) -> ComplexArray:

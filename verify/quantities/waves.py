@@ -52,11 +52,7 @@ def _slope(a: At, scene: "Scene", bench: Workbench) -> complex:
 
 
 def _curvature(a: At, scene: "Scene", bench: Workbench) -> complex:
-    """Of the field's own shapes: no verb of the field reads it."""
-    from verify.models.places import places
-
-    field = field_of(a, scene, bench)
-    return complex(field.shapes(places("x", a.x, field.beam.length).ravel(), 2)[0])
+    return complex(field_of(a, scene, bench).derivative(a.x, 2)[0])
 
 
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
