@@ -170,3 +170,12 @@ def test_links_that_stretch_and_turn_far_are_confirmed_by_half_their_step_or_ref
     with pytest.raises(InputError, match=r"step of the stretching chain = .* leaves the motion unknown after") as why:
         carried(4e4)
     assert str(why.value).endswith("; give a shorter time or smaller forces")
+
+
+def test_heights_of_rigid_links_are_those_of_their_joints():
+    from verify.chain import places
+
+    moved = pushed(3.0)
+    joints = places.place(moved.system, moved.times, moved.angles, moved.rates).joints
+    assert abs(joints[:, 1:, 1]).max() > 1e-5
+    assert far._heights(moved) == pytest.approx(joints[:, 1:, 1], rel=1e-13, abs=1e-18)

@@ -205,6 +205,6 @@ def _factorised(diagonal: Array, coupling: Array, free: Array) -> Array:
     factors = np.zeros((len(diagonal), 2, 2))
     factors[0, :, 1] = free[0] / diagonal[0]
     for j in range(1, len(diagonal)):
-        ratio = coupling[j - 1] * factors[j - 1, :, 1] * free[j]
+        ratio = coupling[j - 1] * factors[j - 1, :, 1]  # at a held joint of no effect: its reciprocal pivot is 0
         factors[j] = np.stack([ratio, free[j] / (diagonal[j] - ratio * coupling[j - 1])], axis=1)
     return factors

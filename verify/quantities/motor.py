@@ -129,10 +129,12 @@ def _start_time(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
     run, speed = _free(a, scene, bench), _free_speed(a, scene, bench)
     spread, first = mean_speed(run, a.last)[1], float(run.speed[0])
     if abs(speed - first) <= spread:
+        gives = run.slider is not None and run.slider.contact is not None and run.slider.contact.tangential_stiffness
+        other = ", or its contact another tangential_stiffness" if gives else ""
         raise InputError(
             f"periods = {a.periods!r} with last = {a.last!r}: the slider begins at {first:.6g} m/s and comes to "
             f"{speed:.2g} m/s, the same within the {spread:.2g} m/s by which halves of its end differ: no way takes a "
-            "time; give slider.speed another start"
+            f"time; give slider.speed another start{other}"
         )
     found = started_of(run, speed)
     if found is None:

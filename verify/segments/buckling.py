@@ -34,7 +34,7 @@ def buckling_load(
     a single link, which does not bend.
     """
     check_set_up(n_segments, wall, joints, attachment)
-    force, least = beam.bending_stiffness / beam.length**2, 1.0
+    force = beam.bending_stiffness / beam.length**2
     for _ in range(_PASSES):
         least = _least(replace(beam, tension=-force), n_segments, wall, joints, grading, attachment)
         force *= least
