@@ -259,7 +259,13 @@ def test_a_margin_that_is_not_small_has_its_sentence(study):
     assert "epsilon" not in doubted(study, k=1e5)
     assert "no wave travels" in doubted(study, epsilon=None, k=None)["epsilon"]
     assert "epsilon" not in doubted(study, k=None)
-    assert "bends the beam by 30 µm, 2.1 times the amplitude under the slider" in doubted(study, sag=30e-6)["sag"]
+    sag = doubted(study, sag=30e-6)["sag"]
+    assert "what presses at rest bends the beam by 30 µm, 2.1 times the amplitude under the slider" in sag
+    assert sag.endswith("which a one-way run leaves out")
+    (field,) = study.fields
+    slider, harder = small().slider, replace(field.stall, normal_force=3.65 * small().slider.normal_force)
+    pressed = replace(field, curve=(harder, *field.curve[1:]), margins=replace(field.margins, sag=30e-6))
+    assert "; in the run feet press 3.65 times as much" in " ".join(doubts([pressed], slider, 135.2, 1e-3))
     assert "push away or turn a beam that nothing holds" in doubted(study, sag=None)["sag"]
     size = study.fields[0].amplitude / 1e-3
     assert "climb: points touch for 97 % of the time" in doubted(study, share=0.97)["climb"]
