@@ -1,9 +1,11 @@
-"""Shapes of a beam held otherwise, factors near a unit that are none: told as such, and nothing stated by them."""
+"""Shapes of a beam held otherwise, factors near a unit, sizes near the one that is said: nothing is stated by them."""
 
 import meshio
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
+from verify import segment_model
 from verify.beam import Beam
 from verify.cli import status_of
 from verify.exact.closed_forms import frequency_hz
@@ -78,3 +80,25 @@ def test_a_factor_is_a_wrong_unit_where_it_is_one_but_for_a_little_and_else_a_fa
     assert out.startswith(
         "The frequencies are too large by 2 pi" if exactly else f"All frequencies have the common factor {factor:.6g}"
     )
+
+
+@pytest.mark.parametrize(
+    ("supports", "count", "settings"),
+    [
+        (("pinned", "pinned"), 17, {}),
+        (("pinned", "pinned"), 15, {}),
+        (("clamped", "clamped"), 16, {"wall": "half"}),
+        (("clamped", "free"), 18, {"wall": "half"}),
+    ],
+)
+def test_another_size_is_found_though_the_one_that_is_said_explains_the_list_to_a_thousandth(
+    told, tmp_path, supports, count, settings
+):
+    """They were told to be thick, to have a slip, or to be stiffer than they are."""
+    beam = replace(OWN, supports=supports)
+    (tmp_path / "held.toml").write_text(SCENE.replace('"clamped", "free"', ", ".join(f'"{one}"' for one in supports)))
+    hertz = segment_model.solve_modes(beam, 8, count, **settings).frequencies_hz
+    (tmp_path / "list.csv").write_text("".join(f"{one:.8f}\n" for one in hertz))
+    _, out = told("compare", "held.toml", "list.csv", "--count", "20")
+    assert out.startswith(f"The list is that of {count} parts, not of the 20 that --count says.")
+    assert f"With {count} parts it leaves nothing but rounding" in out

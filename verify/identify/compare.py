@@ -35,6 +35,8 @@ from verify.words import percent
 
 SPARE = 4
 """Modes beyond the list that candidates are solved for: as many may be missing from it."""
+_SHARP, _FAR_LESS = 1e-7, 0.02
+"""Relative: what is left of a list that has its digits, and what of another's rest shows that to be a likeness."""
 _OTHER_COUNT = 10.0
 """By how much, in logarithms of likelihood, another number of parts than was said has to be likelier."""
 _TELLING = 5
@@ -197,10 +199,11 @@ def _of_shapes_alone(found: Found) -> Found:
 def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found, ...]]:
     """What the list is at the given size, or else beside it or at any. Raises InputError where nothing is so large.
 
-    Of so few frequencies that none is claimed at the given size, another would be a fitted one.
+    Of so few frequencies that none is claimed at the given size, another would be a fitted one. What explains a list at
+    its size but not to its last digits may be another size's by chance: that is taken where it leaves far less.
     """
     found = identify(data, count)
-    known = found is not None and (found.short or (found.explained and found.best.candidate.sized))
+    known = found is not None and (found.short or (_sharp(found) and found.best.candidate.sized))
     if count is not None and not known:
         beside = [size for size in {2 * count, count // 2, *range(count - 2, count + 3)} - {count} if size > 1]
         n_modes = data.solver.n_modes
@@ -211,13 +214,26 @@ def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found,
             told = Found(kind="unsearched", words=f"other sizes were not looked at: {why}", wrong=False)
             return _of_that_size(found, data, count), (told,)
         other = _explaining(data, sorted(beside))
-        if other is None and len(data.listed) >= _TELLING and not (found is not None and found.explained):
+        if len(data.listed) >= _TELLING and not (other is not None and _sharp(other)):
             anywhere = _explaining(data, [None])
-            other = anywhere if anywhere is not None and anywhere.reading == PLAIN else None
+            if anywhere is not None and anywhere.reading == PLAIN and (other is None or _sharper(anywhere, other)):
+                other = anywhere
+        if other is not None and found is not None and found.explained and not _sharper(other, found):
+            other = None
         if other is not None and (found is None or other.best.score < found.best.score - _OTHER_COUNT):
             words = f"the list is that of {other.best.count} parts, not of the {count} that --count says"
             return other, (Found(kind="count", words=words),)
     return _of_that_size(found, data, count), ()
+
+
+def _sharp(found: Identified) -> bool:
+    """Whether it explains the list to digits that no other size would have by chance."""
+    return found.explained and found.best.residual <= _SHARP
+
+
+def _sharper(one: Identified, other: Identified) -> bool:
+    """Whether it leaves so much less that the other's is a likeness."""
+    return one.best.residual <= _FAR_LESS * other.best.residual
 
 
 def _of_that_size(found: Identified | None, data: Data, count: int | None) -> Identified:
