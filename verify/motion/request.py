@@ -217,9 +217,10 @@ def _check_start(model: str, started: Started) -> None:
 def _check_goes_on(before: "Motion | FreeVibration", slider: Slider) -> None:
     """Raise InputError for a slider that is put elsewhere than where the one of the run before is by now."""
     own = getattr(before, "slider", None)
-    if own is None:
-        return
-    for name, unit, ended in (("position", "m", before.end.position), ("speed", "m/s", before.end.speed)):
+    end = before.end
+    if own is None or end.off or end.position is None or not 0.0 <= end.position <= end.beam.length:
+        return  # nobody goes on from there
+    for name, unit, ended in (("position", "m", end.position), ("speed", "m/s", end.speed)):
         given = getattr(slider, name)
         if given and given not in (getattr(own, name), ended):
             raise InputError(

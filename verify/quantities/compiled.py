@@ -88,4 +88,8 @@ def departing(a: "Departing", scene: "Scene") -> Iterator[Call]:
     """A chain of rigid or of stretching links."""
     from verify.chain import warm
 
-    return warm.stretching() if a.inertia == "elastic" else warm.rigid()
+    if a.inertia == "elastic":
+        yield from warm.stretching()
+    else:
+        yield from warm.rigid()
+        yield from warm.accelerations()

@@ -41,7 +41,7 @@ def _nearest(gates: "tuple[GateResult, ...]") -> Iterator[str]:
     judged = [gate for gate in gates if gate.share is not None and gate.passed]
     if judged:
         worst = max(judged, key=lambda gate: gate.share or 0.0)
-        share = f"{100.0 * (worst.share or 0.0):.0f}"
+        share = int(100.0 * (worst.share or 0.0))
         others = sum(bool(gate.passed) and gate.share is None for gate in gates)
         of = f"of {len(judged)} whose band has a size " if others else ""
         yield f"Every gate that applies is held; {of}the nearest to its edge is {worst.id}, at {share} % of its band."

@@ -295,7 +295,7 @@ ROWS: tuple[Row, ...] = (
         at=(0.0, 0.3, 1.7, 20.0),
         promise=2e-3,
         error=limit_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     Floor(
         id="landings",

@@ -253,7 +253,7 @@ ROWS: tuple[Row, ...] = (
         promise=1e-3,
         error=limit_error,
         seconds=4.0,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     Refusal(
         id="amplitude-beyond-the-links",
