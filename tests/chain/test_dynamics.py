@@ -15,17 +15,16 @@ from scipy.special import jn_zeros
 from verify.beam import Beam, PointForce
 from verify.chain import recursion_kernels
 from verify.chain.dynamics import (
+    accelerated,
     accelerations,
     at_rest,
     choose_pivots,
     energies,
-    flatten,
     held_rows,
     keep_pivots,
     linearise,
     positions,
     project,
-    workspace,
 )
 from verify.chain.statics import solve_static
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
@@ -136,14 +135,12 @@ def test_cosine_and_sine_of_an_angle_are_right_to_rounding_on_both_sides_of_wher
 
 def test_an_evaluation_costs_in_proportion_to_the_links():
     """Side by side: twenty times the links may cost at most 20^1.1 of the time, and an allowance for noise."""
-    from verify.chain import kernels
 
     def seconds(n):
-        system = build_system(beam(), n)
-        flat, work, out, still = flatten(system, ledger=False), workspace(system), np.zeros(n), np.zeros(n)
+        answer, still = accelerated(build_system(beam(), n)), np.zeros(n)
         start = process_time()
         for _ in range(10_000_000 // n // 50):
-            kernels.answer(flat, 0.0, still, still, work, out)
+            answer(0.0, still, still)
         return (process_time() - start) * n
 
     seconds(500)

@@ -6,7 +6,7 @@ Haug, J. Mech. Design 104 (1982) 247): as many angles as there are held points d
 Forward dynamics is compiled (`chain.recursion_kernels`), motion in time is in `chain.stepping`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -65,11 +65,40 @@ def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
 
 def accelerations(system: ChainSystem, state: ChainState) -> Array:
     """Relative angular accelerations, (N,), rad/s^2."""
+    return accelerated(system)(state.time, *_arrays(system, state))
+
+
+def accelerated(system: ChainSystem) -> Callable[[float, Array | float, Array | float], Array]:
+    """The accelerations, (N,), of a chain at a time, by its angles and rates: from the loop of steps, of which none.
+
+    A loop of their own would be compiled beside it.
+    """
     from verify.chain import kernels
 
-    out = np.zeros(system.n_links)
-    kernels.answer(flatten(system), state.time, *_arrays(system, state), workspace(system), out)
-    return out
+    n, flat, work = system.n_links, flatten(system, ledger=False), workspace(system)
+    row = np.zeros((1, 2 * n + 2))
+    run = records.March(
+        a=np.zeros((1, 1)),
+        c=np.zeros(1),
+        weights=np.zeros(0),
+        order=1.0,
+        y=np.zeros(2 * n + 2),
+        new=np.zeros(2 * n + 2),
+        k=row,
+        clock=np.zeros(3),
+        counts=np.zeros(5, dtype=np.int64),
+        samples=np.zeros(0),
+        kept=np.zeros((0, 2 * n + 2)),
+        scale=np.zeros(6),
+        pivots=np.zeros(0, dtype=np.int64),
+    )
+
+    def answer(t: float, angles: Array | float, rates: Array | float) -> Array:
+        run.clock[0], run.y[:n], run.y[n : 2 * n] = t, angles, rates
+        kernels.march(flat, run, 0, work)
+        return row[0, n : 2 * n].copy()
+
+    return answer
 
 
 def _arrays(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:

@@ -29,12 +29,6 @@ def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -
     return lost, power
 
 
-@lean(fastmath={"contract"})
-def answer(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -> None:
-    """The accelerations alone, for whoever steps no chain: `march` has its own, and compiles without this."""
-    accelerate(f, t, q, v, work, out)
-
-
 @part(fastmath={"contract"})
 def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
     """Rates of the state (q, v, energy lost, work put in), (2N + 2,)."""

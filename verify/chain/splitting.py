@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from verify.chain import records
-from verify.chain.dynamics import at_rest, flatten, linearise, project, workspace
+from verify.chain.dynamics import accelerated, at_rest, flatten, linearise, project, workspace
 from verify.chain.modes import lowest_modes
 from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.stepping import checked_times, how_started
@@ -116,11 +116,7 @@ def _steady(system: ChainSystem, rest: ChainState, omega: Array, duals: Array) -
 
 
 def _answer(system: ChainSystem, rest: ChainState) -> Array:
-    from verify.chain import kernels
-
-    out = np.zeros(system.n_links)
-    kernels.answer(flatten(system, ledger=False), 0.0, rest.angles, rest.rates, workspace(system), out)
-    return out
+    return accelerated(system)(0.0, rest.angles, rest.rates)
 
 
 def simulate_modal(

@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from verify.chain import records
-from verify.chain.dynamics import PIVOT_LOSS, flatten, held_rows, keep_pivots, project, workspace
+from verify.chain.dynamics import PIVOT_LOSS, accelerated, flatten, held_rows, keep_pivots, project, workspace
 from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
@@ -132,26 +132,6 @@ def how_started(moved: float, start: ChainState) -> str:
     return f"projected onto the held points: an angle or rate changed by {moved:.3g}"
 
 
-def _fresh(start: ChainState, table: Tableau, samples: Array) -> records.March:
-    """A run of a chain without held points that has not begun, by tolerances of nought."""
-    y = np.concatenate([start.angles, start.rates, [0.0, 0.0]])
-    return records.March(
-        a=table.a,
-        c=table.c,
-        weights=table.weights,
-        order=table.order,
-        y=y,
-        new=np.zeros(len(y)),
-        k=np.zeros((len(table.c) + 1, len(y))),
-        samples=samples,
-        kept=np.zeros((len(samples), len(y))),
-        clock=np.array([start.time, 0.0, 0.0]),
-        counts=np.zeros(5, dtype=np.int64),
-        scale=np.zeros(6),
-        pivots=np.zeros(0, dtype=np.int64),
-    )
-
-
 class _Run:
     """Arrays of one run."""
 
@@ -172,7 +152,18 @@ class _Run:
         fastest = 0.0 if step else highest_rate(system, start)
         first = step or min(0.1 / max(fastest, 1e-12), max(samples[-1] - start.time, 1e-12))
         floor = 1e-3 * tolerance**1.5
-        self.m = _fresh(start, table, samples)._replace(
+        size = 2 * system.n_links + 2
+        self.m = records.March(
+            a=table.a,
+            c=table.c,
+            weights=table.weights,
+            order=table.order,
+            y=np.concatenate([start.angles, start.rates, [0.0, 0.0]]),
+            new=np.zeros(size),
+            k=np.zeros((len(table.c) + 1, size)),
+            samples=samples,
+            kept=np.zeros((len(samples), size)),
+            counts=np.zeros(5, dtype=np.int64),
             clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]),
             scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0, 0.0]),
             pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
@@ -276,26 +267,16 @@ def _largest(apply: Callable[[Array], Array], n: int) -> float:
 
 def _slopes(system: ChainSystem, state: ChainState) -> tuple[Callable[[Array], Array], Callable[[Array], Array]]:
     """Derivatives of the accelerations by angles and by rates, as maps."""
-    from verify.chain import kernels
-
-    flat, work, n = flatten(system, ledger=False), workspace(system), system.n_links
-    run = _fresh(state, RK4, np.zeros(0))
-
-    def answer(angles: Array | float, rates: Array | float) -> Array:
-        """Accelerations, by a run of no steps: the loop that will be run anyway has them."""
-        run.y[:n], run.y[n : 2 * n] = angles, rates
-        kernels.march(flat, run, 0, work)
-        return run.k[0, n : 2 * n].copy()
-
-    base = answer(state.angles, 0.0)
+    answer = accelerated(system)
+    base = answer(state.time, state.angles, 0.0)
 
     def by_angles(u: Array) -> Array:
         size = 1e-6 / max(float(abs(u).max()), 1e-300)
-        return (answer(state.angles + size * u, 0.0) - base) / size
+        return (answer(state.time, state.angles + size * u, 0.0) - base) / size
 
     def by_rates(u: Array) -> Array:
         size = 1e-6 / max(float(abs(u).max()), 1e-300)
-        return (answer(state.angles, size * u) - base) / size
+        return (answer(state.time, state.angles, size * u) - base) / size
 
     return by_angles, by_rates
 

@@ -15,16 +15,8 @@ def calls() -> Iterator[Call]:
     yield from stretching()
 
 
-def accelerations() -> Iterator[Call]:
-    """Of rigid links as they stand."""
-    from verify.chain import kernels
-
-    one = np.zeros(1)
-    yield kernels.answer, (_flat(), 0.0, one, one, np.zeros((1, 1)), one)
-
-
 def rigid() -> Iterator[Call]:
-    """Rigid links in steps."""
+    """Rigid links in steps, and how they are accelerated as they stand."""
     from verify.chain import kernels
 
     yield kernels.march, (_flat(), _march(), 1, np.zeros((1, 1)))
@@ -34,7 +26,7 @@ def modal() -> Iterator[Call]:
     """Rigid links in modes."""
     from verify.chain import splitting_kernels
 
-    yield from accelerations()
+    yield from rigid()
     flat, one, few = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64)
     yield splitting_kernels.march_modal, (_flat(), _modal(), one, few, one, np.zeros((1, 1, 1)), 1, flat, flat)
 

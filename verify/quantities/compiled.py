@@ -88,8 +88,4 @@ def departing(a: "Departing", scene: "Scene") -> Iterator[Call]:
     """A chain of rigid or of stretching links."""
     from verify.chain import warm
 
-    if a.inertia == "elastic":
-        yield from warm.stretching()
-    else:
-        yield from warm.rigid()
-        yield from warm.accelerations()
+    return warm.stretching() if a.inertia == "elastic" else warm.rigid()

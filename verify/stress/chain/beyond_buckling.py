@@ -157,7 +157,7 @@ ROWS: tuple[Row, ...] = (
         at=(0.0, 1.0),
         promise=1e-9,
         error=along_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     Refusal(
         id="pushed-along-alone",

@@ -217,7 +217,7 @@ def worst_frequency_error(n: float) -> float:
 
 def _kicked() -> Iterator[Call]:
     """Rigid links in modes, and their energies."""
-    yield from warm.accelerations()
+    yield from warm.rigid()
     yield from warm.modal()
 
 
@@ -245,7 +245,7 @@ ROWS: tuple[Row, ...] = (
         at=(8, 12, 20),
         promise=2e-11,
         error=chain_modes_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     Floor(
         id="linear-about-bent",
@@ -255,7 +255,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 20),
         promise=1e-13,
         error=bent_rest_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     Floor(
         id="books-opened-late",

@@ -239,7 +239,7 @@ ROWS: tuple[Row, ...] = (
         at=(7, 12),
         promise=1e-9,
         error=all_modes_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     Floor(
         id="chains-that-drift",
@@ -249,7 +249,7 @@ ROWS: tuple[Row, ...] = (
         at=(0.01, 0.1),
         promise=1e-6,
         error=drift_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     Floor(
         id="coils-that-stretch",

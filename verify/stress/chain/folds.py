@@ -210,7 +210,7 @@ def kept_error(step: float) -> float:
 
 
 def _loops() -> Iterator[Call]:
-    yield from warm.accelerations()
+    yield from warm.rigid()
     yield from warm.modal()
 
 

@@ -159,6 +159,6 @@ ROWS: tuple[Row, ...] = (
         at=(1e-4, 0.2, 0.49, 0.51, 1.4, 2.9),
         promise=1e-13,
         error=angles_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
 )

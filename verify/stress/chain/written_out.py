@@ -316,7 +316,7 @@ ROWS: tuple[Row, ...] = (
         why="chain/recursion_kernels.py: the recursion to rounding.",
         promise=1e-10,
         error=acceleration_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
     _row(
         id="energies-written-out",

@@ -134,6 +134,6 @@ ROWS: tuple[Row, ...] = (
         at=(3.0, 8.0),
         promise=1e-7,
         error=going_on_error,
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
 )

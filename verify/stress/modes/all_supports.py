@@ -255,7 +255,7 @@ def drift_error(periods: float) -> float:
 
 def _kicks() -> Iterator[Call]:
     """Accelerations, for the modes, and steps in them."""
-    yield from warm.accelerations()
+    yield from warm.rigid()
     yield from warm.modal()
 
 

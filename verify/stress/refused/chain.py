@@ -123,7 +123,6 @@ def _loops() -> Iterator[Call]:
     from verify.motion.warm import on_chain
 
     yield from warm.rigid()
-    yield from warm.accelerations()
     yield from warm.stretching()
     yield from on_chain("tanh")
 

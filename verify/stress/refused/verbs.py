@@ -319,6 +319,6 @@ ROWS: tuple[Row, ...] = (
         "Loads, places, sizes and works of nonlinear chains, and motions that broke off",
         "chain: each says which of its numbers.",
         *of_chains(),
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
 )
