@@ -148,8 +148,7 @@ class FieldFound(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def best_efficiency(self) -> float | None:
         """Of those whose powers have settled too; None where the slider drives the surface at all of them."""
-        told = (one.efficiency for one in self.curve if one.settled("force", "powers"))
-        return max((one for one in told if one), default=None)
+        return max((e for one in self.curve if one.settled("force", "powers") and (e := one.efficiency)), default=None)
 
 
 class Drawn(msgspec.Struct, frozen=True, kw_only=True, eq=False):
@@ -211,7 +210,8 @@ class MotorFound(Found, frozen=True, eq=False, kw_only=True):
 
 def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step: None) -> MotorFound:
     """Run the scene's motor on every field that is asked for. Raises InputError."""
-    fields, histories = [], _no_histories()
+    names = ("start", "stop", "reversal", "contact", "stuck", "portrait")
+    fields, histories = [], {name: dict[str, History]() for name in names}
     speeds: tuple[float, ...] = ()
     for number, model in enumerate(asked.linear):
         case = case_of(asked, scene, model)
@@ -254,10 +254,6 @@ def check_felt(asked: "Motor", still: AtSpeed, settled: MotorRun, n_fields: int)
     periods = still.periods * (asked.speeds - 1 + SEARCHED) + free
     remedy = f"lower it or motor.speeds, or {FEWER}"
     check_work("motor.periods", asked.periods, n_fields * next_seconds(settled, periods), remedy)
-
-
-def _no_histories() -> dict[str, dict[str, History]]:
-    return {name: {} for name in ("start", "stop", "reversal", "contact", "stuck", "portrait")}
 
 
 def _wavenumber(case: MotorCase) -> float | None:

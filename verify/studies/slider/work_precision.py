@@ -334,10 +334,8 @@ def _unfit(name: str, line: list[WorkRow], work: Work, due: int | None) -> NotCo
         return NotCompared(why=f"a time of {name} is below the resolution of the clock", remedy="give larger counts")
     low, high = min(row.error for row in line), max(row.error for row in line)
     if max(-low, high) <= NO_ERROR:
-        return NotCompared(
-            why=f"{name} are right to rounding at every count, the wave hardly moves the slider",
-            remedy="give it less speed, more mu or another position",
-        )
+        why = f"{name} are right to rounding at every count, the wave hardly moves the slider"
+        return NotCompared(why=why, remedy="give it less speed, more mu or another position")
     span = f"between {100 * low:+.3g} % and {100 * high:+.3g} %"
     calmer = "give a longer soft start, a smaller slope K or a finer step (steps_per_period), or larger counts"
     if low <= 0.0 <= high:
