@@ -26,7 +26,7 @@ X = np.linspace(0.0, 0.61, 41)
 
 
 def shapes_of(supports):
-    beam = Beam(length=0.61, width=0.03, thickness=0.004, youngs_modulus=113e9, density=4470.0, supports=supports)
+    beam = replace(OWN, supports=supports)
     return np.array([mode_shape(beam, mode, X) for mode in range(1, 7)]), [frequency_hz(beam, n) for n in range(1, 7)]
 
 

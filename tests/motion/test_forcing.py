@@ -483,7 +483,7 @@ def test_a_slider_goes_on_where_it_was_and_is_put_nowhere_else():
                 replace(slider, position=begun.end.position, speed=begun.end.speed)):  # fmt: skip
         went = simulate(STRIP, FORCES, FREQUENCY, 1e-3, slider=put, continue_from=begun, **ASKED)
         assert (went.position[0], went.speed[0]) == pytest.approx((begun.end.position, begun.end.speed), rel=1e-12)
-    for name, value in (("position", 0.19), ("speed", 0.3)):
+    for name, value in (("position", 0.19), ("position", 0.0), ("speed", 0.3)):
         with pytest.raises(
             InputError, match=rf"^slider\.{name} = {value}: the slider goes on as continue_from left it"
         ):

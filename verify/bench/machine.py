@@ -17,12 +17,16 @@ def today() -> str:
 
 def machine() -> dict[str, str]:
     """Processor, how many of them, system."""
-    cores = len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count()
     return {
         "processor": _processor(),
-        "cores": f"{cores} cores",
+        "cores": f"{_cores()} cores",
         "system": f"{platform.system()} {platform.machine()}",
     }
+
+
+def _cores() -> int | None:
+    """That this process may use."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count()
 
 
 def _processor() -> str:
@@ -38,7 +42,7 @@ def load() -> float | None:
     if not hasattr(os, "getloadavg"):
         return None
     try:
-        return float(f"{os.getloadavg()[0] / (os.cpu_count() or 1):.2g}")
+        return float(f"{os.getloadavg()[0] / (_cores() or 1):.2g}")
     except OSError:
         return None
 

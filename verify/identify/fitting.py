@@ -36,7 +36,8 @@ UNITS = {
 }
 """Factors that a wrong unit brings, and which."""
 _NEAR_UNIT = 0.06
-"""Difference in log frequency up to which a common factor may be a wrong unit and something else."""
+"""Difference in log frequency up to which a common factor may be a wrong unit and something else: E or rho off by an
+eighth, as handbooks differ; 7.5 is no 2 pi."""
 _UNKNOWN_NOISE = 1e-4
 """Relative; of a list that is too short to show its own."""
 _ANYWHERE_NEAR = 0.7

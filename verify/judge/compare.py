@@ -24,7 +24,8 @@ RESTING = 1e-11
 LIKENESS = 0.5
 """A mode pairs with an exact one only above this MAC."""
 HARDLY = 0.8
-"""Below it what pairs is hardly a mode of the beam as it is held."""
+"""Below it what pairs is hardly a mode of the beam as it is held: a clamped beam's first shapes have 0.62 and 0.75 with
+a cantilever's nearest, mode 6 of a cantilever of twenty links 0.996 with its own."""
 
 
 def relative_error(value: T, exact: T) -> T:

@@ -220,9 +220,9 @@ def _check_goes_on(before: "Motion | FreeVibration", slider: Slider) -> None:
     end = before.end
     if own is None or end.off or end.position is None or not 0.0 <= end.position <= end.beam.length:
         return  # nobody goes on from there
-    for name, unit, ended in (("position", "m", end.position), ("speed", "m/s", end.speed)):
+    for name, unit, unsaid, ended in (("position", "m", None, end.position), ("speed", "m/s", 0.0, end.speed)):
         given = getattr(slider, name)
-        if given and given not in (getattr(own, name), ended):
+        if given not in (unsaid, getattr(own, name), ended):
             raise InputError(
                 f"slider.{name} = {given!r}: the slider goes on as continue_from left it, at {ended!r} {unit}; give "
                 f"the {name} of that run's slider, {getattr(own, name)!r}, or none"

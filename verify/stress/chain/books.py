@@ -1,6 +1,5 @@
 """Books of the nonlinear chain that no scene opens: about rest, over kicks, of held points, of links that stretch."""
 
-from collections.abc import Iterator
 from dataclasses import replace as changed
 from math import pi, sin
 
@@ -8,7 +7,6 @@ import numpy as np
 
 from verify.beam import PointForce
 from verify.chain import warm
-from verify.models.compiling import Call
 from verify.stress.kind import Floor, Row
 from verify.stress.largest import largest
 from verify.stress.references.beams import STRIP, held
@@ -215,18 +213,6 @@ def worst_frequency_error(n: float) -> float:
     return largest(abs(one / max(sizes[:2]) - 1.0) for one in sizes[2:]) + float(sizes[0] == sizes[1])
 
 
-def _kicked() -> Iterator[Call]:
-    """Rigid links in modes, and their energies."""
-    yield from warm.rigid()
-    yield from warm.modal()
-
-
-def _thrown() -> Iterator[Call]:
-    """By adaptive steps and over kicks."""
-    yield from warm.rigid()
-    yield from warm.modal()
-
-
 ROWS: tuple[Row, ...] = (
     Floor(
         id="kick-schemes",
@@ -315,7 +301,7 @@ ROWS: tuple[Row, ...] = (
         at=(5, 6),
         promise=2e-9,
         error=thrown_far_error,
-        kernels=_thrown,
+        kernels=warm.modal,
     ),
     Floor(
         id="kept-over-kicks",
@@ -325,7 +311,7 @@ ROWS: tuple[Row, ...] = (
         at=(700, 1000),
         promise=1e-9,
         error=kept_over_kicks_error,
-        kernels=_kicked,
+        kernels=warm.modal,
     ),
     Floor(
         id="felt-at-the-worst-frequency",
@@ -344,6 +330,6 @@ ROWS: tuple[Row, ...] = (
         at=(1, 2, 3),
         promise=1e-7,
         error=kicks_energy_error,
-        kernels=_kicked,
+        kernels=warm.modal,
     ),
 )

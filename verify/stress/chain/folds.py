@@ -1,7 +1,6 @@
 """Where equilibria of chains end or turn over: folds of a growing load, chains on their heads, places that stand."""
 
 import re
-from collections.abc import Iterator
 from math import ceil, pi
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +15,6 @@ from verify.chain.dynamics import at_rest, linearise
 from verify.chain.system import ChainSystem, build_system
 from verify.errors import InputError
 from verify.models.arrays import Array
-from verify.models.compiling import Call
 from verify.motion.result import END
 from verify.segments.links import link_inertia
 from verify.stress.chain.beyond_buckling import LINKS, _at_the_clamp, _chain
@@ -209,11 +207,6 @@ def kept_error(step: float) -> float:
     return largest(off, float(wrong), 1e-9 * abs(taken_s / end - 1.0))
 
 
-def _loops() -> Iterator[Call]:
-    yield from warm.rigid()
-    yield from warm.modal()
-
-
 ROWS: tuple[Row, ...] = (
     Floor(
         id="folds-of-a-load",
@@ -259,6 +252,6 @@ ROWS: tuple[Row, ...] = (
         at=(2.5e-3,),
         promise=1e-12,
         error=kept_error,
-        kernels=_loops,
+        kernels=warm.modal,
     ),
 )

@@ -1,6 +1,5 @@
 """Formulas at all their supports, slow and fast drives, contacts that stick and slip, each written out another way."""
 
-from collections.abc import Iterator
 from dataclasses import replace as changed
 from functools import cache
 from math import cos, pi, sin
@@ -12,7 +11,6 @@ from verify.attached import PointMass, PointSpring
 from verify.beam import PointForce
 from verify.chain import warm
 from verify.models.arrays import Array
-from verify.models.compiling import Call
 from verify.stress.kind import Floor, Row
 from verify.stress.largest import largest
 from verify.stress.modes.any_beam import States
@@ -253,12 +251,6 @@ def drift_error(periods: float) -> float:
     return abs(energy_drift(STRIP, 2, 1e-6, periods, step, 1e-9) / exact - 1.0)
 
 
-def _kicks() -> Iterator[Call]:
-    """Accelerations, for the modes, and steps in them."""
-    yield from warm.rigid()
-    yield from warm.modal()
-
-
 ROWS: tuple[Row, ...] = (
     Floor(
         id="shapes-of-all-supports",
@@ -322,7 +314,7 @@ ROWS: tuple[Row, ...] = (
         at=(3, 8),
         promise=1e-7,
         error=kicked_error,
-        kernels=_kicks,
+        kernels=warm.modal,
     ),
     Floor(
         id="energy-that-rk4-loses",

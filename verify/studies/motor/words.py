@@ -173,7 +173,8 @@ def _fields_agree(fields: "Sequence[FieldFound]") -> Iterator[str]:
 
 def _pressed_more(one: "FieldFound", slider: "Slider") -> str:
     """By how much more feet press in the run than at rest, as those between two beams do, whose crests press them."""
-    ratio = one.stall.normal_force / slider.normal_force if slider.normal_force > 0.0 else 0.0
+    known = slider.normal_force > 0.0 and one.stall.settled("normal force")
+    ratio = one.stall.normal_force / slider.normal_force if known else 0.0
     return f"; in the run feet press {ratio:.3g} times as much, and bend it the more" if ratio > 1.0 + MORE else ""
 
 
