@@ -66,6 +66,16 @@ def rounded(value: float, within: float) -> str:
     return f"{value:.0f}" if places == 0 else repr(round(value, places))
 
 
+def share_of_band(share: float | None) -> str:
+    """A share of a band in per cent, told as its edge only where it is there: 100.01 % is 'over 100 %'."""
+    if share is None:
+        return "–"
+    text = number(100.0 * share, 3)
+    if share != 1.0 and float(text) == 100.0:
+        return f"{'over' if share > 1.0 else 'under'} 100 %"
+    return f"{text} %"
+
+
 BEYOND = 3
 """Digits beyond the first of a band: as many as its share is told with."""
 

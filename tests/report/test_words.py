@@ -8,6 +8,7 @@ import pytest
 from sources import nodes_of
 
 import verify
+from verify.words import share_of_band
 
 FIGURE = re.compile(
     r"(?<![\w.^/])[-+]?\d+(?:\.\d+)?\s?(?:%|Hz|kHz|cm/s|mm/s|m/s|µm|nm|mm|ms|mN|N|times)(?!\w)|(?<![\w.^/])\d+\.\d+(?![\w.])"
@@ -71,3 +72,21 @@ def test_no_sentence_of_the_report_holds_a_figure_that_a_run_did_not_give():
 def test_a_figure_written_into_a_sentence_is_seen(sentence):
     assert FIGURE.findall(sentence)
     assert not FIGURE.findall("of order 6, (kL)^2, Eq. (3), [L/4, 3L/4], 2EI/l, N = 49, 10⁻¹²")
+
+
+@pytest.mark.parametrize(
+    ("share", "told"),
+    [
+        (None, "–"),
+        (0.0, "0 %"),
+        (0.3147, "31.5 %"),
+        (0.9994, "99.9 %"),
+        (0.9996, "under 100 %"),
+        (1.0, "100 %"),
+        (1.0004, "over 100 %"),
+        (1.006, "101 %"),
+        (float("inf"), "infinity %"),
+    ],
+)
+def test_a_share_of_a_band_is_told_as_its_edge_only_where_it_is_there(share, told):
+    assert share_of_band(share) == told

@@ -9,7 +9,7 @@ from verify.errors import InputError
 from verify.report.document import Document
 from verify.report.kept import Kept
 from verify.run.gates import GateResult
-from verify.words import VERDICTS, figure, number, seconds_in_words
+from verify.words import VERDICTS, figure, seconds_in_words, share_of_band
 
 WORDS = {True: "pass", False: "FAIL", None: "n/a"}
 """Verdicts of gates."""
@@ -291,7 +291,7 @@ def _apart(old: Any, new: Any) -> str:
 
 
 def _share(gate: GateResult | None) -> str:
-    return ABSENT if gate is None or gate.share is None else f"{number(100.0 * gate.share, 3)} %"
+    return ABSENT if gate is None else share_of_band(gate.share)
 
 
 def _two(before: str, after: str) -> str:

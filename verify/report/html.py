@@ -13,7 +13,7 @@ from verify.report.document import Document, PageTable, Section, document_of
 from verify.report.inks import dark_inks
 from verify.report.plain import finite
 from verify.run.gates import GateResult, reference_in_words, shown_expectation
-from verify.words import figure, seconds_in_words
+from verify.words import figure, seconds_in_words, share_of_band
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -74,7 +74,7 @@ class GateGroup(msgspec.Struct, frozen=True, kw_only=True):
         judged = [gate for gate in self.gates if gate.applicable]
         held = sum(gate.passed is True for gate in judged)
         shares = [gate.share for gate in judged if gate.share is not None]
-        worst = f", at most {100 * max(shares):.3g} % of a band used" if shares else ""
+        worst = f", at most {share_of_band(max(shares))} of a band used" if shares else ""
         aside = len(self.gates) - len(judged)
         return f"{held} of {len(judged)} held{worst}" + (f", {aside} not applicable" if aside else "")
 
@@ -119,6 +119,7 @@ def templates() -> "Environment":
         "figure": figure,
         "duration": seconds_in_words,
         "hyphens": _hyphens,
+        "of_band": share_of_band,
         "band": shown_expectation,
         "reference": reference_in_words,
     }

@@ -16,7 +16,7 @@ from verify.options import REFERENCES, Reference
 from verify.quantities.catalogue import QUANTITIES
 from verify.run.asks import Ask, asks_of
 from verify.run.gates import NOT_SAID, Band, GateResult, given_band, reference_in_words, shown_expectation
-from verify.words import figure
+from verify.words import figure, share_of_band
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Gate, Scene
@@ -258,7 +258,7 @@ def _models(one: Figure) -> str:
 def _measured(one: Figure) -> str:
     if one.passed is None:
         return "–"
-    share = "" if one.share is None else f", {100 * one.share:.3g} % of its band"
+    share = "" if one.share is None else f", {share_of_band(one.share)} of its band"
     failed = "" if one.passed else f", **failed**: {_escaped(one.reason)}"
     return f"{_with_unit(figure(one.measured), one.unit)}{share}{failed}"
 

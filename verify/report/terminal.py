@@ -17,7 +17,7 @@ from verify.errors import InputError, printable
 from verify.run.gates import shown_expectation
 from verify.run.remarks import remarks_on
 from verify.run.scale import scale_in_words
-from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
+from verify.words import cell, figure, in_a_row, percent, seconds_in_words, share_of_band, told_once, work_in_words
 
 if TYPE_CHECKING:
     from verify.identify.shapes_told import ShapesJudged
@@ -259,9 +259,9 @@ def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
     table.add_column("of band", justify="right", no_wrap=True)
     for gate in gates:
         mark = Text("pass", style="green") if gate.passed else Text("FAIL", style="bold red")
-        share = "–" if gate.share is None else f"{100 * gate.share:.3g} %"
         unit = "" if gate.unit == "1" else gate.unit
-        table.add_row(mark, Hyphenated(gate.id), figure(gate.measured), shown_expectation(gate.band), unit, share)
+        share, expected = share_of_band(gate.share), shown_expectation(gate.band)
+        table.add_row(mark, Hyphenated(gate.id), figure(gate.measured), expected, unit, share)
     return table
 
 
