@@ -76,27 +76,12 @@ def accelerated(system: ChainSystem) -> Callable[[float, Array | float, Array | 
     from verify.chain import kernels
 
     n, flat, work = system.n_links, flatten(system, ledger=False), workspace(system)
-    row = np.zeros((1, 2 * n + 2))
-    run = records.March(
-        a=np.zeros((1, 1)),
-        c=np.zeros(1),
-        weights=np.zeros(0),
-        order=1.0,
-        y=np.zeros(2 * n + 2),
-        new=np.zeros(2 * n + 2),
-        k=row,
-        clock=np.zeros(3),
-        counts=np.zeros(5, dtype=np.int64),
-        samples=np.zeros(0),
-        kept=np.zeros((0, 2 * n + 2)),
-        scale=np.zeros(6),
-        pivots=np.zeros(0, dtype=np.int64),
-    )
+    run = records.idle(n)
 
     def answer(t: float, angles: Array | float, rates: Array | float) -> Array:
         run.clock[0], run.y[:n], run.y[n : 2 * n] = t, angles, rates
         kernels.march(flat, run, 0, work)
-        return row[0, n : 2 * n].copy()
+        return run.k[0, n : 2 * n].copy()
 
     return answer
 

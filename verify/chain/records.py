@@ -74,6 +74,26 @@ class March(NamedTuple):
     """(n_held,), dependent angles."""
 
 
+def idle(n_links: int) -> March:
+    """A run of no step and no sample, whose k[0] holds the rates at y."""
+    size = 2 * n_links + 2
+    return March(
+        a=np.zeros((1, 1)),
+        c=np.zeros(1),
+        weights=np.zeros(0),
+        order=1.0,
+        y=np.zeros(size),
+        new=np.zeros(size),
+        k=np.zeros((1, size)),
+        clock=np.zeros(3),
+        counts=np.zeros(5, dtype=np.int64),
+        samples=np.zeros(0),
+        kept=np.zeros((0, size)),
+        scale=np.zeros(6),
+        pivots=np.zeros(0, dtype=np.int64),
+    )
+
+
 class Modal(NamedTuple):
     """A splitting in modal coordinates as the kernels see it, and its scratch."""
 

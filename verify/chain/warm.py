@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from verify.chain.records import FREE, Elastic, Flat, March, Modal
+from verify.chain.records import FREE, Elastic, Flat, Modal, idle
 from verify.models.compiling import Call
 
 
@@ -19,7 +19,7 @@ def rigid() -> Iterator[Call]:
     """Rigid links in steps, and how they are accelerated as they stand."""
     from verify.chain import kernels
 
-    yield kernels.march, (_flat(), _march(), 1, np.zeros((1, 1)))
+    yield kernels.march, (_flat(), idle(1), 1, np.zeros((1, 1)))
 
 
 def modal() -> Iterator[Call]:
@@ -52,25 +52,6 @@ def _flat() -> Flat:
         tip_spring=0.0,
         axial=True,
         ledger=False,
-    )
-
-
-def _march() -> March:
-    flat, one, few = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64)
-    return March(
-        a=flat,
-        c=one,
-        weights=one,
-        order=5.0,
-        y=one,
-        new=one,
-        k=flat,
-        clock=one,
-        counts=few,
-        samples=one,
-        kept=flat,
-        scale=one,
-        pivots=few,
     )
 
 
