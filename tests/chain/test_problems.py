@@ -230,13 +230,14 @@ def test_a_figure_between_hinges_refuses_other_ends(name, supports):
         ({"modal_damping": 0.02}, "motion.modal_damping = 0.02"),
         ({"soft_start_periods": 3.0}, "motion.soft_start_periods = 3.0"),
         ({"start": "steady"}, "motion.start = 'steady'"),
+        ({"duration": 3e-3}, "motion.soft_start_periods = 2.0 unless given"),
     ],
 )
 @pytest.mark.parametrize("name", ["transient_deflection", "axial_departure"])
 def test_a_scenes_motion_that_a_chain_does_not_make_is_refused(name, motion, field):
     with pytest.raises(InputError, match=rf"{field}: chain.{name} is from rest, undamped"):
         figure(name, replace(CHAIN, motion=MotionAsk(**motion)), segments=9, **IN_TIME[name])
-    still = replace(CHAIN, motion=MotionAsk(modal_damping=0.0, duration=3e-3))
+    still = replace(CHAIN, motion=MotionAsk(modal_damping=0.0, soft_start_periods=0.0, duration=3e-3))
     assert figure(name, still, segments=9, **IN_TIME[name]) == figure(name, segments=9, **IN_TIME[name])
 
 

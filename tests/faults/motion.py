@@ -19,7 +19,6 @@ from verify.motion import (
     rigid_surface,
     simulate,
 )
-from verify.motion import figures as slider_figures
 from verify.motion import kernels as contact_kernels
 from verify.quantities import simulated as motions
 from verify.segments import in_time as segment_motion
@@ -292,19 +291,24 @@ def friction_of_half_the_slope(patch):
     patch.setattr(rigid_surface, "_law", lambda coulomb, b, static, slope: true(coulomb, b, static, 0.5 * slope))
 
 
-def means_of_the_size_alone(patch):
-    true = slider_figures.mean
-    patch.setattr(slider_figures, "mean", lambda times, values: true(times, abs(values)))
+def means_without_their_sign(patch):
+    true = carried.of_all_steps
+    patch.setattr(carried, "of_all_steps", lambda *given: tuple(map(abs, true(*given))))
 
 
 def phases_left_as_they_are_where_they_were_to_turn(patch):
     patch.setattr(motions, "turned", tuple)
 
 
-def ends_for_the_largest(patch):
-    """The run is looked at where it ends, not at every step."""
-    true = motions.with_slider
-    patch.setattr(motions, "with_slider", lambda *given, sampled, **more: true(*given, sampled=False, **more))
+def samples_for_all_steps(patch):
+    """A run's two samples, its start and its end, stand for what all its steps have added up."""
+    true = carried.Motion
+
+    def told(**given):
+        ends = {"mean_friction": given["friction"].mean(), "mean_surface_speed": given["surface_speed"].mean()}
+        return true(**given | ends | {"largest_friction": abs(given["friction"]).max()})
+
+    patch.setattr(carried, "Motion", told)
 
 
 FAULTS = {
@@ -314,9 +318,9 @@ FAULTS = {
         slider_on_a_chain_that_feels_the_mid_line: {"chain-slider", "chain-slider-in-the-limit"},
         slider_on_a_chain_under_another_gravity: {"chain-slider-in-the-limit", "chain-slider-saturates"},
         friction_booked_at_a_thousandth_less: {"chain-slider-books", "chain-slider-books-following"},
-        means_of_the_size_alone: {"slider-mean-friction", "slider-mean-surface-speed"},
+        means_without_their_sign: {"slider-mean-friction", "slider-mean-surface-speed"},
         phases_left_as_they_are_where_they_were_to_turn: {"slider-turned-round"},
-        ends_for_the_largest: {"slider-largest-friction", "slider-mean-friction", "slider-mean-surface-speed"},
+        samples_for_all_steps: {"slider-largest-friction", "slider-mean-friction", "slider-mean-surface-speed"},
         surface_lever_forgotten: {
             "terminal-speed-steep",
             "slider-elements",

@@ -252,3 +252,12 @@ def test_of_two_folders_of_one_name_the_newest_run_is_compared(kept, tmp_path, c
     kept(folder="before")
     assert told(capsys, "before", "second")[0] == 1
     assert told(capsys, "before", newest.parent)[0] == 1
+
+
+def test_gates_that_no_run_judged_are_not_called_the_same(kept, capsys):
+    """Of four gates on another beam one is judged: it alone is the same to the last digit."""
+    before, after = (kept("beam.supports=['clamped', 'free']") for _ in range(2))
+    status, out = told(capsys, before, after)
+    assert status == 0
+    assert "0 gates the same to the last digit" in " ".join(out.split())
+    assert "judged in neither" in " ".join(out.split())

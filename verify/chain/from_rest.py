@@ -4,9 +4,10 @@ from typing import TYPE_CHECKING
 
 from verify.beam import PointForce
 from verify.errors import InputError
+from verify.motion.starting import soft_start
 
 if TYPE_CHECKING:
-    from verify.scenes.scene import Scene
+    from verify.scenes.scene import MotionAsk, Scene
 
 
 def point_forces(scene: "Scene", who: str) -> tuple[PointForce, ...]:
@@ -19,9 +20,21 @@ def point_forces(scene: "Scene", who: str) -> tuple[PointForce, ...]:
         raise InputError(f"{who}: the scene has no drive by forces; give it a [drive] of kind force")
     scene.refuse_devices(who)
     if scene.motion is not None:
-        for name, rest in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
-            if (value := getattr(scene.motion, name)) not in (rest, None):
-                raise InputError(
-                    f"motion.{name} = {value!r}: {who} is from rest, undamped, under forces of full size; give {rest!r}"
-                )
+        _check_at_once(scene.motion, who)
     return scene.forces
+
+
+def _check_at_once(motion: "MotionAsk", who: str) -> None:
+    """Raise InputError for another motion; forces that nobody says to act at once grow, in a motion that is given."""
+    softly = soft_start("rest", motion.soft_start_periods)
+    for name, value, rest in (
+        ("start", motion.start, "rest"),
+        ("modal_damping", motion.modal_damping or 0.0, 0.0),
+        ("soft_start_periods", softly, 0.0),
+    ):
+        if value != rest:
+            unless = " unless given" if getattr(motion, name) is None else ""
+            raise InputError(
+                f"motion.{name} = {value!r}{unless}: {who} is from rest, undamped, under forces of full size; "
+                f"give {rest!r}"
+            )

@@ -31,10 +31,10 @@ from verify.models.arrays import Array, ComplexArray
 from verify.models.response import forced_response
 from verify.models.underfoot import standing_at
 from verify.motion.contact import Coupling, coupling_of, law_of
-from verify.motion.records import Given, Rider
+from verify.motion.records import KEPT_FRICTION, Given, Rider
 from verify.motion.request import check_seen
 from verify.motion.result import END, Ride, Statistics
-from verify.motion.stepping import contact_space, fresh_motion
+from verify.motion.stepping import contact_space, fresh_motion, of_all_steps
 from verify.options import Links
 from verify.segments.assembly import chain_pencil
 from verify.segments.links import Chain, free_joints, with_ends
@@ -104,6 +104,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
     statistics = Statistics(
         steps=done, evaluations=2 * done + 1, step_s=dt, set_up_s=ready - began, wall_s=wall, stopped=stopped
     )
+    mean_friction, hardest, mean_surface = of_all_steps(rider.motion, slider.mass, done * dt)
     return ChainRide(
         chain=chain,
         times=times[ends],
@@ -111,8 +112,11 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
         start=start,
         travelled=kept[:, 0],
         speed=kept[:, 1],
-        friction=slider.mass * kept[:, 2],
+        friction=slider.mass * kept[:, KEPT_FRICTION],
         surface_speed=kept[:, 3],
+        mean_friction=mean_friction,
+        largest_friction=hardest,
+        mean_surface_speed=mean_surface,
         coupling=coupling,
         ledger=_ledger(slider, under.surface_distance, times[ends], kept, local[ends], given.edges),
         notes=(coupling.note if coupling else "coupling: one-way; no harmonic load says what the chain would feel",),

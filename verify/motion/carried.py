@@ -42,7 +42,7 @@ from verify.motion.request import MOST_STEPS, Request
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.sound_books import check_books, excess_of
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
-from verify.motion.stepping import Sliding, Waited, fresh_motion, run_stages
+from verify.motion.stepping import Sliding, Waited, fresh_motion, of_all_steps, run_stages
 from verify.motion.surface import Stage
 from verify.motion.turning import couple, modal_turning
 from verify.motion.windows import on_beam
@@ -216,7 +216,11 @@ def _told(
 ) -> Motion:
     """What came of a run that ended with the modes at (q, rates); `energy` is the beam's at its start."""
     request, n = laid.request, sliding.n_kept
-    columns = np.concatenate([sliding.first, sliding.kept.kept[:n]]).T
+    columns, end = np.concatenate([sliding.first, sliding.kept.kept[:n]]).T, _end(laid, sliding, q, rates)
+    friction = laid.slider.mass * columns[KEPT_FRICTION]
+    mean_friction, hardest, mean_surface = of_all_steps(sliding.motion, laid.slider.mass, end.time - request.origin)
+    if _put_at_rest(request, laid.slider):
+        friction[0] = 0.0
     return Motion(
         model=request.model,
         count=request.count,
@@ -227,8 +231,11 @@ def _told(
         start=sliding.start,
         travelled=columns[KEPT_X],
         speed=columns[KEPT_V],
-        friction=laid.slider.mass * columns[KEPT_FRICTION],
+        friction=friction,
         surface_speed=columns[KEPT_SURFACE],
+        mean_friction=mean_friction,
+        largest_friction=hardest,
+        mean_surface_speed=mean_surface,
         normal_force=columns[KEPT_NORMAL],
         events=sliding.events,
         coupling=laid.coupling,
@@ -236,8 +243,13 @@ def _told(
         ledger=_ledger(laid.basis, sliding, energy, q, rates) if sliding.accounts else None,
         notes=laid.notes,
         statistics=statistics,
-        end=_end(request, laid.stages, sliding, q, rates, laid.coupling),
+        end=end,
     )
+
+
+def _put_at_rest(request: Request, slider: Slider) -> bool:
+    """Whether slider and beam stand still at the start: no friction is needed, whatever the sign of rounding."""
+    return request.start == "rest" and request.before is None and slider.speed == 0.0
 
 
 def times_of(request: Request, stages: list[Stage]) -> Array:
@@ -303,10 +315,9 @@ def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coup
     return sliding
 
 
-def _end(
-    request: Request, stages: list[Stage], sliding: Sliding, q: Array, rates: Array, coupling: Coupling
-) -> EndState:
-    height, climb = sliding.held if coupling.pushes_back else (None, 0.0)
+def _end(laid: Laid, sliding: Sliding, q: Array, rates: Array) -> EndState:
+    request, stages = laid.request, laid.stages
+    height, climb = sliding.held if laid.coupling.pushes_back else (None, 0.0)
     x = sliding.start + float(sliding.motion[X])
     return EndState(
         beam=request.beam,

@@ -10,7 +10,6 @@ from verify.units import time_in_words
 from verify.words import newtons
 
 if TYPE_CHECKING:
-    from verify.models.arrays import Array
     from verify.motion.contact import Coupling
     from verify.motion.result import Motion, Ride
 
@@ -25,8 +24,6 @@ class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
     summary: str
     of: "Callable[[Ride, Ride | None], float]"
     """Of the run, and of the one with all phases turned round where `turned` asks for it."""
-    sampled: bool = True
-    """Whether it takes the run at every step, not at its end alone."""
     turned: bool = False
 
 
@@ -47,12 +44,6 @@ def left_in_words(found: "Motion", duration: float) -> str:
     return f"on {where} the slider {found.statistics.stopped} {when}"
 
 
-def mean(times: "Array", values: "Array") -> float:
-    """Over time, by the trapezium rule."""
-    steps = times[1:] - times[:-1]
-    return float((0.5 * (values[1:] + values[:-1]) * steps).sum() / steps.sum())
-
-
 def _reversal(run: "Ride", turned: "Ride | None") -> float:
     assert turned is not None
     way = run.displacement
@@ -64,30 +55,26 @@ RUN_FIGURES = {
         unit="m",
         summary="Of the scene's slider along +x after a time.",
         of=lambda run, _: run.displacement,
-        sampled=False,
     ),
-    "slider.mean_speed": RunFigure(
-        unit="m/s", summary="Displacement over time.", of=lambda run, _: run.mean_speed, sampled=False
-    ),
+    "slider.mean_speed": RunFigure(unit="m/s", summary="Displacement over time.", of=lambda run, _: run.mean_speed),
     "slider.largest_friction": RunFigure(
-        unit="N", summary="Largest friction force on the slider.", of=lambda run, _: float(abs(run.friction).max())
+        unit="N", summary="Largest friction force on the slider.", of=lambda run, _: run.largest_friction
     ),
     "slider.mean_friction": RunFigure(
         unit="N",
         summary="Friction on the slider along +x, mean over time.",
-        of=lambda run, _: mean(run.times, run.friction),
+        of=lambda run, _: run.mean_friction,
     ),
     "slider.mean_surface_speed": RunFigure(
         unit="m/s",
         summary="Tangential velocity of the surface under the slider, mean over time.",
-        of=lambda run, _: mean(run.times, run.surface_speed),
+        of=lambda run, _: run.mean_surface_speed,
     ),
     "slider.reversal": RunFigure(
         unit="1",
         summary="Displacement with all phases turned round over the displacement; below 0 it reverses.",
         of=_reversal,
         turned=True,
-        sampled=False,
     ),
 }
 """By the name of the quantity."""

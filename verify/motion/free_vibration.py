@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from math import sqrt
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 import msgspec
 import numpy as np
@@ -83,6 +83,11 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     """From where `simulate` can go on (`continue_from`)."""
     notes: tuple[str, ...]
     """Where the modes come from, and what damps them."""
+
+    def faster_half(self, of: Literal["kinetic", "elastic"]) -> float:
+        """Which part of an energy, at the end, the faster half of the modes have; little of one that is the shape's."""
+        kinetic = of == "kinetic"
+        return _of_the_faster(self.end.rates if kinetic else 2.0 * np.pi * self.frequencies_hz * self.end.q)
 
 
 class _Known(msgspec.Struct, frozen=True, eq=False):
@@ -371,14 +376,20 @@ def _cornered(energies: Array) -> tuple[str, ...]:
 
     A corner, as where straight lines of a table meet, takes endlessly much; so does a slope where the beam is clamped.
     """
-    total, slower = float(energies.sum()), len(energies) // 2
-    share = float(energies[slower:].sum()) / total if total > 0.0 else 0.0
+    share = _of_the_faster(np.sqrt(energies))
     if share <= CORNERED:
         return ()
     return (
         f"energies: {100.0 * share:.2g} % of the elastic energy at the start is in the faster half of the modes, as of "
         "a shape with corners, and grows with their number: give a smooth function for an energy that is the shape's",
     )
+
+
+def _of_the_faster(sizes: Array) -> float:
+    """The part of a sum of squares, by rising frequency, that its later half has."""
+    squares = sizes**2
+    total, slower = float(squares.sum()), len(squares) // 2
+    return float(squares[slower:].sum()) / total if total > 0.0 else 0.0
 
 
 def _kept(basis: TimeBasis) -> str:

@@ -130,12 +130,10 @@ def _put_on(piece: int, edges: Array, motion: Array, law: Law, space: Space) -> 
 
 
 @part(forceinline=True)
-def _starts(v: float, stuck: bool, dt: float, two_way: bool | None, law: Law, seen: Array) -> float:
+def _starts(v: float, grip: float, dt: float, two_way: bool | None, seen: Array) -> float:
     """The slider's acceleration at the start of a step, by which its place in the step is foreseen."""
-    r = v - seen[0, SURFACE]
-    grip = 0.0 if stuck else friction(r, law.static, law)
     if two_way is None:
-        grip = until_caught(grip, r, dt)
+        grip = until_caught(grip, v - seen[0, SURFACE], dt)
     return float(seen[0, PULL] + grip)
 
 
@@ -158,7 +156,7 @@ def _step(
     """
     motion, law, seen = rider.motion, rider.law, space.seen
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
-    here, pressed, lifted, x1, v1, rate, along = Here(piece, 0.0, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0
+    here, pressed, lifted, x1, v1, grip, rate, along = Here(piece, 0.0, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0, 0.0
     for row in range(1 if looking else 3):
         t = 0.5 * row * dt
         if row > 0:
@@ -166,7 +164,8 @@ def _step(
             x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
         _see(row, (number + 0.5 * row) * dt, x1, v1, piece, fresh or row > 0, surface, law, books, space)
         if row == 0:
-            rate, along = _starts(v, stuck, dt, two_way, law, seen), v + seen[0, DRIFT]
+            grip = 0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law)
+            rate, along = _starts(v, grip, dt, two_way, seen), v + seen[0, DRIFT]
         if two_way is not None and row == 0:
             _remember(space.local)
         if two_way is not None and row == 1:
@@ -182,7 +181,7 @@ def _step(
         feel(dt, motion, law, seen)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
         moved = way(v, rate, dt, law.slope, law, seen, space.slip)
-    advance(moved, dt, motion, seen, space.slip)
+    advance(moved, grip, dt, law.slope, law, motion, seen, space.slip)
     if books.open:
         turned, spared = 0.0, 0.0
         if law.following:
@@ -274,5 +273,6 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
             seen[row, SURFACE] += between(given.along[half], edges, NOUGHT, there)
         give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
-        advance(way(v, rate, dt, law.slope, law, seen, space.slip), dt, motion, seen, space.slip)
+        moved = way(v, rate, dt, law.slope, law, seen, space.slip)
+        advance(moved, grip, dt, law.slope, law, motion, seen, space.slip)
     return n_steps

@@ -12,9 +12,10 @@ import numpy as np
 
 from verify.models.arrays import Array, Indices
 
-X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL = range(7)
+X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL, PUSHED, SWEPT, HARDEST = range(10)
 """Entries of `Rider.motion`: what the slider carries from step to step. Height and climb are those of a slider held on
-the surface, its normal reaction is the mean over the step, the fall is the largest downward acceleration so far."""
+the surface, its normal reaction is the mean over the step, the fall is the largest downward acceleration so far; so
+far, too, what friction has added to its speed, the way of the surface under it, and the largest friction per mass."""
 SURFACE, PULL, DRIFT, POWER, LOSS, LEVEL = range(6)
 """Columns of `Space.seen`."""
 ON_BEAM, ON_SLIDER, DRIVEN, DAMPED, RUBBED, LIFTED, TURNED = range(7)
@@ -94,7 +95,7 @@ class Rider(NamedTuple):
     """The slider."""
 
     motion: Array
-    """(7,), `X` and so on; advanced in place."""
+    """(10,), `X` and so on; advanced in place."""
     law: Law
     two_way: bool | None
     """True where the beam feels it; None: it does not, and nothing of that is compiled."""

@@ -82,7 +82,7 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
 
     @property
     def motion(self) -> Array:
-        """(7,), `records.X` and so on."""
+        """(10,), `records.X` and so on."""
         return self.rider.motion
 
     @property
@@ -118,9 +118,19 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
 
 def fresh_motion(speed: float = 0.0, stuck: bool = False) -> Array:
     """What a slider carries from step to step at the start, `Rider.motion`."""
-    motion = np.zeros(7)
+    motion = np.zeros(records.HARDEST + 1)
     motion[[records.V, records.STUCK]] = speed, stuck
     return motion
+
+
+def of_all_steps(motion: Array, mass: float, seconds: float) -> tuple[float, float, float]:
+    """(mean friction, newton, the largest of all steps, mean speed of the surface, m/s) of what a slider carries.
+
+    NaN of a run without a step.
+    """
+    pushed, swept, hardest = (float(motion[of]) for of in (records.PUSHED, records.SWEPT, records.HARDEST))
+    mean = 1.0 / seconds if seconds > 0.0 else float("nan")
+    return mass * pushed * mean, mass * hardest, swept * mean
 
 
 def contact_space(rows: int = 0, degree: int = 3) -> Space:

@@ -15,11 +15,15 @@ from verify.motion.records import (
     FIRST_EVENT,
     GIVEN_END,
     GIVEN_MIDDLE,
+    HARDEST,
+    N_EVENTS,
     PULL,
+    PUSHED,
     RELATIVE,
     STICKING,
     STUCK,
     SURFACE,
+    SWEPT,
     Law,
     V,
     X,
@@ -164,9 +168,27 @@ def until_caught(grip: float, r: float, dt: float) -> float:
     return float(-r / dt if abs(grip) * dt > abs(r) else grip)
 
 
+@part(forceinline=True)
+def _hardest(grip: float, dt: float, slope: float | None, law: Law, took: Array) -> float:
+    """The largest friction per mass of a step: where it slips, the law's at its start; what grips hard, its mean."""
+    if slope is None:
+        return abs(took[CHANGE]) / dt if took[STICKING] > 0.0 and took[N_EVENTS] == 0.0 else law.kinetic
+    return abs(grip) if slope * law.kinetic * dt < STIFF else abs(took[CHANGE]) / dt
+
+
 @part()
-def advance(moved: float, dt: float, motion: Array, seen: Array, took: Array) -> None:
-    """Move the slider to the end of a step, in which its own speed made the distance `moved`."""
+def advance(
+    moved: float, grip: float, dt: float, slope: float | None, law: Law, motion: Array, seen: Array, took: Array
+) -> None:
+    """Move the slider to the end of a step, in which its own speed made the distance `moved`.
+
+    `grip` is friction per mass at its start by the law, `slope` the law's, by itself so that numba drops the other.
+    """
+    before = motion[V] + took[GIVEN_END]
     motion[V] = _ended(motion[V], seen, took)
+    motion[PUSHED] += motion[V] - before
+    motion[SWEPT] += on_surface(dt, seen)
+    hard = _hardest(grip, dt, slope, law, took)
+    motion[HARDEST] = hard if hard > motion[HARDEST] else motion[HARDEST]
     motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
     motion[STUCK] = took[STICKING]

@@ -255,7 +255,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
                 lambda run: run.displacement,
             ),
             ("mean_speed", "m/s", "Displacement over time.", lambda run: run.mean_speed),
-            ("largest_friction", "N", "Largest friction force on it.", lambda run: float(abs(run.friction).max())),
+            ("largest_friction", "N", "Largest friction force on it.", lambda run: run.largest_friction),
             ("imbalance", "1", "What the slider's energy ledger misses, over what friction rubs away.", _imbalance),
         )
     ),

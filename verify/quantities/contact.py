@@ -14,11 +14,13 @@ from verify.quantities.cases import drive_frequency
 from verify.quantities.kind import Arguments, AtFrequency, Quantity, Size
 
 if TYPE_CHECKING:
+    from verify.beam import PointForce
+    from verify.device import Device as OnBeam
     from verify.scenes.scene import Scene
     from verify.waves.absorber import Ending
 
 
-_WHOLE = "of the whole beam, driven by its other forces; half-infinite unless given"
+_WHOLE = "of the whole beam, with its other forces and devices; half-infinite unless given"
 
 
 class Layer(Arguments, frozen=True, kw_only=True):
@@ -178,26 +180,46 @@ def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
     from verify.waves.driven import measured_alone
 
     assert a.model is not None
-    at, model = scene.beam.length - a.position, MODELS.named(a.model)
-    forces = [force for force in scene.forces if abs(force.position - at) > 1e-9 * scene.beam.length]
-    if scene.drive is not None and scene.drive.kind != "force":
-        raise InputError(f"drive.kind = {scene.drive.kind!r}: beside a device forces drive the beam, give 'force'")
-    if not forces:
-        raise InputError("drive.force: no force is left beside the device to drive the beam, add one")
-    hertz = drive_frequency(a, scene)
+    model, hertz, (forces, others) = MODELS.named(a.model), drive_frequency(a, scene), _beside(a, scene)
+    if impedance:
+        own = of_impedance(scene.beam.length - a.position, impedance, 2.0 * pi * hertz, turning=a.turning)
+        others = [*others, own]
     field = field_with_devices(
         lambda beam, given, hertz: model.solve_harmonic(beam, given, hertz, a.count),
         scene.beam,
         forces,
         hertz,
-        [of_impedance(at, impedance, 2.0 * pi * hertz, turning=a.turning)] if impedance else [],
+        others,
     )
     return measured_alone(field, None, "reflection")
+
+
+def _beside(a: Device, scene: "Scene") -> "tuple[list[PointForce], list[OnBeam]]":
+    """Forces and devices of the scene beside a device, which stands in the place of what acts where it does.
+
+    Raises InputError where no force is left, or one of them stands in the middle half.
+    """
+    from verify.waves.measures import middle_half
+    from verify.waves.window import check_window
+
+    beam, at = scene.beam, scene.beam.length - a.position
+    if scene.drive is not None and scene.drive.kind != "force":
+        raise InputError(f"drive.kind = {scene.drive.kind!r}: beside a device forces drive the beam, give 'force'")
+    forces = [force for force in scene.forces if abs(force.position - at) > 1e-9 * beam.length]
+    others = [one for one in scene.devices if abs(one.position - at) > 1e-9 * beam.length]
+    if not forces:
+        raise InputError("drive.force: no force is left beside the device to drive the beam, add one")
+    places = [force.position for force in forces] + [one.position for one in others if one.across]
+    turning = [one.position for one in others if one.turning]
+    check_window(beam, places, drive_frequency(a, scene), middle_half(beam), turning)
+    return forces, others
 
 
 def _needs_device(a: Device, scene: "Scene") -> tuple[()]:
     """Raise InputError where no device can stand."""
     _ending(a, scene, turning=isinstance(a, Absorbing) and a.turning)
+    if isinstance(a, Absorbing) and a.model is not None:
+        _beside(a, scene)
     return ()
 
 

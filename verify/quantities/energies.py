@@ -154,7 +154,17 @@ def _deflection(a: ReleasedAt, scene: "Scene", bench: Workbench) -> float:
 
 
 def _energy(a: ReleasedEnergy, scene: "Scene", bench: Workbench) -> float:
-    return float(getattr(_let_go(a, scene, ()), a.of)[-1])
+    """Raises InputError for one that is the corner's, whose lines take ever more of it the more modes there are."""
+    from verify.motion.free_vibration import CORNERED
+
+    found = _let_go(a, scene, ())
+    if (share := found.faster_half(a.of)) > CORNERED:
+        raise InputError(
+            f"time = {a.time!r} s: {100.0 * share:.2g} % of the {a.of} energy is then in the faster half of the modes, "
+            "as where lines meet in a corner, and grows with their number; give modal_damping and a later time, or a "
+            "speed alone, whose energy has an end"
+        )
+    return float(getattr(found, a.of)[-1])
 
 
 ENERGY_QUANTITIES: tuple[Quantity[Any], ...] = (

@@ -72,10 +72,8 @@ def _slider(figure: RunFigure) -> Callable[[SliderInTime, "Scene", Workbench], f
     def evaluate(a: SliderInTime, scene: "Scene", bench: Workbench) -> float:
         from verify.quantities.simulated import with_slider
 
-        run = with_slider(a, scene, bench, sampled=figure.sampled)
-        return figure.of(
-            run, with_slider(a, scene, bench, sampled=figure.sampled, back=True) if figure.turned else None
-        )
+        run = with_slider(a, scene, bench)
+        return figure.of(run, with_slider(a, scene, bench, back=True) if figure.turned else None)
 
     return evaluate
 

@@ -1,6 +1,5 @@
 """Simulations that arguments and a scene describe, kept on the bench."""
 
-from math import ceil
 from typing import TYPE_CHECKING
 
 from msgspec.structs import asdict, replace
@@ -49,7 +48,6 @@ _OWN = {
     "slider_speed": "speed",
 }
 """Which of the slider's own fields an argument stands for."""
-MOST_SAMPLES = 1_000_000
 
 
 def slider_of(a: Arguments, scene: "Scene") -> Slider:
@@ -109,27 +107,24 @@ def with_slider(
     scene: "Scene",
     bench: "Workbench",
     *,
-    sampled: bool = False,
     back: bool = False,
     at: tuple[float, ...] = (),
     ledger: bool = False,
 ) -> Motion:
-    """The slider's run, solved once; `sampled` at every step, `back` with all phases turned round, `ledger` booked.
+    """The slider's run, solved once; `back` with all phases turned round, `ledger` booked.
 
     Raises InputError where it does not reach its end.
     """
     case, slider = motion_case(a, scene), slider_of(a, scene)
     case = replace(case, forces=turned(case.forces)) if back else case
     steps = steps_per_period(scene)
-    longest = a.step or 1.0 / (steps * case.frequency_hz)
-    samples = ceil(min(case.duration / longest, MOST_SAMPLES)) + 1 if sampled else 2
-    key = ("slider", case, slider, a.step, steps, samples, at, ledger)
+    key = ("slider", case, slider, a.step, steps, at, ledger)
     if key not in bench.motions:
         bench.motions[key] = case.run(
             slider=slider,
             step=a.step,
             steps_per_period=steps,
-            samples=samples,
+            samples=2,
             at=at,
             ledger=ledger,
             progress=bench.tell,

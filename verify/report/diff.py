@@ -85,7 +85,9 @@ class Difference(msgspec.Struct, frozen=True, kw_only=True):
     seconds: tuple[float, float]
     gates: tuple[GateChange, ...]
     same: int
-    """Gates of which nothing changed."""
+    """Judged gates of which nothing changed."""
+    aside: int
+    """Gates that neither run judged."""
     said: tuple[Change, ...]
     """What holds and did not or the other way, answers and facts; one that stands in another's place beside it."""
     versions: tuple[Change, ...]
@@ -106,8 +108,9 @@ class Difference(msgspec.Struct, frozen=True, kw_only=True):
             return f"{_counted(len(others), 'verdict')} changed, none from pass to FAIL"
         if self.gates:
             return f"the same verdicts; {len(self.gates)} of {self.same + len(self.gates)} gates are not what they were"
-        changed = self.said or self.versions or self.inputs
-        return f"{_counted(self.same, 'gate')} the same to the last digit" + (", not all else" if changed else "")
+        changed = ", not all else" if self.said or self.versions or self.inputs else ""
+        aside = f", {_counted(self.aside, 'gate')} judged in neither" if self.aside else ""
+        return f"{_counted(self.same, 'gate')} the same to the last digit{aside}{changed}"
 
 
 class Differences(msgspec.Struct, frozen=True, kw_only=True):
@@ -169,12 +172,15 @@ def differences(before: dict[str, Kept], after: dict[str, Kept], names: tuple[st
 def difference(name: str, before: Document, after: Document) -> Difference:
     """What changed between two documents."""
     gates = tuple(_gates(before.gates, after.gates))
+    changed = {gate.id for gate in gates}
+    alike = [gate for gate in after.gates if gate.id not in changed]
     return Difference(
         name=name,
         dates=(before.date, after.date),
         seconds=(before.seconds, after.seconds),
         gates=tuple(sorted(gates, key=lambda gate: (not gate.broken, gate.same_verdict))),
-        same=len({gate.id for gate in (*before.gates, *after.gates)}) - len(gates),
+        same=sum(gate.passed is not None for gate in alike),
+        aside=sum(gate.passed is None for gate in alike),
         said=(*_held(before, after), *_lines("answer", before.answers, after.answers), *_facts(before, after)),
         versions=tuple(_values(before.environment, after.environment)),
         inputs=(

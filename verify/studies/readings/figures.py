@@ -16,7 +16,7 @@ from verify.studies.conditions import condition_of
 from verify.studies.kind import Progress
 from verify.studies.readings.chain_rides import Chains
 from verify.studies.readings.request import NAMES, ReadingsAsk
-from verify.studies.slider.figures import every_step, figures_of, reversed_scene
+from verify.studies.slider.figures import figures_of, reversed_scene
 from verify.studies.slider.work_precision import run_once
 from verify.studies.told import Found, Table
 
@@ -313,7 +313,7 @@ def read_as(scene: "Scene", asked: ReadingsAsk, values: "dict[str, float | str |
 def reading(scene: "Scene", claims: Sequence[Claim], model: str, count: int | None) -> Reading:
     """One combination on one model, with every figure that claims may ask for. Raises InputError."""
     assert scene.slider is not None
-    run = run_once(scene, model, count, samples=every_step(scene))
+    run = run_once(scene, model, count, samples=2)
     back = run_once(reversed_scene(scene), model, count) if asks_for_turned(tuple(claims)) else None
     ends = {one.statistics.stopped for one in (run, back) if one is not None} - {"end"}
     figures = {} if ends else figures_of(run, back)

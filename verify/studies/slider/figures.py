@@ -114,7 +114,7 @@ def _run_as_plain(study: SliderFound, model: str) -> dict[str, Any]:
     return {
         "displacement": run.displacement,
         "mean_speed": run.mean_speed,
-        "largest_friction": float(abs(run.friction).max()),
+        "largest_friction": run.largest_friction,
         "condition": msgspec.to_builtins(study.conditions[model]),
         "figures": study.figures[model],
         "coupling": msgspec.to_builtins(run.coupling),
@@ -235,8 +235,7 @@ def _findings(
         *([Finding(what="end of that run, until which these are", found="; ".join(left))] if left else []),
         Finding(
             what="largest friction in that run",
-            found=f"{in_words(float(abs(chain.friction).max()), 'N', '.4g')} of {named} = "
-            f"{in_words(limit, 'N', '.4g')}",
+            found=f"{in_words(chain.largest_friction, 'N', '.4g')} of {named} = {in_words(limit, 'N', '.4g')}",
         ),
         Finding(
             what=f"mean speed over the last half of {drift_seconds(scene):.3g} s of steady wave ({how.kinematics}, "
