@@ -14,6 +14,7 @@ import click
 from verify import __version__
 from verify.ending import TERMINATED, end_tidily
 from verify.errors import InputError, one_line
+from verify.patience import own_limit
 
 BAD_INPUT, INTERRUPTED, NO_READER = 2, 130, 141
 NO_ROOM = (ENOSPC, EDQUOT, EFBIG, EIO, EBADF)
@@ -69,7 +70,8 @@ class Commands(click.Group):
         return found
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command that was asked for."""
+        """Run the command that was asked for. Raises InputError for a patience that is none, before that."""
+        own_limit()
         try:
             return super().invoke(ctx)
         except BrokenPipeError:

@@ -11,6 +11,7 @@ TERMINATED = 143
 AGAIN_S = 0.02
 """After how many seconds one that would be lost is heard again."""
 Answer = Callable[[int, FrameType | None], object]
+Lost = Callable[["sys.UnraisableHookArgs"], object]
 
 
 def end_tidily() -> None:
@@ -20,6 +21,22 @@ def end_tidily() -> None:
             signal.signal(number, put_off(_end))
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, put_off(signal.default_int_handler))
+    sys.unraisablehook = _asking_again(sys.unraisablehook)
+
+
+def _asking_again(told: Lost) -> Lost:
+    """What hears of exceptions lost where they come up, as in a destructor: a request to end is made again."""
+
+    def heard(lost: "sys.UnraisableHookArgs") -> None:
+        if isinstance(lost.exc_value, SystemExit) and lost.exc_value.code == TERMINATED:
+            signal.signal(signal.SIGTERM, put_off(_end))
+            _again(signal.SIGTERM)
+        elif isinstance(lost.exc_value, KeyboardInterrupt):
+            _again(signal.SIGINT)
+        else:
+            told(lost)
+
+    return heard
 
 
 def _end(number: int, frame: FrameType | None) -> NoReturn:
@@ -39,13 +56,18 @@ def put_off(answer: Answer) -> Answer:
         if not _is_lost(frame):
             answer(number, frame)
             return
-        from threading import Timer, get_ident
-
-        again = Timer(AGAIN_S, _ask, (get_ident(), number))
-        again.daemon = True
-        again.start()
+        _again(number)
 
     return heard
+
+
+def _again(number: int) -> None:
+    """Have this thread hear a signal once more, a little later."""
+    from threading import Timer, get_ident
+
+    again = Timer(AGAIN_S, _ask, (get_ident(), number))
+    again.daemon = True
+    again.start()
 
 
 def _ask(thread: int, number: int) -> None:

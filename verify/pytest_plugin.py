@@ -51,10 +51,12 @@ class SceneFile(pytest.File):
     def collect(self) -> Iterable["GateItem"]:
         """One item for each gate. A scene that cannot be read is a collection error with its sentence."""
         from verify.errors import InputError
+        from verify.patience import own_limit
         from verify.run.runner import workbench_for
         from verify.scenes.scene import load_scene
 
         try:
+            own_limit()
             scene = load_scene(self.path)
         except InputError as error:
             raise self.CollectError("\n".join(error.sentences)) from None

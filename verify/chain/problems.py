@@ -23,6 +23,9 @@ from verify.segments.links import link_inertia
 Progress = Callable[[float], None]
 """Hears how much of a motion is done, 0 to 1."""
 
+LINEAR = 1e-6
+"""Amplitude in radii of gyration up to which a chain is linear to a tenth of a billionth of a per cent."""
+
 
 def unheard(part: float) -> None:
     """Nobody listens."""
@@ -133,9 +136,14 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int, pro
 
     The radius is sqrt(I / A); the immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J.
     Appl. Mech. 17 (1950) 35): q'' + q + a^2/4 q^3 = 0, to which a chain of any number of equal links comes but for
-    the square of its slopes. Raises InputError for an amplitude that the links do not reach, and for a beam that is
-    not uniform, not between hinges, or damped.
+    the square of its slopes. Raises InputError for an amplitude that the links do not reach, or below `LINEAR`, and for
+    a beam that is not uniform, not between hinges, or damped.
     """
+    if not abs(amplitude) >= LINEAR:
+        raise InputError(
+            f"amplitude = {amplitude!r} radii of gyration: the chain's steps do not resolve it; give at least "
+            f"{LINEAR:g}, where the frequency is the linear one but for 3/32 of its square"
+        )
     _check_hinged(beam, n_segments)
     height = amplitude * _radius(beam)
     system = build_system(beam, n_segments, immovable=True)

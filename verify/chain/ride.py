@@ -33,7 +33,7 @@ from verify.models.underfoot import standing_at
 from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.records import KEPT_FRICTION, Given, Rider
 from verify.motion.request import check_seen
-from verify.motion.result import END, Ride, Statistics
+from verify.motion.result import END, Slid, Statistics
 from verify.motion.stepping import contact_space, fresh_motion, of_all_steps
 from verify.options import Links
 from verify.segments.assembly import chain_pencil
@@ -62,7 +62,7 @@ class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):
     that the steps have made; order 4 where friction is smooth, 1 where it jumps, or sticks and is the step's mean."""
 
 
-class ChainRide(Ride, frozen=True, eq=False, kw_only=True):
+class ChainRide(Slid, frozen=True, eq=False, kw_only=True):
     """What a slider did on a chain."""
 
     chain: ChainMotion | ElasticMotion
@@ -231,8 +231,9 @@ def ride_from_rest(
     check_known(links)
     check_number("step", step, "seconds", above=0)
     check_seen(step, frequency_hz)
-    system, times = _driven(beam, forces, frequency_hz, n_segments), half_steps(duration, step)
-    check_kept(len(times), n_segments, f"time = {written(duration)} s in steps of {step:.3g} s")
+    system = _driven(beam, forces, frequency_hz, n_segments)
+    check_kept(2.0 * duration / step + 1.0, n_segments, f"time = {written(duration)} s in steps of {step:.3g} s")
+    times = half_steps(duration, step)
     check_rideable(system, beam, slider)
     coupling_on_chain(system, beam, slider)
     axial = axial_stiffness(beam, n_segments)

@@ -7,6 +7,7 @@ import click
 
 from verify.commands.shared import (
     GATE_FAILED,
+    as_line,
     json_alone,
     load_first,
     overridden,
@@ -97,7 +98,7 @@ def _report(scene: "Scene", result: "Compared", folder: str) -> Path:
     from verify.report.html import write_comparison
 
     path = writable_folder(Path(folder), "reports") / f"compare-{scene.name}.html"
-    write_comparison(scene, result, path, " ".join(["verify", *sys.argv[1:]]))
+    write_comparison(scene, result, path, as_line(["verify", *sys.argv[1:]]))
     return path
 
 

@@ -127,9 +127,14 @@ def command_line(
     command: str, scenes: tuple[str, ...], overrides: tuple[str, ...], options: tuple[str, ...] = ()
 ) -> str:
     """The line that does the same again."""
+    return as_line(["verify", command, *scenes, *(word for text in overrides for word in ("--set", text)), *options])
+
+
+def as_line(words: list[str]) -> str:
+    """Words as a line for a shell; bytes of a path that are no UTF-8 as they are written in a string."""
     from shlex import join
 
-    return join(["verify", command, *scenes, *(word for text in overrides for word in ("--set", text)), *options])
+    return join(words).encode(errors="backslashreplace").decode()
 
 
 def in_percent(step: Callable[[str], None]) -> Callable[[float], None]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.shared import GATE_FAILED, json_alone, print_json, progress
+from verify.commands.shared import GATE_FAILED, as_line, json_alone, print_json, progress
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -128,4 +128,4 @@ def _write(found: "StressFound", target: Path) -> None:
         seconds=seconds,
         others={PUSHED: len(found.outcomes)},
     )
-    write_report(result, target, command=" ".join(["verify", *sys.argv[1:]]))
+    write_report(result, target, command=as_line(["verify", *sys.argv[1:]]))

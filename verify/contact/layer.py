@@ -15,6 +15,8 @@ from math import acos, asin, atan, cos, pi, sin, sqrt
 from verify.checks import check_number
 from verify.errors import InputError
 
+NARROWEST = 1e-3
+"""Half angle of a contact, radians, below which sines and cosines leave fewer than nine digits of what is pressed."""
 HALVINGS = 200
 """Of an interval around a root: until the middle is one of its ends, long before."""
 ROUNDING = 4e-15
@@ -87,7 +89,7 @@ def half_space_force(q: float, r: float) -> float:
 
 
 def _check(phi: float, epsilon: float) -> None:
-    check_number("contact_half_angle", phi, "radians of the wave, half the contact", above=0, below=pi)
+    check_number("contact_half_angle", phi, "radians of the wave, half the contact", at_least=NARROWEST, below=pi)
     check_number("epsilon", epsilon, "2 mu kappa / (kappa_t k h)", at_least=0)
 
 

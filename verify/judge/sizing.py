@@ -13,11 +13,11 @@ from verify.exact.error_laws import (
     expected_error,
     has_law,
     law_of,
-    parts_from_here_on,
     sine_fits,
     smallest_count,
 )
 from verify.judge.known import by_law, kept, largest_error, solved, unbuilt, worst_of
+from verify.judge.several import count_guess, demanding
 from verify.judge.variants import Rules, Variant, falls_within, shared_from, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
@@ -83,11 +83,10 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     run_time_s: float
     """Median of warm solves, set-up included."""
     smaller: int | None
-    """A smaller size that happens to do, though one between does not; None where none was found."""
+    """As of `Enough`."""
     smaller_error: float | None
     """Its error, of several modes the largest."""
     known_by: str
-    """Which larger sizes do, and how it is known."""
     unbuilt: str = ""
     """Why there is no model of one part less; empty where there is one, beyond what was asked."""
 
@@ -95,13 +94,6 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     def variant(self) -> Variant:
         """The model with its settings."""
         return Variant(self.model, self.settings)
-
-
-def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
-    """Where to begin: the error law's answer, on a stepped beam the fewest parts that have the mode."""
-    if not beam.uniform or model not in LAWS:
-        return smallest_count(beam, mode)
-    return parts_from_here_on(model, beam, mode, error)
 
 
 def _expected(model: str, beam: "Beam", mode: int, count: int) -> float | None:
@@ -134,16 +126,19 @@ def enough_from(
     modes = _several(mode)
     smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
     law = model in LAWS and bench.beam.uniform and not (bench.beam.section or settings)
-    guess = max(count_guess(model, bench.beam, one, error) for one in modes)
+    guesses = {one: count_guess(model, bench.beam, one, error) for one in modes}
+    guess = max(guesses.values())
     proven = law and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH
     if proven or (law and (guess > _CLOSELY or modes[-1] > _EVERY)):
-        beside = {one: _beside_guess(bench, model, one, error, smallest) for one in modes}
+        near = demanding(model, bench.beam, guesses)
+        beside = {one: _beside_guess(bench, model, one, error, smallest) for one in near}
         worst = max(beside, key=lambda one: (beside[one], one))
+        count = beside[worst]
         if not proven:
-            return Enough(count=beside[worst], mode=worst, known_by=by_law(bench, model, worst, beside[worst]))
-        smaller = _dip(model, bench.beam, mode, error, beside[worst])
+            return Enough(count=count, mode=worst, known_by=by_law(bench, model, worst, count))
         known_by = "every larger N does, proven by the discrete dispersion"
-        return Enough(count=beside[worst], mode=worst, smaller=smaller, known_by=known_by)
+        smaller = _dip(model, bench.beam, mode, error, count)
+        return Enough(count=count, mode=worst, smaller=smaller, known_by=known_by)
     reached = _reached(bench, model, modes, error, settings)
     uneven = falls_within(bench.beam)
     each_s = _part_s(bench.beam, modes[-1])
@@ -194,8 +189,8 @@ def _dip(model: str, beam: "Beam", mode: Modes, error: float, count: int) -> int
     def within(size: int) -> bool:
         return all(abs(expected_error(model, beam, one, size)) <= error for one in modes)
 
-    if len(modes) > 1:
-        return next((size for size in sizes[:-1] if within(size)), None)  # one part less than `count` is outside
+    if len(modes) > 1:  # one part less than `count` is outside
+        return next((size for size in sizes[:-1] if within(size)), None)
     if not within(sizes[0]):
         return None  # towards the cut-off the error falls again: if the smallest size does not do, none does
     return sizes[0] if any(not within(size) for size in sizes) else None

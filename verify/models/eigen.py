@@ -75,11 +75,12 @@ def required_bytes(n_unknowns: int, n_modes: int) -> int:
 def solve_seconds(n_unknowns: int, n_modes: int) -> float:
     """An estimate from above of the time a solve takes: n^3 where it is dense, else what each Lanczos vector costs.
 
-    Measured of five modes: 31 to 38 s of the 2e6 unknowns of elements and 8 s of the 1e6 of segments, told 39 and 20.
+    Each is held against those before. Measured of five modes: 31 to 38 s of the 2e6 unknowns of elements and 8 s of the
+    1e6 of segments, told 39 and 20; of 100, 250, 500 modes of 1e4 unknowns 0.4, 2.7, 13.9 s, told 1.6, 5.5, 17.
     """
     if uses_dense(n_unknowns, n_modes):
         return 1e-9 * n_unknowns**3
-    return n_unknowns * (1.5e-5 + 9e-7 * n_modes)
+    return n_unknowns * (1.5e-5 + 9e-7 * n_modes + 5e-9 * n_modes**2)
 
 
 def field_seconds(n_unknowns: int, laden: bool = False) -> float:

@@ -11,7 +11,7 @@ from verify.words import newtons
 
 if TYPE_CHECKING:
     from verify.motion.contact import Coupling
-    from verify.motion.result import Motion, Ride
+    from verify.motion.result import Motion, Slid
 
 CHAIN = "chain"
 """What a condition calls the nonlinear chain, which is no model of small vibration."""
@@ -22,7 +22,7 @@ class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
 
     unit: str
     summary: str
-    of: "Callable[[Ride, Ride | None], float]"
+    of: "Callable[[Slid, Slid | None], float]"
     """Of the run, and of the one with all phases turned round where `turned` asks for it."""
     turned: bool = False
 
@@ -44,7 +44,7 @@ def left_in_words(found: "Motion", duration: float) -> str:
     return f"on {where} the slider {found.statistics.stopped} {when}"
 
 
-def _reversal(run: "Ride", turned: "Ride | None") -> float:
+def _reversal(run: "Slid", turned: "Slid | None") -> float:
     assert turned is not None
     way = run.displacement
     return turned.displacement / way if way else float("nan")

@@ -117,12 +117,6 @@ class Ride(Value, frozen=True, eq=False, kw_only=True):
     """(n,), tangential force on the slider, newton."""
     surface_speed: Array
     """(n,), tangential velocity of the material under the slider, m/s."""
-    mean_friction: float
-    """On the slider along +x, of all steps of the run, newton; NaN without a slider."""
-    largest_friction: float
-    """In size, of all steps: the law's at their starts; of what sticks, or nearly, their means, newton."""
-    mean_surface_speed: float
-    """Of the material under the slider, of all steps, m/s; NaN without a slider."""
     coupling: Coupling | None
     """Whether the beam felt the slider, with sizes; None without one."""
     statistics: Statistics
@@ -158,7 +152,18 @@ class Ride(Value, frozen=True, eq=False, kw_only=True):
         return seconds
 
 
-class Motion(Ride, frozen=True, eq=False, kw_only=True):
+class Slid(Ride, frozen=True, eq=False, kw_only=True):
+    """The same of a slider whose run is added up step by step, whatever is kept of it."""
+
+    mean_friction: float
+    """On the slider along +x, of all steps of the run, newton; NaN without a slider."""
+    largest_friction: float
+    """In size, of all steps: the law's at their starts; of what sticks, or nearly, their means, newton."""
+    mean_surface_speed: float
+    """Of the material under the slider, of all steps, m/s; NaN without a slider."""
+
+
+class Motion(Slid, frozen=True, eq=False, kw_only=True):
     """A linear beam, and perhaps a slider on it, in time."""
 
     model: str

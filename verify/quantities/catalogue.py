@@ -7,7 +7,7 @@ imports numpy until a figure that needs it is asked for.
 from collections import Counter
 from functools import cache
 from math import isfinite, isnan
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Any, Literal, cast, get_args, get_origin
 
 import msgspec
 
@@ -143,12 +143,14 @@ UNCOUNTED = {
 def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Figure:
     """The figure. Raises InputError, also where the quantity gives none."""
     _check_devices(found, scene)
-    value = found.evaluate(arguments, scene, bench)
+    value: Any = found.evaluate(arguments, scene, bench)
+    if type(value).__module__ == "numpy" and not getattr(value, "shape", ()):  # of a quantity from elsewhere
+        value = value.item()
     if not isinstance(value, float | int | complex | Bracket):
         raise InputError(f"quantity = {found.name!r} gave {value!r}, which is no figure: let it give a number")
     if told := UNCOUNTED.get(found.work):
         bench.others[told] = bench.others.get(told, 0) + 1
-    return value
+    return cast(Figure, value)
 
 
 def as_plain(value: Figure | None) -> Any:

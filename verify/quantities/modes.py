@@ -149,7 +149,8 @@ def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
 
 
 def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
-    from verify.judge.sizing import check_reachable, count_guess
+    from verify.judge.several import count_guess
+    from verify.judge.sizing import check_reachable
 
     check_reachable(scene.beam, a.model, a.settings)
     guess = count_guess(a.model, scene.beam, a.mode, a.error)

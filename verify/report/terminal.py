@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from verify.studies.told import Column, Found
     from verify.studies.told import Table as StudyTable
 
+UNKNOWN_WIDTH = 80
 NARROW = 88
 """Below this many characters a table leaves out what is wide."""
 
@@ -39,6 +40,8 @@ class Terminal(Console):
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(highlight=False, emoji=False, **settings)
+        if self.width < 1:  # COLUMNS=0, as some containers have it, is no width
+            self.width = UNKNOWN_WIDTH
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         """As rich draws it, with what a title or a path would have the terminal obey escaped."""

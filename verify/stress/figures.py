@@ -6,6 +6,7 @@ from weakref import WeakKeyDictionary
 
 import msgspec
 
+from verify.patience import PATIENCE_S, patient
 from verify.stress.catalogue import row, rows
 from verify.stress.kind import Outcome, Row, exponent
 from verify.studies.chart import Chart
@@ -59,7 +60,7 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
             )
         said += [f"{one.id} is not held: {one.reason}" for one in self.outcomes if not one.held]
         if self.left_out:
-            said.append(f"left out, for they take longer than --seconds gives: {', '.join(self.left_out)}")
+            said.append(f"left out, for they take longer than is waited for: {', '.join(self.left_out)}")
         return tuple(said)
 
     def worst(self) -> list[Outcome]:
@@ -168,11 +169,17 @@ def refused_table(found: StressFound) -> Table:
 _DONE: "WeakKeyDictionary[Workbench, dict[str, Outcome]]" = WeakKeyDictionary()
 
 
+def measured(one: Row) -> Outcome:
+    """A row's outcome, with the patience that its promise was made for, whatever the environment says."""
+    with patient(PATIENCE_S):
+        return one.run()
+
+
 def outcome_on(bench: "Workbench", name: str) -> Outcome:
     """A row's outcome, measured once on a bench. Raises InputError for a row that is not known."""
     done = _DONE.setdefault(bench, {})
     if name not in done:
-        done[name] = row(name).run()
+        done[name] = measured(row(name))
         bench.others[PUSHED] = len(done)
     return done[name]
 
@@ -194,7 +201,7 @@ def stress(
             yield one.id
             continue
         step(one.id)
-        yield outcome_on(bench, one.id) if bench is not None else one.run()
+        yield outcome_on(bench, one.id) if bench is not None else measured(one)
 
 
 def told(outcomes: Iterable[Outcome | str]) -> StressFound:

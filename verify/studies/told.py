@@ -1,6 +1,7 @@
 """How what a study finds is told: tables, charts, facts and an answer as plain values."""
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from typing import Any, Literal, TypeAlias
 
 import msgspec
@@ -125,7 +126,7 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def plain(self) -> Any:
         """For JSON."""
-        return msgspec.to_builtins(self)
+        return msgspec.to_builtins(self, enc_hook=as_number)
 
     def records(self) -> list[dict[str, Any]]:
         """Rows with one level of names, for CSV and Markdown: those of the first table unless a study knows better."""
@@ -140,6 +141,13 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return 0
 
 
+def as_number(value: Any) -> Any:
+    """A number of numpy's, as a study from elsewhere may have, as Python's own. Raises NotImplementedError."""
+    if type(value).__module__ == "numpy" and not getattr(value, "shape", ()):
+        return value.item()
+    raise NotImplementedError(f"{type(value).__name__} is no plain data")
+
+
 def numbered(heads: list[str]) -> list[str]:
     """Names of which none stands twice: 'rms', 'rms 2'."""
     seen: dict[str, int] = {}
@@ -152,6 +160,8 @@ def numbered(heads: list[str]) -> list[str]:
 
 def _as_data(value: Any, column: Column) -> Any:
     """A number in its column's unit, in the SI unit where that is what suits, with all digits; all else as it is."""
+    with suppress(NotImplementedError):
+        value = as_number(value)
     if not isinstance(value, float | int) or isinstance(value, bool):
         return value
     scale = 100.0 if column.form in PERCENTS else 1.0 if column.si else column.factor

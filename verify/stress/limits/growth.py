@@ -85,12 +85,14 @@ def _peaks(model: str) -> tuple[float, ...]:
     import sys
     from pathlib import Path
 
-    from verify.errors import InputError
+    from verify.errors import InputError, one_line
 
     if not Path("/proc/self/status").exists():
         raise InputError("memory: this system has no /proc/self/status, leave rows of memory out")
     code = _CHILD.format(model=model, modes=MODES, sizes=HELD)
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    if done.returncode:
+        raise InputError(f"memory: the process that measures it ended with {done.returncode}: {one_line(done.stderr)}")
     return tuple(float(line) for line in done.stdout.split())
 
 

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from verify.models.catalogue import bounding, discrete
 from verify.motion.figures import RUN_FIGURES, Condition, left_in_words
-from verify.motion.result import Motion, Ride
+from verify.motion.result import Motion, Slid
 from verify.scenes.claims import asks_for_turned
 from verify.studies.chart import Chart
 from verify.studies.conditions import condition_of
@@ -162,7 +162,7 @@ def places_of(scene: "Scene", count: int | None) -> list[float]:
     return [scene.beam.length * (k / n) for k in range(n + 1)]
 
 
-def figures_of(run: Ride, back: Ride | None) -> dict[str, float]:
+def figures_of(run: Slid, back: Slid | None) -> dict[str, float]:
     """All figures of a run, those of the one turned round only where there is one."""
     return {name: one.of(run, back) for name, one in RUN_FIGURES.items() if back is not None or not one.turned}
 

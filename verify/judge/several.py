@@ -1,0 +1,34 @@
+"""How many parts modes ask for by the error law, and which of several the most, before any is solved for."""
+
+from typing import TYPE_CHECKING
+
+from verify.exact.error_laws import LAWS, parts_from_here_on, smallest_count
+from verify.models.catalogue import MODELS
+from verify.models.eigen import solve_seconds
+from verify.patience import check_work
+
+if TYPE_CHECKING:
+    from verify.beam import Beam
+
+_SHARE, _PARTS = 0.98, 3
+"""The law's answers and the solved ones lie closer than this share of the most, and these parts."""
+
+
+def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
+    """Where to begin: the error law's answer, on a stepped beam the fewest parts that have the mode."""
+    if not beam.uniform or model not in LAWS:
+        return smallest_count(beam, mode)
+    return parts_from_here_on(model, beam, mode, error)
+
+
+def demanding(model: str, beam: "Beam", guesses: dict[int, int]) -> list[int]:
+    """Those of the modes, with the law's answer for each, of which one may ask for the most.
+
+    Raises InputError where two solves of each of them would take longer than is waited for.
+    """
+    most = max(guesses.values())
+    near = [mode for mode, guess in guesses.items() if guess >= _SHARE * most - _PARTS]
+    unknowns = MODELS.named(model).unknowns
+    seconds = sum(2.0 * solve_seconds(unknowns(beam, guesses[mode]), mode) for mode in near)
+    check_work("mode", max(guesses), seconds, "ask for lower modes or a larger error")
+    return near
