@@ -243,6 +243,19 @@ def test_parts_needed_of_a_body_on_its_link_hold_for_larger_numbers_too(told):
 
 
 @pytest.mark.parametrize(
+    ("read_as", "said"),
+    [
+        ("kHz", "too large by 1000: they are in Hz, not in kHz"),
+        ("rad/s", "too small by 2 pi: they are in Hz, not in rad/s"),
+    ],
+)
+def test_a_list_in_hertz_that_was_read_in_another_unit_is_said_to_be_in_hertz(told, read_as, said):
+    found = told(lumped_rod(PAPER, 49)[:22], "paper", unit=read_as, count=49)
+    assert kinds(found) == ["unit"]
+    assert said in found["answer"]
+
+
+@pytest.mark.parametrize(
     ("factor", "said"),
     [
         (2 * np.pi, "too large by 2 pi: they are in rad/s"),

@@ -38,6 +38,15 @@ _WRITTEN = 1e-6
 
 
 def identify(data: Data, count: int | None) -> Identified | None:
+    """As `_identify`, with the unit that the list was read in."""
+    found, replace = _identify(data, count), msgspec.structs.replace
+    if found is None:
+        return None
+    rivals = tuple(replace(one, read_as=data.read_as) for one in found.rivals)
+    return replace(found, read_as=data.read_as, rivals=rivals)
+
+
+def _identify(data: Data, count: int | None) -> Identified | None:
     """Which candidate a list is of, and what is behind it; None where none has so many modes.
 
     `count` is the number of its parts; None tries all plausible ones. A clamp that gives is looked for unless the list

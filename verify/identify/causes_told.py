@@ -1,6 +1,6 @@
 """What is behind a list, in words: the unit, the factor or the clamp, or those of them that it does not tell apart."""
 
-from math import inf, isfinite, log
+from math import inf, isfinite, log, pi
 
 from verify.beam import Beam
 from verify.identify.fitting import FLOOR, PLAIN, UNITS, Fit, Identified, beyond_unit
@@ -73,7 +73,7 @@ def _among(found: Identified, beam: Beam) -> str:
 def _words(found: Identified, beam: Beam, *, loose: bool = True) -> str:
     """What a cause is; `loose` with what is left of the list where that is too much to claim it."""
     kind, best = kind_of(found), found.best
-    unit = UNITS.get(found.reading.factor or 1.0, "")
+    unit = unit_in_words(found.reading.factor or 1.0, found.read_as)
     said = [f"the frequencies are {unit}"] if unit else []
     if best.clamp is not None:
         words = best.clamp.words + _give_or_take(found)
@@ -82,6 +82,29 @@ def _words(found: Identified, beam: Beam, *, loose: bool = True) -> str:
         plainly = not (loosely(best) or (loose and found.short))
         return _scale_words(found, beam, plainly=plainly) + _and_left(best) * (loose and not plainly)
     return "; ".join(said) or ("nothing is off" if found.reading == PLAIN else "modes are missing or too many")
+
+
+_HERTZ = {
+    "in Hz": 1.0,
+    "in kHz": 1e3,
+    "in rad/s": 0.5 / pi,
+    "in mHz": 1e-3,
+    "per minute": 1.0 / 60.0,
+    "in rad/ms": 0.5e3 / pi,
+}
+"""How many a frequency of one is that is given so."""
+
+
+def unit_in_words(factor: float, read_as: str) -> str:
+    """What unit frequencies are in that were read in another and are off by a factor; empty where none brings it.
+
+    Of frequencies read in hertz with what else may have been done to them.
+    """
+    if factor not in UNITS or read_as == "Hz":
+        return UNITS.get(factor, "")
+    per = _HERTZ[f"in {read_as}"] / factor
+    given = (name for name, hertz in _HERTZ.items() if abs(log(hertz / per)) < FLOOR)
+    return f"{UNITS[factor].partition(':')[0]}: they are {next(given, 'in another unit')}, not in {read_as}"
 
 
 def _and_left(best: Fit) -> str:
@@ -105,7 +128,7 @@ def _scale_words(found: Identified, beam: Beam, *, plainly: bool) -> str:
     best = found.best
     factor, unit = beyond_unit(best.factor)
     had = "all frequencies have the common factor" if plainly else "nearest comes a common factor of all frequencies,"
-    beside = f": {UNITS[unit]}; beyond that {factor:.6g}, so that" if unit != 1.0 else ""
+    beside = f": {unit_in_words(unit, found.read_as)}; beyond that {factor:.6g}, so that" if unit != 1.0 else ""
     made = made_by(factor, beam, best.candidate.theory)
     return f"{had} {best.factor:.6g}{_give_or_take(found)}{beside or ':'} {made}"
 

@@ -91,6 +91,7 @@ def compared(scene: Scene, asked: Asked, listed: Listed, shapes: Shapes | None, 
         rounding=listed.rounding[elastic.kept],
         family=members,
         solver=solver,
+        read_as=listed.unit,
         paired=by_number(elastic.numbers) if elastic.numbers else None,
     )
     data, told, likeness = _by_shapes(scene, data, shapes, elastic, count)

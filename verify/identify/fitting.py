@@ -178,6 +178,8 @@ class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Whether what is left over goes smoothly with the mode, as noise would not."""
     rivals: tuple["Identified", ...] = ()
     """What else may be behind the list: other readings, or a clamp that gives, that leave about as much."""
+    read_as: str = "Hz"
+    """The unit that somebody said the list is in."""
     short: bool = False
     """Whether it has so few entries beside what was fitted that a fit is no evidence."""
 
@@ -240,6 +242,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n,), relative."""
     family: tuple[Candidate, ...]
     solver: Solver
+    read_as: str = "Hz"
     paired: Pairs | None = None
     """Where mode numbers or shapes say which mode each entry is."""
     sizes: dict[Candidate, tuple[int, ...]] = {}
