@@ -31,6 +31,12 @@ def exists(path: Path, field: str) -> bool:
     return True
 
 
+def check_no_scene(path: Path, field: str) -> None:
+    """Raise InputError for a file that what is written would take the place of a scene in."""
+    if path.suffix.lower() == ".toml":
+        raise InputError(f"{field} = {str(path)!r} ends in .toml, as scenes do, and this is none: give another name")
+
+
 def writable_folder(folder: Path, field: str) -> Path:
     """Make `folder` and prove that a file can be written there. Raises InputError naming `field`."""
     import tempfile

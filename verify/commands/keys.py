@@ -55,7 +55,8 @@ def schema(section: str | None, path: str | None) -> None:
     if path is None:
         click.echo(text, nl=False)
         return
-    from verify.files import write_whole
+    from verify.files import check_no_scene, write_whole
 
+    check_no_scene(Path(path), "--to")
     write_whole(Path(path), text, "--to")
     click.echo(printable(f"wrote {path}; a scene beside it names it in its first line: #:schema ./{Path(path).name}"))

@@ -59,13 +59,14 @@ def run(
 def _run_one(scene: str, overrides: tuple[str, ...], folder: Path | None, most: int, as_json: bool) -> None:
     """One scene, and what it says in full."""
     from verify.files import writable_folder
-    from verify.run.applies import report_name, that_change
+    from verify.run.applies import TAKEN, check_free, report_name, that_change
     from verify.run.runner import n_steps, run_scene
 
     asked = load(scene, overrides)
     changes = that_change(scene, overrides)
     name = report_name(asked, changes)
     if folder is not None:
+        check_free(name, TAKEN)
         writable_folder(folder, "reports")
         if most:
             from verify.report.kept import folder_for

@@ -136,20 +136,17 @@ def _loaded(
 ) -> "dict[str, Asked | Ran]":
     """Every scene once, in order: loaded, or why it cannot be. Two whose reports had one name are not both run."""
     from verify.cores import jobs
-    from verify.report.suite import PAGE
-    from verify.run.applies import report_name, that_change
+    from verify.run.applies import TAKEN, check_free, report_name, that_change
     from verify.run.runner import n_steps
 
-    taken = {PAGE.removesuffix(".html"): "the page of all scenes"}
+    taken = dict(TAKEN)
     found: dict[str, Asked | Ran] = {}
     for given in dict.fromkeys(names):
         try:
             scene = load(given, overrides)
             name = report_name(scene, that_change(given, overrides))
-            if (other := taken.setdefault(name.casefold(), f"that of {given}")) != f"that of {given}":
-                raise InputError(
-                    f"name = {scene.name!r}: its report would take the place of {other}: give the scene another name"
-                )
+            check_free(name, taken)
+            taken[name.casefold()] = f"that of {given}"
             if folder is not None and most:
                 from verify.report.kept import folder_for
 

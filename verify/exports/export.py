@@ -8,7 +8,7 @@ import msgspec
 from verify.errors import InputError, near_name, shown
 from verify.exports.sheet import Sheet
 from verify.exports.sheets import SEGMENTS, Wanted, field_sheet, modes_sheet, motion_sheet
-from verify.files import writable_folder, write_whole
+from verify.files import check_no_scene, writable_folder, write_whole
 from verify.models.catalogue import MODELS
 from verify.options import EXPORTED, FILE_FORMATS, READINGS
 from verify.scenes.scene import Scene
@@ -127,6 +127,7 @@ def _path_of(scene: Scene, asked: Asked, what: str, form: str) -> Path:
     """The file, in a folder that takes it. Raises InputError."""
     default = Path(f"{scene.name}-{what}.{form}")
     path = default if asked.to is None else asked.to / default if asked.to.is_dir() else asked.to
+    check_no_scene(path, "to")
     writable_folder(path.parent, "to")
     if path.is_dir():
         raise InputError(f"to = {shown(str(path))} is a folder: name a file in it")

@@ -107,3 +107,13 @@ def report_name(scene: "Scene", overrides: tuple[str, ...]) -> str:
     from hashlib import sha256
 
     return f"{name[: LONGEST - 9]}-{sha256(name.encode()).hexdigest()[:8]}"
+
+
+TAKEN = {"index": "the page of all scenes", "stress-table": "the page of `verify stress`"}
+"""Names of pages that no scene's report may have."""
+
+
+def check_free(name: str, taken: dict[str, str]) -> None:
+    """Raise InputError for the name of a report that another one has."""
+    if other := taken.get(name.casefold()):
+        raise InputError(f"name = {name!r}: its report would take the place of {other}: give the scene another name")
