@@ -88,5 +88,7 @@ def test_what_is_refused_is_what_the_slider_gave(monkeypatch):
     run = ridden(slope=50.0)
     assert 0.0 < given_and_had(run) < 1.0
     monkeypatch.setattr(sound_books, "MOST", 0.0)
-    with pytest.raises(InputError, match=r"the slider gave the beam .* at most .*, or a larger steps_per_period"):
+    with pytest.raises(
+        InputError, match=r"the slider gave the beam .* at most .*, or steps_per_period = \d+, and halve it"
+    ):
         ridden(slope=50.0)

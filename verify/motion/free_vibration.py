@@ -140,7 +140,8 @@ def free_vibration(
     """
     zeta = 0.5 * beam.loss_factor if modal_damping is None else modal_damping
     check_number("duration", duration, "seconds", above=0)
-    check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
+    said = "half of beam.loss_factor" if modal_damping is None else "modal_damping"
+    check_number(said, zeta, "ratio of every mode", at_least=0, below=1)
     check_whole("samples", samples, 2)
     if samples > MOST_SAMPLES:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")

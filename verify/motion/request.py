@@ -138,7 +138,8 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
     _check_start(modelled.model, started)
     _check_samples(watched.samples)
     zeta = 0.5 * beam.loss_factor if modelled.damping is None else modelled.damping
-    check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
+    said = "half of beam.loss_factor" if modelled.damping is None else "modal_damping"
+    check_number(said, zeta, "ratio of every mode", at_least=0, below=1)
     points = places_in_a_row("at", watched.at, beam.length)
     longest = _longest(hertz, driven.duration, watched.step, watched.steps_per_period, slider)
     check_line(modelled.model, started.start, slider.line if slider else "spline")

@@ -1,6 +1,7 @@
 """Books that cannot be: a slider that gave its beam far more than was ever put in, by an error of its step."""
 
 from collections.abc import Sequence
+from math import ceil
 
 import msgspec
 import numpy as np
@@ -44,12 +45,17 @@ def check_books(excess: Excess | None, request: Request, stages: Sequence[Stage]
     if excess is None:
         return
     dt = max(stage.dt for stage in stages)
+    if not np.isfinite(excess.put_in):
+        raise InputError(
+            f"step = {dt:.3g} s: what forces, weight and slider put into the beam is beyond all numbers: give smaller "
+            "forces or a lighter slider"
+        )
     enough = gripped_step(stages, float("inf"), 0.5 * dt)
+    per_period = f", or steps_per_period = {ceil(1.0 / (enough * request.frequency_hz))}" * (request.step is None)
     raise InputError(
         f"step = {dt:.3g} s: the slider gave the beam {_joules(excess.made)}, where forces, weight and what moved at "
         f"first had put in {_joules(excess.put_in)}: in such steps its contact makes energy of modes that turn within "
-        f"one; give a step of at most {enough:.2g} s"
-        + (", or a larger steps_per_period" if request.step is None else "")
+        f"one; give a step of at most {enough:.2g} s{per_period}, and halve it while this is said"
     )
 
 

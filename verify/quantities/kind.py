@@ -285,6 +285,8 @@ class Quantity(msgspec.Struct, Generic[A], frozen=True):
     """Models that it uses beside the one its arguments name and those of its needs."""
     kernels: Callable[[A, "Scene"], Iterable[Call]] = no_kernels
     """Compiled loops that it runs, called with values of the right kinds, in order of need. May raise InputError."""
+    searches: bool = False
+    """Whether it goes through sizes of which `needs` knows the first alone."""
     devices: bool = False
     """Whether it knows a drive's devices; one of the beam that does not is refused beside them."""
     superposed: str = ""

@@ -342,6 +342,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "modes",
         _count_needed,
         needs=_count_guess,
+        searches=True,
     ),
     Quantity(
         "mode.stock_difference",

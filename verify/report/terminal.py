@@ -350,18 +350,17 @@ def print_plan(plan: "Plan") -> None:
     console.print(f"[bold]{plan.scene}[/] will run" + (f", but for {unable} asked for that cannot" if unable else ""))
     if plan.solves:
         _print_solves(console, plan)
-    if plan.closed_forms:
-        console.print(f"closed forms, for {_who(plan.closed_forms)}", markup=False)
-    if plan.assembled:
-        console.print(f"matrices assembled, for {_who(plan.assembled)}", markup=False)
-    if plan.harmonic:
-        console.print(f"harmonic fields, for {_who(plan.harmonic)}", markup=False)
-    if plan.compiled:
-        console.print(f"equilibria and modes of the nonlinear chain, for {_who(plan.compiled)}", markup=False)
-    if plan.promises:
-        console.print(f"promises pushed on beams of their own, for {_who(plan.promises)}", markup=False)
-    if plan.stepped:
-        console.print(f"motion in time, for {_who(plan.stepped)}", markup=False)
+    for words, names in (
+        ("more sizes, looked through one after another", plan.searched),
+        ("closed forms", plan.closed_forms),
+        ("matrices assembled", plan.assembled),
+        ("harmonic fields", plan.harmonic),
+        ("equilibria and modes of the nonlinear chain", plan.compiled),
+        ("promises pushed on beams of their own", plan.promises),
+        ("motion in time", plan.stepped),
+    ):
+        if names:
+            console.print(f"{words}, for {_who(names)}", markup=False)
     for chosen in plan.chosen:
         console.print(f"  {chosen.what}: {chosen.why}", markup=False)
     console.print("[bold]skipped[/]")

@@ -35,6 +35,8 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True):
     """Models that are used beside the needs, by name."""
     slides: bool = False
     """Whether the scene's slider is run."""
+    searches: bool = False
+    """Whether it goes through sizes of which only the first is known beforehand."""
     motions: int = 0
     """Simulations in time that a study will do."""
     kernels: Callable[[], Iterable[Call]] = tuple
@@ -93,6 +95,7 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
         needs=needs,
         models=(*found.models, *models_named(arguments)),
         slides=found.arguments.slides,
+        searches=found.searches,
         kernels=partial(found.kernels, arguments, scene),
     )
 

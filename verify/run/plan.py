@@ -67,6 +67,8 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True):
     """Who pushes a promise on beams of its own: with solves, fields and motions that are not listed."""
     motions: int = 0
     """Simulations in time that the studies will do."""
+    searched: tuple[str, ...] = ()
+    """Who goes through sizes until one is enough: of those solves only the first is listed."""
 
 
 def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
@@ -96,6 +98,7 @@ def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
         skipped=(*_set_aside(scene, overrides), *_skipped(scene, asks)),
         problems=tuple(Problem(*pair) for pair in problems),
         motions=sum(ask.motions for ask in asks),
+        searched=tuple(ask.who for ask in asks if ask.searches and not ask.problem),
     )
 
 
