@@ -482,3 +482,37 @@ def test_a_table_as_data_is_in_the_units_above_it_and_loses_no_column():
 def test_a_row_that_does_not_fit_its_table_is_said():
     with pytest.raises(InputError, match="a row of 2 cells under 1 columns"):
         Table(columns=(Column("one"),), rows=((1, 2),))
+
+
+class NumpysFound(HeavinessFound, frozen=True, eq=False, kw_only=True):
+    """The same in numbers of numpy's."""
+
+    def tables(self):
+        row = (np.int64(3), np.float64(self.newton))
+        return (Table(columns=(Column("n"), Column("N", ".3f")), rows=(row,)),)
+
+
+class NumpysStudy(HeavinessStudy):
+    """Weighs it so."""
+
+    def run(self, asked, scene, bench, done, step):
+        step("weighing")
+        return NumpysFound(newton=np.float64(asked.over * weight(Weight(), scene, bench)))
+
+
+def test_numbers_of_numpys_are_numbers(tmp_path, monkeypatch, capsys):
+    """What a quantity or a study from elsewhere gives is told as any other figure, on the page and as data."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "toy.toml").write_text(SCENE)
+    kilo = msgspec.structs.replace(WEIGHT, evaluate=lambda *given: np.float64(weight(*given)))
+    three = msgspec.structs.replace(WEIGHT, name="toy.three", evaluate=lambda *given: np.int64(3))
+    registered = QUANTITIES.registered(kilo), QUANTITIES.registered(three), STUDIES.registered(NumpysStudy())
+    with MODELS.registered(Sine()), registered[0], registered[1], registered[2]:
+        assert status_of(["run", "toy.toml"]) == 0
+        capsys.readouterr()
+        assert status_of(["run", "toy.toml", "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["heaviness"]["newton"] == pytest.approx(2.0 * 9.81 * 2.09393127 / 9)
+        assert status_of(["export", "toy.toml", "--what", "tables", "--to", "x.json"]) == 0
+        capsys.readouterr()
+        assert status_of(["measure", "toy.toml", "toy.three"]) == 0
+        assert "3 N" in capsys.readouterr().out

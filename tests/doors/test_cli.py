@@ -738,3 +738,95 @@ def test_segments_and_count_are_one_argument_everywhere(verify):
     status, _, err = verify("measure", "mode.frequency", "model=segment", "mode=5", "segments=37", "count=9")
     assert status == 2
     assert "mean the same" in err
+
+
+@pytest.mark.parametrize(
+    "words", [("run", "paper"), ("stress", "tip-mass"), ("measure", "paper", "beam.mass"), ("catalogue", "paper")]
+)
+def test_a_patience_that_is_none_is_refused_before_anything_is_done(verify, tmp_path, monkeypatch, words):
+    monkeypatch.setenv("VERIFY_PATIENCE", "abc")
+    status, out, err = verify(*words)
+    assert (status, out) == (2, "")
+    assert err == "verify: VERIFY_PATIENCE = 'abc': give seconds above 0 in the environment, or leave it unset\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_terminal_without_a_width_is_taken_for_one_of_eighty(verify, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "0")
+    _, out, _ = verify("run", "paper", "--no-report")
+    assert "all 25 gates passed" in out
+    assert max(map(len, out.splitlines())) <= 80
+
+
+def test_a_path_that_is_no_utf_8_is_run_and_kept(verify, tmp_path):
+    verify("init", "mine.toml")
+    name = os.fsdecode(b"b\xff.toml")
+    (tmp_path / name).write_bytes((tmp_path / "mine.toml").read_bytes())
+    status, _, err = verify("run", name)
+    assert (status, err) == (0, "")
+    (page,) = (tmp_path / "reports").glob("*.html")
+    assert "udcff" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["index", "stress-table"])
+def test_no_report_of_a_scene_takes_the_place_of_a_page_that_others_have(verify, tmp_path, name):
+    verify("init", "mine.toml")
+    text = (tmp_path / "mine.toml").read_text()
+    (tmp_path / "mine.toml").write_text(re.sub(r'^name = ".*?"', f'name = "{name}"', text, flags=re.MULTILINE))
+    status, _, err = verify("run", "mine.toml")
+    assert status == 2
+    assert f"name = '{name}': its report would take the place of the page of " in err
+    assert not (tmp_path / "reports").exists()
+    assert verify("run", "mine.toml", "--no-report")[0] == 0
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("export", "mine.toml", "--what", "modes", "--format", "vtu", "--to", "mine.toml"),
+        ("export", "mine.toml", "--what", "tables", "--format", "json", "--to", "other.toml"),
+        ("schema", "--to", "mine.toml"),
+    ],
+)
+def test_what_is_no_scene_takes_the_place_of_none(verify, tmp_path, words):
+    verify("init", "mine.toml")
+    before = (tmp_path / "mine.toml").read_text()
+    status, _, err = verify(*words)
+    assert status == 2
+    assert "ends in .toml, as scenes do, and this is none" in err
+    assert (tmp_path / "mine.toml").read_text() == before
+    assert not (tmp_path / "other.toml").exists()
+
+
+def test_what_is_swept_is_not_given_too(verify):
+    status, _, err = verify("table", "paper", "--sweep", "frequency_hz=4000:4600:3", "frequency_hz=9999")
+    assert (status, err) == (2, "verify: frequency_hz = 9999: is swept, give it once, to --sweep\n")
+
+
+def test_one_mistake_in_a_scene_with_claims_is_one_sentence(verify):
+    status, _, err = verify("plan", "paper-slider", "--set", "slider.mu=-1")
+    assert status == 2
+    assert err.count("\n") == 1
+    assert err.startswith("verify: slider.mu = -1")
+
+
+def test_a_plan_says_whose_sizes_are_looked_through(verify):
+    _, out, _ = verify("plan", "taut-strip")
+    assert "more sizes, looked through one after another, for gate series-count" in " ".join(out.split())
+    planned = json.loads(verify("plan", "taut-strip", "--json")[1])
+    assert planned["searched"] == ["gate series-count", "gate tensioned-count"]
+    assert json.loads(verify("plan", "driven-cantilever", "--json")[1])["searched"] == []
+
+
+def test_modes_that_ask_for_few_parts_are_not_solved_for(verify):
+    """Of sixty modes the last asks for most; with a thousand even those near it would take minutes."""
+    status, out, _ = verify("choose", "--mode", "1-60", "--error", "1%", "--json")
+    single = verify("choose", "--mode", "60", "--error", "1%", "--json")[1]
+    assert status == 0
+    several, one = (json.loads(text)["choices"] for text in (out, single))
+    assert [(each["model"], each["count"], each["mode"]) for each in several] == [
+        (each["model"], each["count"], 60) for each in one
+    ]
+    status, _, err = verify("choose", "--mode", "1-1000", "--error", "1%")
+    assert status == 2
+    assert re.match(r"verify: mode = 1000 would take about \d+ minutes, more than the 20 s", err)

@@ -116,3 +116,11 @@ def test_the_plugin_imports_nothing_heavy_in_a_project_without_scenes(pytester):
         "import sys\ndef test_light(): assert not {'numpy', 'msgspec', 'verify.scene'} & set(sys.modules)"
     )
     pytester.runpytest_subprocess("-p", "no:hypothesispytest").assert_outcomes(passed=1)
+
+
+def test_a_patience_that_is_none_is_a_collection_error(pytester, scene, monkeypatch):
+    monkeypatch.setenv("VERIFY_PATIENCE", "-3")
+    scene("mine.toml")
+    result = pytester.runpytest("mine.toml")
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["*VERIFY_PATIENCE = '-3': give seconds above 0*"])

@@ -100,6 +100,7 @@ def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path,
     monkeypatch.chdir(tmp_path)
     before = {one: signal.getsignal(one) for one in (signal.SIGTERM, signal.SIGHUP)}
     seen, true = [], os.replace
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
 
     def told(source, target):
         if Path(target).resolve().is_relative_to(tmp_path.resolve()):  # and not of what Python compiles
@@ -153,7 +154,18 @@ def who_asks_while_a_module_wakes(number, folder):
     sleep(LONG_S)
 
 
-@pytest.mark.parametrize("asks", [who_asks_while_llvm_writes, who_asks_while_a_module_wakes])
+def who_asks_in_a_destructor(number, folder):
+    """Of what comes up there, Python tells and goes on."""
+
+    class Last:
+        def __del__(self):
+            signal.raise_signal(number)
+
+    Last()
+    sleep(LONG_S)
+
+
+@pytest.mark.parametrize("asks", [who_asks_while_llvm_writes, who_asks_while_a_module_wakes, who_asks_in_a_destructor])
 @pytest.mark.parametrize(("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
 def test_a_request_to_end_where_what_it_raises_would_be_lost_is_heard_a_little_later(
     monkeypatch, tmp_path, asks, number, raised

@@ -1,6 +1,7 @@
 """Rows of the stress table hold, break where a model is broken, and are told."""
 
 import json
+import os
 import sys
 from decimal import Decimal, localcontext
 from importlib import import_module
@@ -25,7 +26,7 @@ from verify.scenes.scene import load_scene
 from verify.segments import linear as segment_linear
 from verify.stress.catalogue import FAMILIES, row, rows
 from verify.stress.charts import takes_over
-from verify.stress.figures import StressFound, told
+from verify.stress.figures import StressFound, measured, told
 from verify.stress.kind import Floor, Growth, Refusal, exponent
 from verify.stress.references.decimals import PI, asinh, cantilever_root, cos, exp, sin, sinh
 from verify.stress.references.extended import Divided, hermite, links, relative_error
@@ -326,7 +327,7 @@ def test_rows_can_be_listed_and_left_out_by_name(capsys):
     assert (taut["id"], taut["title"], taut["promise"]) == ("taut", row("taut").title, row("taut").promise)
     assert rolled["promise"] == row("rolled-up").run().promise
     assert status_of(["stress", "taut", "elements-million", "--seconds", "9", "--no-report"]) == 0
-    assert "left out, for they take longer than --seconds gives: elements-million" in " ".join(
+    assert "left out, for they take longer than is waited for: elements-million" in " ".join(
         capsys.readouterr().out.split()
     )
     for layout in ("--csv", "--markdown"):
@@ -395,3 +396,12 @@ def test_what_is_not_held_is_printedwith_its_reason():
     assert any("a is not held: 2e-06 at 3 m" in fact for fact in found.facts())
     assert found.plain()["left_out"] == ["slow-one"]
     assert json.loads(json.dumps(found.plain()))["rows"][0]["margin"] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("patience", ["0.9", "600"])
+def test_a_row_is_judged_with_the_patience_that_its_promise_was_made_for(monkeypatch, patience):
+    """Of both rows some cases are refused for their time: what the environment waits for makes no promise fail."""
+    monkeypatch.setenv("VERIFY_PATIENCE", patience)
+    for name in ("refused-sizes-and-chains", "lists-with-faults"):
+        assert measured(rows()[name]).held, name
+    assert os.environ["VERIFY_PATIENCE"] == patience

@@ -43,7 +43,8 @@ def benched(
     outcomes, unanswered = _outcomes(cases, left_out, asked, step, clock)
     refused += unanswered
     if not any(one.row.rounds for _, found in outcomes for one in found):
-        raise InputError(f"bench: nothing is left to measure: {'; '.join([*refused, *notes]) or 'give more seconds'}")
+        short = [f"all takes longer than seconds = {asked.seconds:g}, give more"] * bool(left_out)
+        raise InputError(f"bench: nothing is left to measure: {'; '.join([*short, *refused, *notes])}")
     pushed: tuple[Break, ...] = ()
     if asked.push:
         step("bench, other engines pushed")

@@ -109,7 +109,7 @@ class AtSpeed(Value, frozen=True, kw_only=True):
 
     @property
     def efficiency(self) -> float | None:
-        """Power over what the surface gives along the beam; None where the slider drives the surface."""
+        """Power over what the surface gives along the beam; None where either is not above 0."""
         return self.power / self.given if self.given > 0.0 and self.power >= 0.0 else None
 
     def settled(self, *readings: Reading) -> bool:

@@ -75,9 +75,10 @@ def _of_held(figure: "Callable[[AtSpeed], float]", *readings: "Reading") -> "Cal
 
 
 def _efficiency(found: "AtSpeed") -> float:
-    """Raises InputError where the slider drives the surface."""
+    """Raises InputError where the surface gives nothing along the beam, or does no work on the load."""
     if found.efficiency is None:
-        raise InputError(f"speed = {found.speed!r} m/s: there the slider drives the surface, give a speed in between")
+        why = "the load drives the slider" if found.given > 0.0 else "the slider drives the surface"
+        raise InputError(f"speed = {found.speed!r} m/s: there {why}, give a speed in between")
     return found.efficiency
 
 

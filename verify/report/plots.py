@@ -9,6 +9,7 @@ import msgspec
 from verify.report.drawing import Drawing, drawn
 from verify.report.inks import ink
 from verify.studies.chart import Chart, Line, Map
+from verify.studies.told import as_number
 from verify.words import number
 
 DIGITS = 6
@@ -155,9 +156,11 @@ def _data(chart: Chart, drawing: Drawing) -> dict[str, Any]:
         "lines": [_line_data(line) for line in chart.lines],
     }
     if chart.map is not None:
-        data["map"] = msgspec.to_builtins(chart.map) | {"values": [_short(row, 4) for row in chart.map.values]}
+        data["map"] = msgspec.to_builtins(chart.map, enc_hook=as_number) | {
+            "values": [_short(row, 4) for row in chart.map.values]
+        }
     if chart.bars is not None:
-        data["bars"] = msgspec.to_builtins(chart.bars)
+        data["bars"] = msgspec.to_builtins(chart.bars, enc_hook=as_number)
     return data
 
 

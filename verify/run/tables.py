@@ -122,6 +122,9 @@ def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple
 
     axes = tuple(parse_axis(text, scene.drive.frequency_hz if scene.drive else None) for text in sweeps)
     given = given_arguments(arguments)
+    for axis in axes:
+        if axis.name in given:
+            raise InputError(f"{axis.name} = {given[axis.name]!r}: is swept, give it once, to --sweep")
     n_points = math.prod(len(axis.values) for axis in axes)
     return Job(n_points, lambda step: design_map(quantity, given, axes, scene, Workbench(scene.beam), step))
 

@@ -146,8 +146,8 @@ def _solving() -> tuple[Limit, ...]:
     return (
         (1e-9 * 210**3, False, _above(lambda: eigen.solve_seconds(210, 9))),
         (1e-9 * 3000**3, False, _above(lambda: eigen.solve_seconds(3000, 751))),
-        (3000 * (1.5e-5 + 9e-7 * 750), False, _above(lambda: eigen.solve_seconds(3000, 750))),
-        (251 * (1.5e-5 + 9e-7), False, _above(lambda: eigen.solve_seconds(251, 1))),
+        (3000 * (1.5e-5 + 9e-7 * 750 + 5e-9 * 750**2), False, _above(lambda: eigen.solve_seconds(3000, 750))),
+        (251 * (1.5e-5 + 9e-7 + 5e-9), False, _above(lambda: eigen.solve_seconds(251, 1))),
         (64.0 * 250**2, False, _above(lambda: eigen.required_bytes(250, 1))),
         (2.5e-4 + 3e-6 * 700, False, _above(lambda: eigen.field_seconds(700))),
         (5e-4 + 8e-6 * 700, False, _above(lambda: eigen.field_seconds(700, laden=True))),
