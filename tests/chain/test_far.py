@@ -1,5 +1,7 @@
 """Links that turn far: kicks that still follow them, and motions that nobody can know."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from chain_reference import by_multipliers
@@ -179,3 +181,11 @@ def test_heights_of_rigid_links_are_those_of_their_joints():
     joints = places.place(moved.system, moved.times, moved.angles, moved.rates).joints
     assert abs(joints[:, 1:, 1]).max() > 1e-5
     assert far._heights(moved) == pytest.approx(joints[:, 1:, 1], rel=1e-13, abs=1e-18)
+
+
+def test_a_second_run_that_is_broken_off_breaks_off_the_first():
+    """What it would have confirmed nobody knows: the request to end goes on to whoever asked."""
+    far_away = pushed(1500.0, links=4)
+    broken = SimpleNamespace(statistics=SimpleNamespace(interrupted=True))
+    with pytest.raises(KeyboardInterrupt):
+        far.refuse_unknown(far_away, "adaptive", 1e-9, lambda tolerance: broken)

@@ -12,6 +12,7 @@ from verify.quantities.catalogue import QUANTITIES
 from verify.quantities.wave_arguments import Fastest
 from verify.scenes.scene import load_scene
 from verify.waves import measures as travelling_wave
+from verify.waves import operating_point
 from verify.waves.case import DrivenCase
 from verify.waves.driven import own_wavenumber
 from verify.waves.operating_point import PHASES_DEG, Landscape, driven_point, fastest_point
@@ -151,3 +152,21 @@ def test_a_lead_and_that_lead_less_a_turn_are_one_drive(titanium_strip, lead):
     case = DrivenCase(beam=lossy, model="analytic", count=None, forces=forces, frequency_hz=900.0)
     assert driven_point(case).phase_deg == -90.0
     assert fastest_point(case, 0.9).phase_deg < 0.0
+
+
+@pytest.mark.parametrize(
+    ("lead", "told"),
+    [
+        (75.5, 75.5),
+        (180.0, 180.0),
+        (180.5, -179.5),
+        (-180.0, 180.0),
+        (-180.5, 179.5),
+        (270.0, -90.0),
+        (901.25, -178.75),
+    ],
+)
+def test_a_lead_lies_above_minus_half_a_turn_and_up_to_half_a_turn(titanium_strip, lead, told):
+    forces = PointForce(position=0.041, phase_deg=11.0), PointForce(position=0.673, phase_deg=11.0 + lead)
+    case = DrivenCase(beam=titanium_strip, model="analytic", count=None, forces=forces, frequency_hz=900.0)
+    assert operating_point._between(case) == pytest.approx(told, abs=1e-9)

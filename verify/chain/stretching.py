@@ -112,7 +112,7 @@ def simulate_elastic(
     began = perf_counter()
     samples = _checked(system, axial_stiffness, times)
     step = _step(elastic_step_limit(system, axial_stiffness), step)
-    spacing = float(samples[1] - samples[0])
+    spacing = float(samples[1])
     work = fixed_steps(spacing, step) * (len(samples) - 1.0) * system.n_links * PER_STRETCHING_STEP
     refuse_work(work, most, float(samples[-1]))
     flat = _flattened(system, axial_stiffness, immovable)
@@ -146,7 +146,7 @@ def _march(
     from verify.chain import stretching_kernels as kernels
 
     k, w = np.zeros((4, *u.shape)), np.zeros((2, *u.shape))
-    spacing, kept = float(samples[1] - samples[0]), [(u.copy(), v.copy())]
+    spacing, kept = float(samples[1]), [(u.copy(), v.copy())]
     try:
         for t in samples[:-1]:
             if not kernels.march(flat, t, spacing / steps, steps, u, v, k, w):

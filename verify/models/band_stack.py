@@ -328,7 +328,7 @@ def product(bands: Array, vectors: Array) -> Array:
     most = max(_NEAR // found[0].size, 4)
     scratch = np.empty((most, *found.shape[1:]))
     for first in range(0, n, most):
-        last = min(first + most, n)
+        last = first + most
         out = found[first:last]
         np.multiply(bands[first:last, :1], vectors[first:last], out=out)
         for above in range(1, width):

@@ -73,7 +73,7 @@ def feet_of(placed: Sequence[Placed]) -> Feet:
         keeper=keeper,
         piece=_whole(np.zeros(len(points))),
         kick=np.zeros((len(feet), 2)),
-        sums=np.zeros((len(placed), 14)),
+        sums=np.zeros((len(placed), records.SUMS)),
     )
 
 
@@ -179,5 +179,5 @@ def fresh_log(samples: int, feet: Feet, rows: Array, every: int) -> Log:
         deflections=np.zeros((samples, len(rows))),
         events=np.zeros((EVENTS, 4)),
         tally=np.zeros(3, dtype=np.int64),
-        before=np.zeros((len(feet.body), 14)),
+        before=np.zeros((len(feet.body), records.SUMS)),
     )

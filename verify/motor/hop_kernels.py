@@ -28,7 +28,6 @@ from verify.motor.records import (
     LIFTED,
     MEAN_PUSH,
     MEAN_RUB,
-    MEAN_SPEED,
     MU,
     NOT_FINITE,
     OFF_BEAM,
@@ -119,7 +118,6 @@ def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
     state[0, HEIGHT] += rise
     state[0, CLIMB] -= hard.press * s
     sums[0, PULLED] += _pulling(0.0, feet) * way
-    sums[0, MEAN_SPEED] += way
     sums[0, PRESSED] -= hard.mass * hard.press * rise
 
 
@@ -247,7 +245,6 @@ def _book_riding(s: float, mean: float, surface_mean: float, feet: Feet) -> None
     sums[0, MEAN_RUB] += s * rub
     sums[0, MEAN_PUSH] += s * push
     sums[0, PULLED] += s * _pulling(rub, feet) * mean
-    sums[0, MEAN_SPEED] += s * mean
     sums[0, TOUCHING] += s
     sums[0, STICKING] += s * feet.touch[0, STUCK]
 

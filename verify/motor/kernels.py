@@ -30,7 +30,6 @@ from verify.motor.records import (
     MEAN,
     MEAN_PUSH,
     MEAN_RUB,
-    MEAN_SPEED,
     MU,
     NOT_FINITE,
     OFF_BEAM,
@@ -179,7 +178,6 @@ def _book(dt: float, feet: Feet) -> None:
                 sums[b, STICKING] += dt * touch[i, STUCK] / n
                 rubbed += rub
         sums[b, PULLED] += dt * mean * (riders[b, PULL] if riders[b, INVERSE_MASS] > 0.0 else -rubbed)
-        sums[b, MEAN_SPEED] += dt * mean
         feet.body[b, V] = means[b, AFTER]
 
 

@@ -37,13 +37,13 @@ what the step's forces give the beam of that closing; where on the piece the poi
 a slope that the slider goes along; normal force a step before; what Coulomb's friction can do there, what the surface
 gains in speed in a step (two-way, what the forces of the step have given it by its middle), by how much it is faster
 than the slider at an instant within it; power of friction on that beyond what the means of the step say."""
+SUMS = 13
 (
-    ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED,
-    UPHILL,
-) = range(14)  # fmt: skip
+    ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, LIFTED, UPHILL,
+) = range(SUMS)  # fmt: skip
 """Columns of `Feet.sums`: work of the surface across on the feet, along on the stage, of the pull and of what holds
 a speed, rubbed away, lost in dashpots, of what presses; integrals over time of friction, normal force, share of points
-that touch and stick; energy in the springs now; integral of the speed; work of the feet on the beam, and of the slopes
+that touch and stick; energy in the springs now; work of the feet on the beam, and of the slopes
 that a slider goes along on the feet."""
 KEPT_X, KEPT_V, KEPT_RUB, KEPT_PUSH, KEPT_TOUCHING, KEPT_STICKING, KEPT_RUBBED, KEPT_ALONG, KEPT_SURFACE = range(9)
 """Columns of `Log.kept`; friction, normal force, shares, works and the surface's speed under what touches are means, or
@@ -97,7 +97,7 @@ class Feet(NamedTuple):
     kick: Array
     """(feet, 2), what the step gives to height and pitch, m/s and 1/s."""
     sums: Array
-    """(sliders, 14)"""
+    """(sliders, SUMS)"""
 
 
 class Hard(NamedTuple):
@@ -161,4 +161,4 @@ class Log(NamedTuple):
     tally: Indices
     """(3,)"""
     before: Array
-    """(sliders, 14), the sums at the last sample."""
+    """(sliders, SUMS), the sums at the last sample."""

@@ -43,7 +43,7 @@ def felt_at(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Array,
     At an end that nothing holds the end joint and the end link themselves; the turn of such an end, where it has a
     joint of its own, is not read here (`loaded`).
     """
-    n, places = chain.n_segments, np.array(positions, dtype=float) / chain.unit - chain.start
+    n, places = chain.n_segments, np.array(positions, dtype=float) / chain.unit
     links, on, even = places_on(np.broadcast_to(chain.lengths[:, None], (n, len(places))), places)
     deflections, turns = np.zeros((len(places), n + 1)), np.zeros((len(places), n))
     alike = np.flatnonzero(even) if is_mended(rule, n) else np.arange(0)
@@ -58,7 +58,7 @@ def plainly(chain: Chain, position: float, rule: str, link: int, s: float) -> tu
     """Weights of one place, `s` on `link`: of the rigid link as it is, or those that mending begins from."""
     n, turn = chain.n_segments, np.zeros(chain.n_segments)
     if rule == "reciprocal" and n >= 3:
-        place, middles = position / chain.unit - chain.start, np.cumsum(chain.lengths) - 0.5 * chain.lengths
+        place, middles = position / chain.unit, np.cumsum(chain.lengths) - 0.5 * chain.lengths
         after = int(np.clip(np.searchsorted(middles, place), 1, n - 1))
         share = (place - middles[after - 1]) / (middles[after] - middles[after - 1])
         turn[after - 1 : after + 1] = np.clip([1.0 - share, share], 0.0, 1.0)
