@@ -789,7 +789,11 @@ DEAD = [
         "both forms of Eq. (1) are one where E and I do not change",
         uniform,
     ),
-    Dead("motion.reflection", "motion.duration arguments.time", "a steady motion is the same in every period"),
+    Dead(
+        "motion.reflection",
+        "motion.duration arguments.time arguments.periods",
+        "a steady motion is the same in every period",
+    ),
     Dead("motion.reflection", "beam.width", "a ratio of one motion: EI and rho A share the width"),
     Dead("chain.bent_*", "arguments.joints=tensioned", "dead loads: its joints know no axial force"),
     Dead("motion.released_deflection", "beam.width", "let go, not forced: EI and rho A share the width", lone),

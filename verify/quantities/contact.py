@@ -209,7 +209,7 @@ def _beside(a: Device, scene: "Scene") -> "tuple[list[PointForce], list[OnBeam]]
     others = [one for one in scene.devices if abs(one.position - at) > 1e-9 * beam.length]
     if not forces:
         raise InputError("drive.force: no force is left beside the device to drive the beam, add one")
-    places = [force.position for force in forces] + [one.position for one in others if one.across]
+    places = [at, *(force.position for force in forces), *(one.position for one in others if one.across)]
     turning = [one.position for one in others if one.turning]
     check_window(beam, places, drive_frequency(a, scene), middle_half(beam), turning)
     return forces, others

@@ -76,10 +76,13 @@ class ReleasedEnergy(Released, frozen=True, kw_only=True):
 
 
 class MeasuredInTime(InTime, frozen=True, kw_only=True):
-    """Waves measured of a motion, from its end back over whole periods."""
+    """Waves measured of a motion, from its end back over whole periods: all, its start with them, unless given."""
 
     window: Annotated[tuple[float, float], Meta(description="metres, start and end")]
     points: Annotated[int, Meta(ge=4, le=2000, description="evenly spaced, that are watched")] = 40
+    periods: (
+        Annotated[int, Meta(ge=1, description="the last so many of the drive, all of them unless given")] | None
+    ) = None
 
 
 def between_forces(a: MeasuredInTime, scene: "Scene") -> tuple[()]:
@@ -104,7 +107,13 @@ def _reflection(a: MeasuredInTime, scene: "Scene", bench: Workbench) -> float:
     x = places("window", np.linspace(start, end, a.points), scene.beam.length)
     samples = int(SAMPLES * case.duration * case.frequency_hz) + 1
     run = case.run(at=[float(one) for one in x], samples=samples)
-    return measure_series(scene.beam, x, run.times, run.deflection, case.frequency_hz).reflection
+    all_of_it = case.duration * case.frequency_hz
+    if a.periods is not None and a.periods > all_of_it:
+        raise InputError(
+            f"periods = {a.periods!r}: the motion has {all_of_it:.4g} of them, give fewer or a longer time"
+        )
+    last = samples if a.periods is None else SAMPLES * a.periods
+    return measure_series(scene.beam, x, run.times[-last:], run.deflection[-last:], case.frequency_hz).reflection
 
 
 def _booked(a: Booked, scene: "Scene", bench: Workbench) -> float:
