@@ -131,6 +131,42 @@ def test_what_numbers_do_not_bear_is_refused_with_its_name(measured, name, given
 @pytest.mark.parametrize("time", ["1e3", "1e5", "1e12"])
 def test_a_chain_that_would_be_kept_too_often_is_refused_before_it_is_laid_out(measured, time):
     slid = LOSSY + '[slider]\nmass = 1e-4\nmu = 0.2\nslope = 50\ncoupling = "one-way"\nposition = 0.31\n'
-    value, err = measured(slid.replace("loss_factor = 0.03\n", ""), "chain.slider_displacement", "segments=3", f"time={time}")
+    value, err = measured(
+        slid.replace("loss_factor = 0.03\n", ""), "chain.slider_displacement", "segments=3", f"time={time}"
+    )
     assert value is None
     assert "states of 3 links" in err
+
+
+AT_ONCE = """name = "told"
+
+[beam]
+length = 0.42
+width = 0.012
+thickness = 0.004
+youngs_modulus = 205e9
+density = 7830.0
+supports = ["clamped", "free"]
+
+[drive]
+frequency_hz = 130.0
+force = [{ position = 0.31, amplitude = 20.0, phase_deg = -60.0 }, { position = 0.37, amplitude = 13.0 }]
+
+[slider]
+mass = 0.002
+mu = 0.3
+slope = 40
+position = 0.2003
+preload = 0.5
+coupling = "one-way"
+"""
+
+
+def test_the_largest_friction_on_a_chain_is_of_a_run_whose_books_close(measured):
+    """Forces that act at once excite modes that turn within the drive's steps."""
+    asked = ("chain.slider_largest_friction", "segments=41", "time=0.03")
+    value, said = measured(AT_ONCE, *asked)
+    assert value is None
+    assert "% of what is rubbed away, so that its largest friction is not known; give a shorter step" in said
+    coarse, fine = (measured(AT_ONCE, *asked, f"step={step}")[0] for step in (8e-6, 2e-6))
+    assert coarse == pytest.approx(fine, rel=1e-3)

@@ -154,6 +154,23 @@ def _imbalance(run: "ChainRide") -> float:
     return abs(run.ledger.residual) / run.ledger.rubbed
 
 
+BALANCED = 0.01
+"""Of what friction rubs away: books that miss more are of forces that turn round within a step."""
+
+
+def _largest_friction(run: "ChainRide") -> float:
+    """Raises InputError for one below the law's limit of a run whose books do not close."""
+    slider = run.slider
+    assert slider is not None
+    saturated = run.largest_friction >= (1.0 - 1e-9) * slider.mu * slider.normal_force
+    if not saturated and (missing := _imbalance(run)) > BALANCED:
+        raise InputError(
+            f"step = {run.statistics.step_s:.3g} s: the slider's books miss {100.0 * missing:.2g} % of what is rubbed "
+            "away, so that its largest friction is not known; give a shorter step"
+        )
+    return run.largest_friction
+
+
 CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "chain.cantilever_tip",
@@ -255,7 +272,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
                 lambda run: run.displacement,
             ),
             ("mean_speed", "m/s", "Displacement over time.", lambda run: run.mean_speed),
-            ("largest_friction", "N", "Largest friction force on it.", lambda run: run.largest_friction),
+            ("largest_friction", "N", "Largest friction force on it.", _largest_friction),
             ("imbalance", "1", "What the slider's energy ledger misses, over what friction rubs away.", _imbalance),
         )
     ),
