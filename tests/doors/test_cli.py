@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -830,3 +831,16 @@ def test_modes_that_ask_for_few_parts_are_not_solved_for(verify):
     status, _, err = verify("choose", "--mode", "1-1000", "--error", "1%")
     assert status == 2
     assert re.match(r"verify: mode = 1000 would take about \d+ minutes, more than the 20 s", err)
+
+
+def test_a_copy_is_renamed_where_its_name_stands_and_its_next_command_can_be_typed(verify, tmp_path):
+    """A title of several lines may hold one that looks like it."""
+    given = (tmp_path / "told.toml", verify("show", "steel-cantilever")[1])
+    given[0].write_text(
+        'title = """\nname = "inner"\n"""\n' + re.sub(r"^title = .*$", "", given[1], flags=re.MULTILINE)
+    )
+    status, out, _ = verify("init", "my beam.toml", "--from", "told.toml")
+    assert status == 0
+    assert out == "wrote my beam.toml; next: verify run 'my beam.toml'\n"
+    written = tomllib.loads((tmp_path / "my beam.toml").read_text())
+    assert (written["name"], written["title"]) == ("my-beam", 'name = "inner"\n')

@@ -169,4 +169,4 @@ def test_the_largest_friction_on_a_chain_is_of_a_run_whose_books_close(measured)
     assert value is None
     assert "% of what is rubbed away, so that its largest friction is not known; give a shorter step" in said
     coarse, fine = (measured(AT_ONCE, *asked, f"step={step}")[0] for step in (8e-6, 2e-6))
-    assert coarse == pytest.approx(fine, rel=1e-3)
+    assert coarse == pytest.approx(fine, rel=3e-3)

@@ -47,7 +47,9 @@ def init(path: str, source: str | None, force: bool, as_json: bool) -> None:
     if as_json:
         print_json({"path": path, "next": ["verify", "run", path]})
     else:
-        click.echo(printable(f"wrote {path}; next: verify run {path}"))
+        from shlex import quote
+
+        click.echo(printable(f"wrote {path}; next: verify run {quote(path)}"))
 
 
 @click.command()

@@ -70,11 +70,22 @@ def _on_lines(entries: list[str]) -> str:
 def renamed(text: str, name: str) -> str:
     """A scene's text with another name and all its comments, and the line that names a schema. Raises InputError."""
     tables = _TABLE.search(text)
-    found = _NAME.search(text, 0, tables.start() if tables else len(text))
-    if found is None:
+    lines = _NAME.finditer(text, 0, tables.start() if tables else len(text))
+    tried = (f'{text[: found.start()]}name = "{name}"{text[found.end() :]}' for found in lines)
+    copied = next((one for one in tried if _named(one) == name), None)  # a line within a text of lines names nothing
+    if copied is None:
         raise InputError("--from: the scene has no name on a line of its own, give it one: name = 'mine'")
-    copied = f'{text[: found.start()]}name = "{name}"{text[found.end() :]}'
     return copied if "#:schema" in copied else f"{SCHEMA_LINE}\n{copied}"
+
+
+def _named(text: str) -> object:
+    """The name in a scene's text; None where it is no TOML any more."""
+    import tomllib
+
+    try:
+        return tomllib.loads(text).get("name")
+    except tomllib.TOMLDecodeError:
+        return None
 
 
 def name_of(path: Path) -> str:
