@@ -608,15 +608,15 @@ def in_use(path, name):
 PATIENCE = {
     "check_work": None,
     "check_taken": {"motion.stepping"},
-    "patient": {"stress.modes.sizes", "stress.limits.judgements", "stress.motor.means"},
-    "own_limit": {"commands.stress"},
+    "patient": {"stress.modes.sizes", "stress.limits.judgements", "stress.motor.means", "stress.figures"},
+    "own_limit": {"commands.stress", "cli", "pytest_plugin"},
     "waited_for": {"motor.figures", "motion.judged_step"},
-    "PATIENCE_S": {"stress.refused.runs"},
+    "PATIENCE_S": {"stress.refused.runs", "stress.figures"},
     "VARIABLE": {"motor.withheld"},
 }
 """What is taken of `patience`, by whom where few may: its refusals, before work and on the way; a `with` in which minutes are waited for, which the
 stress table opens around whole solves; what is waited for at most, to refuse what takes a little more; and the seconds that the
-environment says, the cap of that table's command."""
+environment says, the cap of that table's command, which the doors ask for to refuse what is none."""
 
 
 def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():

@@ -188,6 +188,8 @@ DEVICED = {
     },
 }
 """A device with everything, in the steady state alone."""
+HELD_BESIDE = {**DEVICED, "drive": {"device": [{**DEVICED["drive"]["device"][0], "position": 0.021}]}}
+"""The same device behind another."""
 TOUCHING = {
     "mass": 0.003,
     "mu": 0.23,
@@ -394,6 +396,7 @@ CASES: dict[str, list[Case]] = {
         Case({"position": 0.0573, "ratio": 1.7, "model": "analytic"}),
         Case({"position": 0.0573, "resistance": 3.1, "stiffness": 5100.0, "model": "segment", "count": 24}),
         Case({"position": 0.0573, "ratio": 1.7, "model": "fem", "count": 14}),
+        Case({"position": 0.0573, "ratio": 1.7, "model": "analytic"}, HELD_BESIDE),
     ],
     "slider.winkler_speed_ratio": [
         Case({"contact_half_angle": 1.1}),
@@ -514,7 +517,7 @@ CASES: dict[str, list[Case]] = {
         Case(
             {
                 **{"modes": 9, "model": "analytic", "place": 0.47, "height": 0.002},
-                **{"time": 0.07, "modal_damping": 0.03, "of": "kinetic"},
+                **{"time": 0.031, "modal_damping": 0.03, "of": "kinetic"},
             }
         )
     ],
@@ -650,6 +653,10 @@ def held(asked):
 def on_points(asked):
     """Whether no foot of a motor can turn."""
     return rides_on_feet(asked) and all(foot["points"] == 1 for foot in asked.scene["slider"]["foot"])
+
+
+def undeviced(asked):
+    return not asked.scene["drive"].get("device")
 
 
 def half_infinite(asked):
@@ -920,13 +927,20 @@ DEAD = [
     ),
     Dead("wave.absorber_*", "beam.length beam.supports.0", "half-infinite: the left end is far away", half_infinite),
     Dead(
-        "wave.absorber_reflection", "drive.force.*.amplitude drive.force.*.phase_deg", "one force is left, and a ratio"
+        "wave.absorber_reflection",
+        "drive.force.0.amplitude drive.force.0.phase_deg",
+        "one force is left, and a ratio",
+        undeviced,
     ),
+    Dead(
+        "wave.absorber_reflection", "drive.force.1.amplitude drive.force.1.phase_deg", "the device stands in its place"
+    ),
+    Dead("wave.absorber_reflection", "arguments.alone", "no other device", undeviced),
     Dead(
         "wave.absorber_reflection",
         "beam.width",
         "of beam and device alike, which is matched to it",
-        lambda asked: asked.arguments.get("ratio") is not None,
+        lambda asked: asked.arguments.get("ratio") is not None and undeviced(asked),
     ),
     Dead("friction.*", "beam.* drive.* slider.* motion.*", "a rigid surface of its own"),
     Dead(
@@ -1076,6 +1090,8 @@ DEAD = [
 
 OFF: dict[str, Any] = {
     "epsilon": 0.13,
+    "alone": True,
+    "periods": 3,
     "resistance": 3.7,
     "damping_ratio": 0.43,
     "damping": 7.7,

@@ -10,7 +10,6 @@ from verify.chain.ride import half_steps, ride
 from verify.chain.stretching import simulate_elastic
 from verify.chain.system import build_system
 from verify.errors import InputError
-from verify.motion.figures import mean
 from verify.studies.readings.chain_rides import Chains
 from verify.studies.readings.figures import chain_reading, reading, readings_study
 
@@ -115,7 +114,8 @@ def test_on_the_nonlinear_chain_one_reading_meets_every_claim(mu):
     curve = ChainCurve(moved.times, moved.angles, moved.rates, LENGTH / 49, 0.25, 0.001)
     speed, push = mean_speed(curve, 0.25, mu, 1e4, 1e-3)
     assert found.speed == pytest.approx(speed, rel=0.01)
-    assert found.figures["slider.mean_friction"] / scene.slider.mass == pytest.approx(push, rel=0.02)
+    # of second order in the slope, as 0.6 % of the speed: at mu = 0.05 2.1 %, in steps an eighth as long as well
+    assert found.figures["slider.mean_friction"] / scene.slider.mass == pytest.approx(push, rel=0.025)
     assert found.figures["slider.mean_surface_speed"] == pytest.approx(-4.52e-3, rel=0.01)
 
 
@@ -129,14 +129,14 @@ def stretching(force, links, phase=90.0, **how):
 
 
 @pytest.mark.parametrize(
-    ("links", "speed", "force", "surface"), [(49, -1.559e-2, -2.97e-4, -3.05e-3), (99, -1.562e-2, -1.54e-4, -1.57e-3)]
+    ("links", "speed", "force", "surface"), [(49, -1.559e-2, -3.015e-4, -3.05e-3), (99, -1.562e-2, -1.631e-4, -1.57e-3)]
 )
 def test_links_that_stretch_as_a_beam_does_keep_every_sign(links, speed, force, surface):
     """Left, both means negative, reversed: the axial inertia of rigid links does not make it; -1.565 cm/s at 199."""
     there, back = stretching(30.0, links), stretching(30.0, links, -90.0)
     assert there.mean_speed == pytest.approx(speed, rel=2e-3)
-    assert mean(there.times, there.friction) == pytest.approx(force, rel=0.02)
-    assert mean(there.times, there.surface_speed) == pytest.approx(surface, rel=0.02)
+    assert there.mean_friction == pytest.approx(force, rel=0.01)  # in steps an eighth as long
+    assert there.mean_surface_speed == pytest.approx(surface, rel=0.01)
     assert back.displacement / there.displacement == pytest.approx(-0.95, abs=0.01)
 
 

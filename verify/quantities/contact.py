@@ -93,12 +93,15 @@ class Absorbing(Device, frozen=True, kw_only=True):
     ratio: Annotated[float, Meta(ge=0, description="of its resistance to the matched one")] | None = None
     model: Annotated[str, model_meta(_WHOLE, "solve_harmonic")] | None = None
     count: Size | None = None
+    alone: Annotated[bool, Meta(description="without the scene's other devices; with model")] = False
 
     def __post_init__(self) -> None:
         if self.model is not None:
             catalogue.check_count(self.model, self.count)
         elif self.count is not None:
             raise InputError(f"count = {self.count!r}: a half-infinite beam has no parts, give model as well")
+        elif self.alone:
+            raise InputError("alone = True: a half-infinite beam has no other device, give model as well")
         if (self.ratio is None) == (self.resistance is None):
             raise InputError(f"ratio = {self.ratio!r} and resistance = {self.resistance!r}: give one of the two")
         for name in ("stiffness", "mass"):
@@ -194,7 +197,7 @@ def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
     return measured_alone(field, None, "reflection")
 
 
-def _beside(a: Device, scene: "Scene") -> "tuple[list[PointForce], list[OnBeam]]":
+def _beside(a: Absorbing, scene: "Scene") -> "tuple[list[PointForce], list[OnBeam]]":
     """Forces and devices of the scene beside a device, which stands in the place of what acts where it does.
 
     Raises InputError where no force is left, or one of them stands in the middle half.
@@ -206,7 +209,7 @@ def _beside(a: Device, scene: "Scene") -> "tuple[list[PointForce], list[OnBeam]]
     if scene.drive is not None and scene.drive.kind != "force":
         raise InputError(f"drive.kind = {scene.drive.kind!r}: beside a device forces drive the beam, give 'force'")
     forces = [force for force in scene.forces if abs(force.position - at) > 1e-9 * beam.length]
-    others = [one for one in scene.devices if abs(one.position - at) > 1e-9 * beam.length]
+    others = [one for one in scene.devices if not a.alone and abs(one.position - at) > 1e-9 * beam.length]
     if not forces:
         raise InputError("drive.force: no force is left beside the device to drive the beam, add one")
     places = [at, *(force.position for force in forces), *(one.position for one in others if one.across)]

@@ -16,7 +16,7 @@ _DECIMAL = re.compile(r"(?<![\w.])([+-]?)(?:(\d+)\.|\.(\d+))((?:[eE][+-]?\d+)?)(
 def read_text(path: Path) -> str:
     """The text of a scene file. Raises NoTomlError where it cannot be read."""
     exists(path, "scene")
-    if not (path.is_file() or path.is_dir()):  # a pipe or a device has no end
+    if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe or a device has no end
         raise NoTomlError(f"scene file {str(path)!r} is no file that ends: write the scene to one")
     try:
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
