@@ -82,7 +82,7 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
         raise InputError(
             f"kinetic = {kinetic!r} is not below static = {static!r}: without a drop nothing slips, lower it"
         )
-    _check_sizes(mass=mass, stiffness=stiffness, static=static, kinetic=kinetic, speed=speed)
+    _check_sizes(mass=mass, stiffness=stiffness, static=static, kinetic=kinetic)
     period = 2.0 * pi * sqrt(mass / stiffness)
     step = period / STEPS_PER_PERIOD
     stretching = static / stiffness / speed  # seconds until the belt has stretched the spring
