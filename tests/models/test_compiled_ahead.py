@@ -138,16 +138,20 @@ def test_what_waits_for_others_comes_after_what_needs_nothing_and_what_is_there(
     """The helper has begun the other belt, and is not done."""
     code = """
 with ahead.compiled_ahead(lambda: planned) as first:
-    order = [first.first_ready(["one", "chain"], needed)]  # nothing is there: as they stand
+    order = [first.first_ready(["belts", "one"], needed)]  # nothing is there: what misses least
+    length = {name: ahead._length(needed(name)[0][0]) for name in ("one", "chain")}
+    shorter = first.first_ready(["one", "chain"], needed), first.first_ready(["chain", "one"], needed)
     compile_(belts[:1])
     os.read(reading, 1)
     states = [first._state(i) for i in range(len(first.calls))]
     order += [first.first_ready(["belts", "chain", name], needed) for name in ("none", "one")]
     order.append(first.first_ready(["belts", "chain"], needed))
-print(json.dumps({"order": order, "states": states}))
+print(json.dumps({"order": order, "states": states, "length": length, "shorter": shorter}))
 """
     found, _ = told(tmp_path, 2, FIRST + code)
     assert found["order"] == ["one", "none", "one", "chain"]
+    assert found["shorter"] == 2 * [min(found["length"], key=found["length"].get)]
+    assert len(set(found["length"].values())) == 2
     ready, free, begun = 0, 1, 2
     assert found["states"] == [ready, begun, *[free] * (len(found["states"]) - 2)]
 

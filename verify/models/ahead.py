@@ -112,16 +112,18 @@ class _Crew:
         return True
 
     def first_ready(self, waiting: Sequence[int], needed: Callable[[int], Iterable[Call]]) -> int:
-        """The first whose kernels are all there, else whose kernels nobody compiles.
+        """The first whose kernels are all there, else the one that misses least of what nobody compiles.
 
-        Where others compile what all of them need, what nobody has begun is compiled meanwhile.
+        The longest is left to helpers, who are free in the meantime. Where others compile what all of them need, what
+        nobody has begun is compiled meanwhile.
         """
         if self.locks < 0:
             return waiting[0]
         while True:
             states = [max(map(self._state, self._needs(one, needed)), default=READY) for one in waiting]
             if min(states) < BEGUN or not self._compiled_one():
-                one = waiting[states.index(min(states))]
+                alike = [one for one, state in zip(waiting, states, strict=True) if state == min(states)]
+                one = min(alike, key=lambda one: self._missing(self._needs(one, needed)))
                 self._want(self._needs(one, needed))
                 return one
 
@@ -135,6 +137,11 @@ class _Crew:
         if one not in self.needs:
             self.needs[one] = self._numbers(needed(one))
         return self.needs[one]
+
+    def _missing(self, indices: Iterable[int]) -> tuple[int, int]:
+        """How many of these nobody has begun, and their length."""
+        lengths = [_length(self.calls[index][0]) for index in indices if self._state(index) == FREE]
+        return len(lengths), sum(lengths)
 
     def _numbers(self, calls: Iterable[Call]) -> tuple[int, ...]:
         """Of these calls."""
