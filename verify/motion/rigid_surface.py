@@ -21,7 +21,7 @@ DOUBLINGS = 60
 """Of the step, from the time that friction takes to act."""
 MOST_STEPS = 40_000_000
 LARGE = 1e100
-"""Of a mass, a stiffness, a force, a speed; the least is one over it."""
+"""Of a mass, a stiffness, a force; the least mass is one over it."""
 
 
 def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Law:
@@ -65,10 +65,11 @@ def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) 
     return float(state[1])
 
 
-def _check_sizes(**given: float) -> None:
-    """Raise InputError for one whose square no number is."""
+def _check_sizes(mass: float, **given: float) -> None:
+    """Raise InputError for sizes whose quotients are no numbers any more."""
+    check_number("mass", mass, "kg", at_least=1.0 / LARGE, at_most=LARGE)
     for name, value in given.items():
-        check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
+        check_number(name, value, "SI", at_most=LARGE)
 
 
 def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: float, speed: float) -> tuple[float, float]:
@@ -82,7 +83,7 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
         raise InputError(
             f"kinetic = {kinetic!r} is not below static = {static!r}: without a drop nothing slips, lower it"
         )
-    _check_sizes(mass=mass, stiffness=stiffness, static=static, kinetic=kinetic)
+    _check_sizes(mass, stiffness=stiffness, static=static, kinetic=kinetic)
     period = 2.0 * pi * sqrt(mass / stiffness)
     step = period / STEPS_PER_PERIOD
     stretching = static / stiffness / speed  # seconds until the belt has stretched the spring
@@ -108,7 +109,7 @@ def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
     """Amplitude that a spring-mass oscillator on a floor with Coulomb friction `force` loses in a cycle, metres."""
     from verify.motion.friction_kernels import slide_on_belt
 
-    _check_sizes(mass=mass, stiffness=stiffness, force=force)
+    _check_sizes(mass, stiffness=stiffness, force=force)
     period = 2.0 * pi * sqrt(mass / stiffness)
     start = 12.5 * force / stiffness
     events, state = np.zeros((EVENTS, 3)), np.array([start, 0.0, 0.0])
