@@ -562,3 +562,37 @@ def test_what_is_of_the_chain_is_refused_without_one(setting):
     assert getattr(kept, name) is not None
     assert kept.chain_force == (3.0 if name == "chain_force" else 30.0)
     assert load_scene("preloaded-motor", ('motor.models=["segment"]',)).motor.chain_force is None
+
+
+THROWN_OFF = """name = "thrown"
+[beam]
+length = 0.1307029111791325
+width = 0.01753741395415265
+thickness = 0.006876589524473618
+youngs_modulus = 252904462929.53503
+density = 1552.5852238346363
+[drive]
+frequency_hz = 17607.624434826277
+force = [
+  { position = 0.01307029111791325, amplitude = -2.0 },
+  { position = 0.01307029111791325, measured_from = "right", amplitude = 19174623.648624845 },
+]
+[slider]
+mass = 0.0027291516047554857
+mu = 0.07613671112430882
+position = 0.030061669571200475
+preload = 1.2940089707841667
+coupling = "one-way"
+contact = { stiffness = 69993889.74541315, damping = 0.0 }
+[motor]
+models = ["segment"]
+speeds = 2
+periods = 200
+"""
+
+
+def test_a_slider_that_is_thrown_off_in_its_first_periods_has_no_speed_and_is_refused(tmp_path):
+    """Of one sample there is no mean: it was 0/0."""
+    (tmp_path / "thrown.toml").write_text(THROWN_OFF)
+    with pytest.raises(InputError, match=r"motor.start: the free run left the beam within two periods, give smaller"):
+        studied(load_scene(str(tmp_path / "thrown.toml")))

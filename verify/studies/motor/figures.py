@@ -306,13 +306,15 @@ def _field(
         shooting=_shooting(case, one_way),
         margins=run.motor_margins,
         coupling=run.coupling,
-        amplitude=_amplitude(case),
+        amplitude=float(abs(case.field().deflection([case.slider.start_on(case.beam)])[0])),
     )
     return found, _histories(begun, under_way, cut_off, turned)
 
 
 def _free(under_way: Timed, crests: float) -> FreeRun:
     run = under_way.run
+    if len(run.times) < 3:
+        raise InputError(f"motor.start: the free run {run.statistics.stopped} within two periods, give smaller forces")
     last = max(int(LAST * (len(run.times) - 1)) // 2 * 2, 2)
     speed, spread = mean_speed(run, last)
     seconds = float(run.times[-1] - run.times[-1 - last])
@@ -346,10 +348,6 @@ def _shooting(case: MotorCase, one_way: bool) -> Shooting | None:
         return_error=found.missed,
         largest_multiplier=float(np.abs(found.multipliers).max()),
     )
-
-
-def _amplitude(case: MotorCase) -> float:
-    return float(abs(case.field().deflection([case.slider.start_on(case.beam)])[0]))
 
 
 def _histories(case: MotorCase, under_way: Timed, cut_off: Timed | None, turned: Timed | None) -> dict[str, History]:
