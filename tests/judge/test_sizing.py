@@ -8,6 +8,7 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.exact import error_laws
 from verify.judge import known, sizing
+from verify.judge.several import demanding
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
@@ -282,3 +283,11 @@ def test_sizes_are_looked_through_until_the_shortest_section_has_parts_of_its_ow
     assert abs(bench.frequency_error("segment", 100, mode)) < error
     sizes = [*range(200, 300, 7), *range(300, 500, 23)]
     assert all(abs(bench.frequency_error("segment", size, mode)) < error for size in sizes)
+
+
+def test_of_several_modes_only_a_proven_law_spares_any():
+    """Other laws may be off by as many parts again: there a mode of few may ask for the most."""
+    strip = Beam(length=0.61, width=0.023, thickness=0.0017, youngs_modulus=113e9, density=4470.0)
+    guesses = {3: 41, 4: 97, 5: 58, 6: 99}
+    assert demanding("segment", strip, guesses, proven=True) == [4, 6]
+    assert demanding("segment", strip, guesses, proven=False) == [3, 4, 5, 6]

@@ -24,7 +24,7 @@ Progress = Callable[[float], None]
 """Hears how much of a motion is done, 0 to 1."""
 
 LINEAR = 1e-6
-"""Amplitude in radii of gyration up to which a chain is linear to a tenth of a billionth of a per cent."""
+"""Amplitude in radii of gyration up to which a chain is linear to 1e-13."""
 
 
 def unheard(part: float) -> None:

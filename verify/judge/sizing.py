@@ -130,7 +130,7 @@ def enough_from(
     guess = max(guesses.values())
     proven = law and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH
     if proven or (law and (guess > _CLOSELY or modes[-1] > _EVERY)):
-        near = demanding(model, bench.beam, guesses)
+        near = demanding(model, bench.beam, guesses, proven)
         beside = {one: _beside_guess(bench, model, one, error, smallest) for one in near}
         worst = max(beside, key=lambda one: (beside[one], one))
         count = beside[worst]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast, get_args, get_origin
 
 import msgspec
 
+from verify.checks import plain
 from verify.errors import InputError, shown
 from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Workbench
@@ -143,9 +144,7 @@ UNCOUNTED = {
 def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Figure:
     """The figure. Raises InputError, also where the quantity gives none."""
     _check_devices(found, scene)
-    value: Any = found.evaluate(arguments, scene, bench)
-    if type(value).__module__ == "numpy" and not getattr(value, "shape", ()):  # of a quantity from elsewhere
-        value = value.item()
+    value = plain(found.evaluate(arguments, scene, bench), found.name)  # of a quantity from elsewhere it may be numpy's
     if not isinstance(value, float | int | complex | Bracket):
         raise InputError(f"quantity = {found.name!r} gave {value!r}, which is no figure: let it give a number")
     if told := UNCOUNTED.get(found.work):

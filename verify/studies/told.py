@@ -1,12 +1,12 @@
 """How what a study finds is told: tables, charts, facts and an answer as plain values."""
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from typing import Any, Literal, TypeAlias
 
 import msgspec
 from msgspec.structs import replace
 
+from verify.checks import plain
 from verify.errors import InputError
 from verify.studies.chart import Chart
 from verify.units import unit_over
@@ -143,9 +143,9 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def as_number(value: Any) -> Any:
     """A number of numpy's, as a study from elsewhere may have, as Python's own. Raises NotImplementedError."""
-    if type(value).__module__ == "numpy" and not getattr(value, "shape", ()):
-        return value.item()
-    raise NotImplementedError(f"{type(value).__name__} is no plain data")
+    if (found := plain(value)) is value:
+        raise NotImplementedError(f"{type(value).__name__} is no plain data")
+    return found
 
 
 def numbered(heads: list[str]) -> list[str]:
@@ -160,8 +160,7 @@ def numbered(heads: list[str]) -> list[str]:
 
 def _as_data(value: Any, column: Column) -> Any:
     """A number in its column's unit, in the SI unit where that is what suits, with all digits; all else as it is."""
-    with suppress(NotImplementedError):
-        value = as_number(value)
+    value = plain(value)
     if not isinstance(value, float | int) or isinstance(value, bool):
         return value
     scale = 100.0 if column.form in PERCENTS else 1.0 if column.si else column.factor
