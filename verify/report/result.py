@@ -1,0 +1,189 @@
+"""The one type that studies, benchmarks, comparisons and stress checks return, and its forms as text and data.
+
+A `Result` holds what was computed as plain values: a summary, tables, figures, warnings, data. Everything that shows it
+(terminal, HTML page, CSV, Markdown, JSON, LaTeX) reads it through this module.
+"""
+
+import csv
+import io
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from verify.units import unit_over
+
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as MatplotlibFigure
+    from rich.console import Console
+
+MISSING = "–"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table. Values are stored in SI units, relative errors as ratios."""
+
+    name: str
+    unit: str = ""
+    """SI unit of the stored values."""
+    format: str = ".5g"
+    percent: bool = False
+    """Show ratios in per cent."""
+    prefix: bool = False
+    """Show values with the SI prefix that suits the largest of the column (m -> mm)."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under columns; None is a value that does not exist."""
+
+    title: str
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[Any]]
+    notes: Sequence[str] = ()
+    """Fixed sentences below it."""
+
+    def records(self) -> list[dict[str, Any]]:
+        """The rows as data, in SI units, keyed by column name."""
+        names = [column.name for column in self.columns]
+        return [dict(zip(names, map(plain, row), strict=True)) for row in self.rows]
+
+    def headings(self) -> list[str]:
+        """Column names with the unit in which `text_rows` shows the values."""
+        units = ["%" if c.percent else self._scaled(i)[0] for i, c in enumerate(self.columns)]
+        return [f"{c.name}, {unit}" if unit else c.name for c, unit in zip(self.columns, units, strict=True)]
+
+    def text_rows(self) -> list[list[str]]:
+        """The rows as text, every cell formatted as its column says."""
+        factors = [100.0 if c.percent else self._scaled(i)[1] for i, c in enumerate(self.columns)]
+        return [
+            [_cell(value, column, factor) for value, column, factor in zip(row, self.columns, factors, strict=True)]
+            for row in self.rows
+        ]
+
+    def _scaled(self, index: int) -> tuple[str, float]:
+        column = self.columns[index]
+        if not (column.prefix and column.unit):
+            return column.unit, 1.0
+        values = (row[index] for row in self.rows)
+        unit = unit_over((float(v) for v in values if isinstance(v, int | float)), column.unit)
+        return unit.name, unit.factor
+
+    def csv(self) -> str:
+        """Comma-separated values in SI units with all digits."""
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow([f"{c.name}, {c.unit}" if c.unit else c.name for c in self.columns])
+        writer.writerows([["" if v is None else plain(v) for v in row] for row in self.rows])
+        return out.getvalue()
+
+    def markdown(self) -> str:
+        """A Markdown table as a person reads it."""
+        lines = [self.headings(), ["---:"] * len(self.columns), *self.text_rows()]
+        return "".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |\n" for line in lines)
+
+    def print(self, console: "Console") -> None:
+        """Print it with rich; cells fold where the terminal is narrow."""
+        from rich.table import Table as RichTable
+
+        grid = RichTable(title=self.title or None, title_justify="left", box=None, pad_edge=False)
+        for index, heading in enumerate(self.headings()):
+            words = any(isinstance(row[index], str) for row in self.rows)
+            grid.add_column(heading, justify="left" if words else "right", overflow="fold")
+        for row in self.text_rows():
+            grid.add_row(*row)
+        console.print(grid)
+        for note in self.notes:
+            console.print(note)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A chart, drawn by matplotlib when a page or a file asks for it (see `report.plotting`)."""
+
+    id: str
+    title: str
+    caption: str
+    """What is shown, under which condition: a fixed text."""
+    draw: Callable[["Axes"], None]
+    """Draws on the axes of a single chart, labels with units included."""
+    size: tuple[float, float] = (6.4, 4.0)
+    """Inches."""
+
+
+@dataclass(frozen=True)
+class Movie:
+    """An animation, rendered when a page or a file asks for it."""
+
+    id: str
+    title: str
+    caption: str
+    animate: Callable[["MatplotlibFigure"], "FuncAnimation"]
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """Everything that one study, benchmark, comparison or stress run computed."""
+
+    summary: str = ""
+    """One sentence with the condition under which it holds; empty where nothing converged."""
+    tables: Sequence[Table] = ()
+    """The first is the one that CSV and Markdown show."""
+    figures: Sequence[Figure] = ()
+    movies: Sequence[Movie] = ()
+    warnings: Sequence[str] = ()
+    """Fixed sentences on what is not converged, left out, or outside its range of validity."""
+    data: Mapping[str, Any] = field(default_factory=dict)
+    """More values for JSON, in SI units."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON: summary, warnings, tables as records, and the data."""
+        tables = [{"title": table.title, "rows": table.records()} for table in self.tables]
+        return {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | plain(self.data)
+
+    def print(self, console: "Console") -> None:
+        """Print summary, tables and warnings."""
+        if self.summary:
+            console.print(self.summary)
+        for table in self.tables:
+            table.print(console)
+        for warning in self.warnings:
+            console.print(f"warning: {warning}", style="yellow")
+
+
+def to_json(value: Any) -> str:
+    """JSON with an indent of two, numpy's types as Python's, what is not finite as null."""
+    return json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def plain(value: Any) -> Any:
+    """Numpy's numbers and arrays, tuples, complex numbers and dataclass-like values as what JSON takes."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(one) for key, one in value.items()}
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(one) for one in value]
+    if isinstance(value, complex):
+        return {"re": plain(value.real), "im": plain(value.imag)}
+    if isinstance(value, float):
+        return value if isfinite(value) else None
+    if hasattr(value, "__struct_fields__"):
+        return {name: plain(getattr(value, name)) for name in value.__struct_fields__}
+    return value
+
+
+def _cell(value: Any, column: Column, factor: float) -> str:
+    if value is None:
+        return MISSING
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int) and factor == 1.0 and column.format == ".5g":
+        return str(value)
+    return format(factor * value, column.format)
