@@ -164,17 +164,15 @@ def plain(value: Any) -> Any:
     """Numpy's numbers and arrays, tuples, complex numbers and dataclass-like values as what JSON takes."""
     if isinstance(value, Mapping):
         return {str(key): plain(one) for key, one in value.items()}
+    if hasattr(value, "__struct_fields__"):
+        return {name: plain(getattr(value, name)) for name in value.__struct_fields__}
     if hasattr(value, "tolist"):
         return plain(value.tolist())
     if isinstance(value, list | tuple):
         return [plain(one) for one in value]
     if isinstance(value, complex):
         return {"re": plain(value.real), "im": plain(value.imag)}
-    if isinstance(value, float):
-        return value if isfinite(value) else None
-    if hasattr(value, "__struct_fields__"):
-        return {name: plain(getattr(value, name)) for name in value.__struct_fields__}
-    return value
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def _cell(value: Any, column: Column, factor: float) -> str:
