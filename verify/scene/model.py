@@ -190,8 +190,10 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             return computed < 0.0 if self.value == "negative" else computed > 0.0
         if self.value is not None and self.tolerance is not None:
             return abs(computed - self.value) <= self.tolerance
-        return (-inf if self.at_least is None else self.at_least) <= computed <= (
-            inf if self.at_most is None else self.at_most
+        return (
+            (-inf if self.at_least is None else self.at_least)
+            <= computed
+            <= (inf if self.at_most is None else self.at_most)
         )
 
 

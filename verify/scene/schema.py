@@ -1,4 +1,4 @@
-"""JSON Schema of a scene file, with the docstrings under the fields as descriptions, for editors and `verify schema`."""
+"""JSON Schema of a scene file; descriptions are the docstrings under the fields."""
 
 import ast
 import inspect
