@@ -32,9 +32,6 @@ TimeModel = Annotated[str, model_meta("which model", "time_basis")]
 Frequency = Annotated[float, Meta(gt=0, description="Hz; default: the scene's drive")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
 Theory = Annotated[options.Theory, Meta(description="beam theory")]
-Reading = Annotated[
-    str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default: the model's first")
-]
 Wall = Annotated[options.Wall, Meta(description="joint at a clamped end; half: k = 2EI/l")]
 Joints = Annotated[options.Joints, Meta(description="joint stiffness of Eq. (1)")]
 Attachment = Annotated[options.Attachment, Meta(description="point masses and springs on segments")]
@@ -74,13 +71,35 @@ class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
     attachment: Attachment = "reciprocal"
 
     @property
-    def chosen(self) -> "Settings":
+    def settings(self) -> "Settings":
         """Those other than their defaults."""
-        return not_default(self)
+        return not_default(self, without=("model", "mode", "count"))
 
-    def settings(self, model: str, kind: str = "modal") -> "Settings":
-        """`chosen`. Raises InputError for one that the model lacks."""
-        return self.chosen if model == MEAN else check_settings(model, self.chosen, kind)
+
+class OneMode(ModelOptions, frozen=True, kw_only=True):
+    """One mode of one model."""
+
+    model: ModesModel
+    mode: Mode
+    count: Size | None = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+        if self.model != MEAN:
+            check_settings(self.model, self.settings, "modal")
+
+
+class OneModeOrMean(OneMode, frozen=True, kw_only=True):
+    """One mode of one model or of the mean of segment and fem."""
+
+    model: AnyModel
+
+
+class OneDiscreteMode(OneMode, frozen=True, kw_only=True):
+    """One mode of one discrete model."""
+
+    model: DiscreteModel
+    count: Size
 
 
 class DriveOptions(msgspec.Struct, frozen=True, kw_only=True):

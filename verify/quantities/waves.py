@@ -46,7 +46,7 @@ Imposed = Annotated[options.DriveKind, Meta(description="what is imposed; defaul
 DRIVEN = ("beam", "drive")
 
 
-class FieldOptions(msgspec.Struct, frozen=True, kw_only=True):
+class FieldSettings(msgspec.Struct, frozen=True, kw_only=True):
     """Losses and settings of a harmonic field."""
 
     loss_factor: Loss | None = None
@@ -67,6 +67,13 @@ class FieldOptions(msgspec.Struct, frozen=True, kw_only=True):
                 raise InputError(f"{name} = {value!r}: {what} takes a loss_factor alone, give that instead")
 
 
+class FieldOptions(FieldSettings, frozen=True, kw_only=True):
+    """A model of the driven beam with its losses and settings."""
+
+    model: FieldModel = "analytic"
+    count: Size | None = None
+
+
 class UnitOptions(msgspec.Struct, frozen=True, kw_only=True):
     """A model of the driven beam whose field is a superposition of unit drives."""
 
@@ -78,11 +85,13 @@ class UnitOptions(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def driven_case(
-    scene: Scene, drive: DriveOptions, options: FieldOptions | UnitOptions, model: str, count: int | None
+    scene: Scene, drive: DriveOptions, options: FieldSettings | UnitOptions, model: str = "", count: int | None = None
 ) -> "DrivenCase":
-    """The driven beam of a scene with these options. Raises InputError."""
+    """The driven beam of a scene with these options, by their model unless given. Raises InputError."""
     from verify.waves.case import DrivenCase
 
+    if isinstance(options, FieldOptions | UnitOptions):
+        model, count = options.model, options.count
     check_count(model, count)
     settings = check_settings(model, not_default(options, without=("loss_factor", "drive", "model", "count")), "field")
     loss = options.loss_factor
@@ -98,32 +107,18 @@ def driven_case(
     )
 
 
-def driven_field(
-    scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
-    options: FieldOptions,
-    model: str = "analytic",
-    count: int | None = None,
-) -> "HarmonicField":
+def driven_field(scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: FieldOptions) -> "HarmonicField":
     """The steady field of a scene with these options. Raises InputError."""
     from verify.waves.driven import driven
 
-    return driven(driven_case(scene, drive, options, model, count), cache)
+    return driven(driven_case(scene, drive, options), cache)
 
 
 def _at_place(read: "Callable[[HarmonicField, float], Any]") -> Callable[..., complex]:
     def at_place(
-        scene: Scene,
-        cache: "SolutionCache",
-        drive: DriveOptions,
-        options: FieldOptions,
-        *,
-        x: Place,
-        model: FieldModel = "analytic",
-        count: Size | None = None,
+        scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: FieldOptions, *, x: Place
     ) -> complex:
-        return complex(read(driven_field(scene, cache, drive, options, model, count), x)[0])
+        return complex(read(driven_field(scene, cache, drive, options), x)[0])
 
     return at_place
 
@@ -143,13 +138,11 @@ def _measure(figure: str) -> Callable[..., float]:
         drive: DriveOptions,
         options: FieldOptions,
         *,
-        model: FieldModel = "analytic",
-        count: Size | None = None,
         window: Window | None = None,
     ) -> float:
         from verify.waves.driven import measured_alone
 
-        return float(measured_alone(driven_field(scene, cache, drive, options, model, count), window, figure))
+        return float(measured_alone(driven_field(scene, cache, drive, options), window, figure))
 
     return measure
 
@@ -177,8 +170,6 @@ def axis_ratio(
     drive: DriveOptions,
     options: FieldOptions,
     *,
-    model: FieldModel = "analytic",
-    count: Size | None = None,
     x: Place | None = None,
     window: Window | None = None,
 ) -> float:
@@ -188,7 +179,7 @@ def axis_ratio(
 
     if x is not None and window is not None:
         raise InputError(f"window = {list(window)} with x = {x!r}: give one of the two")
-    field = driven_field(scene, cache, drive, options, model, count)
+    field = driven_field(scene, cache, drive, options)
     if x is None:
         return float(measured_alone(field, window, "mean_axis_ratio"))
     return float(ellipse(surface_motion(field.beam, field.turn(x), x=x), field.deflection(x))[0][0])
@@ -196,14 +187,7 @@ def axis_ratio(
 
 @quantity("wave.power_imbalance", unit="1", reads=DRIVEN, devices=True)
 def power_imbalance(
-    scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
-    options: FieldOptions,
-    *,
-    model: FieldModel = "analytic",
-    count: Size | None = None,
-    window: Window | None = None,
+    scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: FieldOptions, *, window: Window | None = None
 ) -> float:
     """Power of the left force less losses up to the window's middle less flux there, over that flux."""
     from verify.waves.driven import measures, power_imbalance
@@ -211,7 +195,7 @@ def power_imbalance(
     options.check_loss_factor_alone("a power balance")
     if any(device.turning for device in scene.devices):
         raise InputError("drive.device: a power balance takes transverse devices alone, leave its rotational terms out")
-    field = driven_field(scene, cache, drive, options, model, count)
+    field = driven_field(scene, cache, drive, options)
     return power_imbalance(field, measures(field, window))
 
 
@@ -222,15 +206,13 @@ def best_frequency(
     drive: DriveOptions,
     options: FieldOptions,
     *,
-    model: FieldModel = "analytic",
-    count: Size | None = None,
     window: Window | None = None,
     span: Annotated[Relative, Meta(gt=0, lt=0.5, description="search range relative to the drive's frequency")] = 0.015,
 ) -> float:
     """Frequency of least reflection near the drive's."""
     from verify.waves.driven import best_frequency
 
-    return best_frequency(driven_case(scene, drive, options, model, count), span, window, cache)
+    return best_frequency(driven_case(scene, drive, options), span, window, cache)
 
 
 @quantity("wave.order", unit="1", reads=DRIVEN, devices=True)
@@ -238,7 +220,7 @@ def order(
     scene: Scene,
     cache: "SolutionCache",
     drive: DriveOptions,
-    options: FieldOptions,
+    options: FieldSettings,
     *,
     model: DiscreteField,
     counts: Sizes,
@@ -297,7 +279,7 @@ def _sensitivity(attribute: str) -> Callable[..., float]:
     def sensitivity(scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: UnitOptions) -> float:
         from verify.waves.operating_point import driven_point
 
-        return float(getattr(driven_point(driven_case(scene, drive, options, options.model, options.count)), attribute))
+        return float(getattr(driven_point(driven_case(scene, drive, options)), attribute))
 
     return sensitivity
 
@@ -321,7 +303,7 @@ def fastest_crests(
     """Largest crest speed with a reflection up to `limit`, within 1.5 % of the frequency and phases of 5 to 175 deg."""
     from verify.waves.operating_point import fastest_point
 
-    return fastest_point(driven_case(scene, drive, options, options.model, options.count), limit).crest_speed
+    return fastest_point(driven_case(scene, drive, options), limit).crest_speed
 
 
 FromRightEnd = Annotated[float, Meta(ge=0, description="m from the right end")]
