@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 from msgspec import Meta
 
-from verify.errors import InputError
+from verify.errors import InputError, NoBracketError
 from verify.judge.variants import Rules, Variant
 from verify.studies.base import Progress, Study, variant_colors
 
