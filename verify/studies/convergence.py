@@ -36,7 +36,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve every variant at every size and time it. Raises InputError for a size that cannot be solved."""
-        from verify.judge.workbench import comparable
+        from verify.judge.cache import comparable
         from verify.report.result import Column, Figure, Result, Table
 
         models, left_out = comparable(cache.beam, self.counts, max(self.modes))
@@ -140,15 +140,15 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
-        from verify.judge.workbench import bracketed
+        from verify.judge.cache import has_bracket
         from verify.models.naming import MEAN
 
         rows: list[Row] = []
         reasons: dict[str, None] = {}
+        settings = next((one for one in self.combinations if has_bracket(cache.beam, one)), self.combinations[0])
         for mode in self.modes:
             for count in self.counts:
                 try:
-                    settings = bracketed(cache.beam, self.combinations)
                     bound = cache.bracket(mode, count, settings)
                     mean = cache.frequency_error(MEAN, count, mode, settings)
                 except NoBracketError as error:
