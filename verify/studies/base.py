@@ -33,6 +33,11 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError where the scene lacks what the study needs, or has what it does not model."""
+        if scene.devices and not self.devices:
+            raise InputError(
+                f"{self.name}: this study does not model drive.device, and one stands at "
+                f"{scene.devices[0].position:g} m: leave out drive.device or [{self.name}]"
+            )
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Compute the study. Raises InputError."""

@@ -209,7 +209,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         for order, own in guides.items():
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)
-        _size_axis(ax, self.counts)
+        size_axis(ax, self.counts)
         ax.set_ylabel("|frequency error|, %")
         ax.legend(ncols=2)
 
@@ -239,7 +239,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         ax.plot(counts, [100 * row["mean_error"] for row in own], "-o", color=MODEL_COLORS["mean"], label="mean")
         ax.axhline(0.0, color=MODEL_COLORS["analytic"], linewidth=1.0)
         ax.set_xscale("log")
-        _size_axis(ax, counts)
+        size_axis(ax, counts)
         ax.set_ylabel("against the exact frequency, %")
         ax.legend()
 
@@ -247,12 +247,12 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         for one, color in variant_colors(tuple(joints)).items():
             errors = [float("nan") if error is None else 100 * abs(error) for error in joints[one]]
             ax.loglog(self.counts, errors, "-o", color=color, label=one.title)
-        _size_axis(ax, self.counts)
+        size_axis(ax, self.counts)
         ax.set_ylabel("|frequency error|, %")
         ax.legend()
 
 
-def _size_axis(ax: "Axes", counts: "tuple[int, ...] | list[int]") -> None:
+def size_axis(ax: "Axes", counts: "tuple[int, ...] | list[int]") -> None:
     """A tick at every size that was solved."""
     from matplotlib.ticker import NullLocator
 
