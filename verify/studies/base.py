@@ -1,12 +1,12 @@
 """What a study is: a section of a scene that runs itself and returns a `Result`."""
 
-from collections.abc import Callable, Iterator, Mapping
-from importlib import import_module
+from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import msgspec
 
-from verify.errors import InputError, near_name
+from verify.errors import InputError
+from verify.registry import Registry
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
@@ -21,9 +21,11 @@ Progress: TypeAlias = Callable[[str], None]
 class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A section of a scene file. A subclass is the section's type: its fields are the options, `run` computes.
 
-    Other packages add one by an entry point of the group `verify.studies`, or by `STUDIES.register(name, Mine)`.
+    Other packages add one by an entry point of the group `verify.studies`, or by `STUDIES.register(Mine)`.
     """
 
+    name: ClassVar[str] = ""
+    """Of its section in a scene and of its key in JSON."""
     title: ClassVar[str] = ""
     """Heading on the page."""
     devices: ClassVar[bool] = False
@@ -31,67 +33,21 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError where the scene lacks what the study needs, or has what it does not model."""
+        if scene.devices and not self.devices:
+            raise InputError(
+                f"{self.name}: this study does not model drive.device, and one stands at "
+                f"{scene.devices[0].position:g} m: leave out drive.device or [{self.name}]"
+            )
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Compute the study. Raises InputError."""
         raise NotImplementedError
 
 
-class Studies(Mapping[str, type[Study]]):
-    """Study classes by the name of their section, in the order in which they run; imported on first use."""
-
-    def __init__(self, homes: Mapping[str, str]) -> None:
-        """`homes`: 'module:class' by name."""
-        self._homes = dict(homes)
-        self._classes: dict[str, type[Study]] = {}
-        self._entry_points_read = False
-        self.built_in = tuple(homes)
-
-    def named(self, name: str) -> type[Study]:
-        """The class of that name. Raises InputError with the nearest name."""
-        if name not in self:
-            raise InputError(f"study = {name!r} is not known: {near_name(name, tuple(self))}")
-        return self[name]
-
-    def register(self, name: str, study: type[Study]) -> None:
-        """Add a study for this process."""
-        self._classes[name] = study
-        self._homes.setdefault(name, f"{study.__module__}:{study.__qualname__}")
-
-    def __getitem__(self, name: str) -> type[Study]:
-        if name not in self._homes:
-            self._read_entry_points()
-        if name not in self._classes:
-            module, _, attribute = self._homes[name].partition(":")
-            try:
-                self._classes[name] = getattr(import_module(module), attribute)
-            except (ImportError, AttributeError) as error:
-                raise InputError(f"study = {name!r} cannot be imported ({error}): repair its package") from error
-        return self._classes[name]
-
-    def __contains__(self, name: object) -> bool:
-        if name not in self._homes:
-            self._read_entry_points()
-        return name in self._homes
-
-    def __iter__(self) -> Iterator[str]:
-        self._read_entry_points()
-        return iter(tuple(self._homes))
-
-    def __len__(self) -> int:
-        return len(tuple(iter(self)))
-
-    def _read_entry_points(self) -> None:
-        if not self._entry_points_read:
-            from importlib.metadata import entry_points
-
-            self._entry_points_read = True
-            for point in entry_points(group="verify.studies"):
-                self._homes.setdefault(point.name, point.value)
-
-
-STUDIES = Studies(
-    {
+STUDIES: Registry[type[Study]] = Registry(
+    "study",
+    "verify.studies",
+    homes={
         "spectrum": "verify.studies.spectrum:Spectrum",
         "convergence": "verify.studies.convergence:Convergence",
         "wave": "verify.studies.wave:Wave",
@@ -100,8 +56,10 @@ STUDIES = Studies(
         "axial_inertia": "verify.studies.axial_inertia:AxialInertia",
         "claims": "verify.studies.claims:Claims",
         "sweep": "verify.studies.sweep:Sweep",
-    }
+    },
+    classes=True,
 )
+"""Study classes by the name of their section, in the order in which they run."""
 
 
 def studies_of(scene: "Scene") -> list[tuple[str, Study]]:

@@ -33,8 +33,8 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
+        from verify.judge.cache import comparable, theory_of
         from verify.judge.compare import EIGENVALUE_FLOOR
-        from verify.judge.workbench import comparable, theory_of
         from verify.report.result import Column, Figure, Result, Table
         from verify.words import theory_name
 
@@ -126,7 +126,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         import numpy as np
 
         from verify.exact.modes import mode_shape
-        from verify.judge.workbench import theory_of
+        from verify.judge.cache import theory_of
         from verify.models.catalogue import MODELS
         from verify.report.plotting import MODEL_COLORS
         from verify.report.result import Figure
