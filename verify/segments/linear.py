@@ -34,7 +34,6 @@ from verify.segments.reading import (
     line_through,
     link_middles,
     link_slopes,
-    spline_at,
 )
 
 _FEWEST_MENDED = 6
@@ -440,4 +439,4 @@ def unit_responses(
 
 def _read_at(chain: Chain, free: Array, x: Array) -> Array:
     """The corrected reading of the unknowns (n, k) at x, (k, len(x))."""
-    return spline_at(chain, joint_readings(chain, free), x, 0)
+    return line_through(chain, lambda: joint_readings(chain, free))(x, 0)
