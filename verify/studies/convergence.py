@@ -68,7 +68,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         tables = [
             Table("Frequency error over N", error_columns, [tuple(list(row.values())[:7]) for row in rows], [note])
         ]
-        figures = [
+        figures: list[tuple[str, str, Any, tuple[Any, ...]]] = [
             (
                 "errors-over-size",
                 "Convergence with the number of segments or elements",

@@ -32,7 +32,7 @@ ENVELOPES = (
     "A pure travelling wave on one section without losses has a flat envelope; ripples are reflection. Near forces and "
     "ends the near field decays."
 )
-SIZES = "Against the exact beam: solid at the drive's frequency, dotted each model at its own frequency of least reflection."
+SIZES = "Against the exact beam: solid at the drive's frequency, dotted at each model's frequency of least reflection."
 MOVIE = (
     "One period of the drive. Links are straight between their joints. The motion of surface points along the beam is "
     "magnified as in the ellipses."
