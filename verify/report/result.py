@@ -111,7 +111,7 @@ class Figure:
     """What is shown, under which condition: a fixed text."""
     draw: Callable[["Axes"], None]
     """Draws on the axes of a single chart, labels with units included."""
-    size: tuple[float, float] = (6.4, 4.0)
+    size: tuple[float, float] = (5.4, 3.5)
     """Inches."""
 
 
