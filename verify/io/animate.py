@@ -52,7 +52,7 @@ def _frames(data: Dataset, request: Request) -> "dict[str, Array]":
     if data.what == "modes":
         mode = min(request.mode or 3, len(data.steps))
         swing = np.cos(2.0 * np.pi * np.arange(FRAMES) / FRAMES)
-        labels = np.full(FRAMES, f"mode {mode}, {data.steps[mode - 1]:.6g} Hz")
+        labels = np.full(FRAMES, f"mode {mode} at {data.steps[mode - 1]:.6g} Hz")
         return {"deflection": data.deflection[mode - 1] * swing[:, None], "label": labels}
     thin = slice(None, None, -(-len(data.steps) // MAX_FRAMES))
     unit = unit_of(float(data.steps[-1]), "s")
@@ -85,8 +85,10 @@ def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
         color = MODEL_COLORS["segment" if data.links else "fem"]
         ax.plot([0.0, length], [0.0, 0.0], color="#b0b6be", linewidth=0.8)
         for x, support in zip((0.0, length), scene.beam.supports, strict=True):
-            marker = {"pinned": "^", "clamped": "s", "guided": "D", "free": ""}[support]
-            ax.plot([x], [0.0], marker=marker or "none", color=INK, markersize=9, clip_on=False)
+            marker, y = {"pinned": ("^", -0.3), "clamped": ("s", 0.0), "guided": ("D", 0.0), "free": ("none", 0.0)}[
+                support
+            ]
+            ax.plot([x], [y * HEIGHT * length], marker=marker, color=INK, markersize=9, clip_on=False)
         for force in scene.forces if data.what != "modes" else ():
             tip = (force.position, 0.3 * HEIGHT * length)
             ax.annotate("", tip, (force.position, 2.2 * HEIGHT * length), arrowprops={"color": "#cc3f76", "width": 1.0})
@@ -95,7 +97,8 @@ def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
         text = ax.text(0.5, 0.97, "", transform=ax.transAxes, ha="center", va="top")
         ax.set(xlim=(-0.04 * length, 1.04 * length), ylim=(-2.4 * HEIGHT * length, 2.6 * HEIGHT * length))
         ax.set_axis_off()
-        ax.set_title(f"{data.title}; deflection magnified {scale:.3g} times", fontsize=9)
+        magnified = "" if data.what == "modes" else f"; deflection magnified {scale:.3g} times"
+        ax.set_title(f"{data.title}{magnified}", fontsize=9)
 
         def update(frame: int) -> list[Any]:
             line.set_data(data.x, scale * deflection[frame])

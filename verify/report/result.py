@@ -107,7 +107,9 @@ class Table:
         for block in blocks:
             grid = RichTable(title=self.title or None, title_justify="left", box=None, pad_edge=False)
             for i in block:
-                grid.add_column(headings[i], justify="left" if words[i] else "right", no_wrap=not words[i])
+                grid.add_column(
+                    headings[i], justify="left" if words[i] else "right", no_wrap=not words[i], overflow="fold"
+                )
             for row in rows:
                 grid.add_row(*(row[i] for i in block))
             console.print(grid)
