@@ -28,7 +28,8 @@ CHAINS: "dict[Inertia, str]" = {
     "transverse": "without axial inertia",
     "elastic": "stretching links",
 }
-NAMES: dict[str, str] = {"exact": "exact beam", "fem": "Hermite elements", "linear": "linear chain", **CHAINS}
+NAMES: dict[str, str] = {"exact": "exact beam", "fem": "Hermite elements", "linear": "linear chain"}
+NAMES |= {str(links): name for links, name in CHAINS.items()}
 STYLES: dict[str, dict[str, Any]] = {
     "linear": {"color": "#2a9d5c"},
     "full": {"color": "#2f80ed"},
