@@ -15,7 +15,6 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.eigen import field_seconds
 from verify.models.fields import HarmonicField, phasor
-from verify.models.ordered import distinct
 from verify.models.search import Least, least_over
 from verify.models.sweeps import HarmonicSweep
 from verify.patience import check_work
@@ -178,7 +177,7 @@ def _cell_edges(field: HarmonicField, end: float) -> Array:
     of_forces, beam = [force.position for force in field.forces], field.beam
     places = np.array([*of_forces, *(m.position for m in beam.mass), *(s.position for s in beam.spring)])
     cells = max(int(end * field.wavenumber.real), 8)
-    return distinct(np.concatenate([np.linspace(0.0, end, cells), places[places < end]]))
+    return np.unique(np.concatenate([np.linspace(0.0, end, cells), places[places < end]]))
 
 
 def _lost(field: HarmonicField, x: Array, weights: Array) -> float:
