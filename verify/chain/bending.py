@@ -11,14 +11,14 @@ from verify.chain.system import LinkLoad, build_system
 from verify.chain.work import STATIC_LINKS, check_links
 from verify.checks import check_number, check_whole, check_word
 from verify.errors import InputError, shown
-from verify.field_docs import Value
+from msgspec import Struct
 from verify.models.arrays import Array
 from verify.models.places import Numbers, as_typed, in_a_row
 from verify.options import JOINTS, Joints, Wall
 from verify.segments.linear import check
 
 
-class Bent(Value, frozen=True, eq=False, kw_only=True):
+class Bent(Struct, frozen=True, eq=False, kw_only=True):
     """A cantilever of rigid links in equilibrium, clamped at x = 0; x along the straight beam, y across it."""
 
     beam: Beam

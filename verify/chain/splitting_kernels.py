@@ -7,7 +7,7 @@ from verify.chain.kernels import accelerate, furthest, torn
 from verify.chain.records import DIVERGED, DONE, HALF, RUNNING, Flat, Modal
 from verify.chain.recursion_kernels import cosines, direction, solve
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import lean, part
+from verify.jit import jit, inline
 
 FAR = 0.1
 """Share by which the last mode's hold on the tip may change before the roller is closed afresh."""
@@ -15,7 +15,7 @@ NEWTON_STEPS = 20
 """Of closing afresh; three or four do where the links stand near the line."""
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _expand(modes: Array, state: Array, rest: Array, q: Array, v: Array) -> None:
     """Angles and rates from modal coordinates, (m, 2); `modes` is (m, N)."""
     for i in range(q.size):
@@ -32,7 +32,7 @@ def _expand(modes: Array, state: Array, rest: Array, q: Array, v: Array) -> None
             v[i] += state[j, 1] * modes[j, i]
 
 
-@part(fastmath={"contract", "reassoc"})
+@inline(fastmath={"contract", "reassoc"})
 def _reduce(duals: Array, a: Array, out: Array) -> None:
     """Modal accelerations, (m,); `duals` is (m, N)."""
     for j in range(duals.shape[0]):
@@ -42,7 +42,7 @@ def _reduce(duals: Array, a: Array, out: Array) -> None:
         out[j] = total
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _rotate(turns: Array, state: Array) -> None:
     """Exact linear flow: `turns` (m, 3) holds cos, sin / omega and - omega sin of the step."""
     for j in range(turns.shape[0]):
@@ -50,7 +50,7 @@ def _rotate(turns: Array, state: Array) -> None:
         state[j, 0], state[j, 1] = turns[j, 0] * x + turns[j, 1] * y, turns[j, 2] * x + turns[j, 0] * y
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
     """Steady answer of the modes to the harmonic loads, (m, 2); `shares` is (n_loads, m)."""
     for j in range(out.shape[0]):
@@ -63,7 +63,7 @@ def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
             out[j, 1] += shares[k, j] * rate
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _close(f: Flat, d: Modal, free: Array, work: Array) -> bool:
     """One chord step of the roller's closure along the last mode, which turns the tip off its line by `d.tilt` at rest.
 
@@ -81,7 +81,7 @@ def _close(f: Flat, d: Modal, free: Array, work: Array) -> bool:
     return bool(abs(lever - d.tilt) < FAR * abs(d.tilt))
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _settle(d: Modal, t: float, afresh: bool, free: Array, work: Array) -> bool:
     """Bring the chain at the end of a step onto the roller's line; whether it came there.
 
@@ -108,7 +108,7 @@ def _settle(d: Modal, t: float, afresh: bool, free: Array, work: Array) -> bool:
     return _land(d, free, work)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _find_way(d: Modal, work: Array) -> None:
     """How a force of the roller moves the links as they stand: its share in each mode into `d.force`."""
     n, relative = d.rest.size, d.vectors[2]
@@ -125,7 +125,7 @@ def _find_way(d: Modal, work: Array) -> None:
     _reduce(d.duals, relative, d.force)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _land(d: Modal, free: Array, work: Array) -> bool:
     """Newton's method along a way, which turns the links by `d.vectors[0]`, and rates that stay on the line."""
     went, way, links = 0.0, d.vectors[0], d.loose.links
@@ -146,7 +146,7 @@ def _land(d: Modal, free: Array, work: Array) -> bool:
     return False
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _flow(omega: Array, time: float, start: Array, out: Array) -> None:
     """Exact linear flow of a time from one state to another."""
     for j in range(omega.size):
@@ -156,7 +156,7 @@ def _flow(omega: Array, time: float, start: Array, out: Array) -> None:
         out[j, 1] = c * y - w * s * x
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _between(s: float, h: float, omega: Array, flowing: Array, miss: Array, steady: Array, out: Array) -> None:
     """Modal state at a share s of a step, (2, m): the linear flow from its start, a cubic through what kicks added."""
     slow0, slow1 = s * s * (3.0 - 2.0 * s), h * s * s * (s - 1.0)
@@ -171,7 +171,7 @@ def _between(s: float, h: float, omega: Array, flowing: Array, miss: Array, stea
         out[1, j] += flowing[j, 1] + steady[j, 1]
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _kick(f: Flat, d: Modal, t: float, h: float, free: Array, work: Array) -> None:
     """Nonlinear kick of a step h: what the linear flow leaves out of the accelerations, by the explicit mid-point.
 
@@ -195,7 +195,7 @@ def _kick(f: Flat, d: Modal, t: float, h: float, free: Array, work: Array) -> No
         free[j, 1] += h * d.force[j]
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _keep_modal(d: Modal, t: float, h: float, counts: Indices, samples: Array, kept: Array, free: Array) -> None:
     """Samples within a step that went from `d.start` to `free`; an even spacing takes one sine for each mode."""
     miss, first = d.trial, True
@@ -219,7 +219,7 @@ def _keep_modal(d: Modal, t: float, h: float, counts: Indices, samples: Array, k
         counts[3] += 1
 
 
-@lean(fastmath={"contract"})
+@jit(fastmath={"contract"})
 def march_modal(
     f: Flat, d: Modal, clock: Array, counts: Indices, samples: Array, kept: Array, budget: int, free: Array, work: Array
 ) -> int:

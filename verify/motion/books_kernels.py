@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
+from verify.jit import FAST, inline
 from verify.motion.records import (
     DAMPED,
     DRIVEN,
@@ -25,7 +25,7 @@ from verify.motion.records import (
 )
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def power(drive: Drive, books: Books, time: float, factors: Array) -> float:
     """Power of the driving forces, watts."""
     angle = drive.omega * (drive.origin + time)
@@ -42,7 +42,7 @@ def power(drive: Drive, books: Books, time: float, factors: Array) -> float:
     return total
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def loss(modes: Array, answers: Array, factors: Array) -> float:
     """Power lost in the modes, watts."""
     total, n = 0.0, modes.shape[1]
@@ -54,7 +54,7 @@ def loss(modes: Array, answers: Array, factors: Array) -> float:
     return total
 
 
-@part()
+@inline
 def correct_powers(time: float, surface: Surface, books: Books, space: Space) -> None:
     """Powers at the end of a step with what the contact has added to the speeds since its start, half at mid-step."""
     seen = space.seen
@@ -65,7 +65,7 @@ def correct_powers(time: float, surface: Surface, books: Books, space: Space) ->
     seen[2, POWER], seen[2, LOSS] = driven, damped
 
 
-@part()
+@inline
 def by_parts(v: float, v1: float, moved: float, dt: float, mass: float, seen: Array) -> float:
     """Work of a step's friction on a beam that does not feel it: of friction times the surface's line, by parts.
 
@@ -76,7 +76,7 @@ def by_parts(v: float, v1: float, moved: float, dt: float, mass: float, seen: Ar
     return float(-mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved))
 
 
-@part()
+@inline
 def pulled(v: float, v1: float, moved: float, dt: float, mass: float, seen: Array, took: Array) -> tuple[float, float]:
     """Work of the turning tangent and of gravity along it in a step: (on the slider, at the speed of the surface)."""
     start, end = mass * dt / 6.0 * seen[0, PULL], mass * dt / 6.0 * seen[2, PULL]
@@ -87,7 +87,7 @@ def pulled(v: float, v1: float, moved: float, dt: float, mass: float, seen: Arra
     return own, start * (mean - half) + middle * mean + end * (mean + half)
 
 
-@part()
+@inline
 def account(
     v: float, v1: float, pressed: float, turned: float, dt: float, mass: float, ledger: Array, seen: Array
 ) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam
-from verify.field_docs import Value
+from msgspec import Struct
 from verify.models.underfoot import standing_at
 from verify.motion.records import Law
 from verify.options import NormalChoice
@@ -36,7 +36,7 @@ def law_of(slider: Slider, beam: Beam) -> Law:
     )
 
 
-class Coupling(Value, frozen=True, kw_only=True):
+class Coupling(Struct, frozen=True, kw_only=True):
     """Whether the beam feels the slider, and by how much."""
 
     two_way: bool
@@ -97,7 +97,7 @@ class Coupling(Value, frozen=True, kw_only=True):
         )
 
 
-class Margins(Value, frozen=True, kw_only=True):
+class Margins(Struct, frozen=True, kw_only=True):
     """How far a run can be believed; each is small where its assumption holds."""
 
     lift_off: float

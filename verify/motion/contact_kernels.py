@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
+from verify.jit import FAST, inline
 from verify.motion.friction_kernels import hold, slip
 from verify.motion.records import (
     CLIMB,
@@ -32,7 +32,7 @@ from verify.motion.records import (
 from verify.motion.surface_kernels import carried, climbed, material
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float) -> Here:
     """How unit forces on the surface at x load every mode: a tangential one -(h/2) on its slope, w' on its rise.
 
@@ -61,7 +61,7 @@ def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float
     return Here(piece, at, above, slope)
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float) -> None:
     """How far every mode lifts the slider at x, with what slides under it."""
     table, edges, modes = surface.table, surface.edges, surface.modes
@@ -81,7 +81,7 @@ def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float)
         modes[READ, j] = value + lean * turn
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _mobilities(modes: Array) -> tuple[float, float, float, float]:
     """Tangential speed of the surface after a constant unit force has acted for half a step and a whole one, m/s per N.
 
@@ -98,7 +98,7 @@ def _mobilities(modes: Array) -> tuple[float, float, float, float]:
     return half, full, across_half, across
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _compliances(modes: Array) -> tuple[float, float]:
     """How far constant unit forces lift the surface under the slider in a step, a normal and a tangential one, m/N."""
     by_normal, by_push = 0.0, 0.0
@@ -111,7 +111,7 @@ def _compliances(modes: Array) -> tuple[float, float]:
     return by_normal, by_push
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _press(along: float, across: float, modes: Array) -> None:
     """Add what constant forces over the whole step add to the modes: (1 - turn) about the shifted rest position."""
     for j in range(modes.shape[1]):
@@ -122,7 +122,7 @@ def _press(along: float, across: float, modes: Array) -> None:
         modes[Z_IM, j] += imaginary - (modes[FULL_RE, j] * imaginary + modes[FULL_IM, j] * real)
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _given_ways(modes: Array) -> tuple[float, float]:
     """How far the free modes have moved the surface along the levers of a tangential force and of a normal one."""
     along, across = 0.0, 0.0
@@ -132,7 +132,7 @@ def _given_ways(modes: Array) -> tuple[float, float]:
     return along, across
 
 
-@part()
+@inline
 def _reaction(dt: float, modes: Array, motion: Array, law: Law, seen: Array) -> tuple[float, float]:
     """The normal reaction, mean over a step, that keeps a slider with inertia on the surface.
 
@@ -148,7 +148,7 @@ def _reaction(dt: float, modes: Array, motion: Array, law: Law, seen: Array) -> 
     return free / own, stiff * by_push / own
 
 
-@part()
+@inline
 def _balance(
     v: float, stuck: bool, half: float, full: float, static: float | None, law: Law, dt: float, space: Space
 ) -> float:
@@ -181,7 +181,7 @@ def _balance(
     return float(force)
 
 
-@part()
+@inline
 def push_back(
     v: float, stuck: bool, dt: float, here: Here, surface: Surface, rider: Rider, space: Space
 ) -> tuple[float, float]:
@@ -212,7 +212,7 @@ def push_back(
     return -force * (way + along), -normal * (climb + up)
 
 
-@part()
+@inline
 def _bear(normal: float, dt: float, rider: Rider) -> None:
     """Give a normal reaction to the slider."""
     motion, law = rider.motion, rider.law
@@ -222,7 +222,7 @@ def _bear(normal: float, dt: float, rider: Rider) -> None:
     motion[NORMAL] = normal
 
 
-@part()
+@inline
 def feel(dt: float, motion: Array, law: Law, seen: Array) -> None:
     """The slider's normal reaction and how fast the surface falls away under it, where it does not push back."""
     lift = 4.0 * (seen[0, LEVEL] - 2.0 * seen[1, LEVEL] + seen[2, LEVEL]) / (dt * dt)

@@ -10,7 +10,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown
-from verify.field_docs import Value
+from msgspec import Struct
 from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.fields import LARGEST_SLOPE
@@ -50,7 +50,7 @@ CORNERED = 0.05
 """Of the elastic energy: what the faster half of the modes have of a shape without corners at most."""
 
 
-class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
+class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     """A beam that vibrates freely from an initial shape and velocity."""
 
     model: str

@@ -6,7 +6,7 @@ A slider on a belt, at the end of the file, is friction alone.
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
+from verify.jit import jit, inline
 from verify.motion.records import (
     CHANGE,
     FIRST_EVENT,
@@ -27,7 +27,7 @@ from verify.motion.records import (
 )
 
 
-@lean()
+@jit
 def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> float:
     """What friction -b tanh(slope r) adds to a slider's speed in dt, while r' = -b tanh(slope r) - a exactly.
 
@@ -54,7 +54,7 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
     return float(side * added / slope)
 
 
-@part()
+@inline
 def _brief_change(rho: float, alpha: float, tau: float) -> float:
     """What friction adds to rho in a short tau, in which logarithms cancel: four stages, off by less than 3e-11 tau."""
     first = np.tanh(rho)
@@ -64,7 +64,7 @@ def _brief_change(rho: float, alpha: float, tau: float) -> float:
     return float(-tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0)
 
 
-@part()
+@inline
 def _swept_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), alpha > 1: there is no speed at rest with the surface.
 
@@ -91,13 +91,13 @@ def _swept_change(rho: float, alpha: float, tau: float) -> float:
     return float(change)
 
 
-@part()
+@inline
 def _ln_cosh(delta: float) -> float:
     """Ln(2 cosh delta), without overflow."""
     return float(abs(delta) + np.log1p(np.exp(-2.0 * abs(delta))))
 
 
-@part()
+@inline
 def _held_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1: rho tends to rest = -artanh alpha.
 
@@ -123,17 +123,17 @@ def _held_change(rho: float, alpha: float, tau: float) -> float:
     return float(side * _arsinh_exp(level) + rest - rho)
 
 
-@part()
+@inline
 def _ln_sinh(eta: float) -> float:
     return float(np.log(np.sinh(eta))) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
 
 
-@part()
+@inline
 def _arsinh_exp(level: float) -> float:
     return float(np.arcsinh(np.exp(level))) if level < 20.0 else level + np.log(2.0)
 
 
-@lean()
+@jit
 def coulomb_span(
     r: float, a0: float, a1: float, kinetic: float, static: float, dt: float, stuck: bool
 ) -> tuple[float, float, bool, float]:
@@ -162,7 +162,7 @@ def coulomb_span(
     return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
 
 
-@part()
+@inline
 def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     """The first t in (0, dt) where r - slowing t - rate t^2/2 changes sign, else dt."""
     if r == 0.0:
@@ -182,7 +182,7 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     return best
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _grip(r: float, slope: float | None) -> float:
     """Share of full friction under Eq. (3). Numba drops a branch for what is None, and only then: hence twice."""
     if slope is None:
@@ -190,7 +190,7 @@ def _grip(r: float, slope: float | None) -> float:
     return float(np.tanh(slope * r))
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _tanh_slip(r: float, a: float, b: float, slope: float | None, dt: float) -> float:
     """`tanh_speed_change` where the law has a slope."""
     if slope is None:
@@ -198,7 +198,7 @@ def _tanh_slip(r: float, a: float, b: float, slope: float | None, dt: float) -> 
     return tanh_speed_change(r, a, b, slope, dt)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def friction(r: float, static: float | None, law: Law) -> float:
     """Friction per mass at relative speed r where it does not depend on sticking; `static` is the law's."""
     if static is None:
@@ -206,7 +206,7 @@ def friction(r: float, static: float | None, law: Law) -> float:
     return float(-law.kinetic * np.sign(r))
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def slip(
     v: float,
     stuck: bool,
@@ -255,7 +255,7 @@ def slip(
     return float(took[CHANGE])
 
 
-@part()
+@inline
 def hold(v: float, full: float, static: float, law: Law, dt: float, seen: Array, took: Array) -> float:
     """Speed change in one step of a slider at rest on a surface that feels it; fills `took`, which holds the last one.
 
@@ -275,14 +275,14 @@ def hold(v: float, full: float, static: float, law: Law, dt: float, seen: Array,
     return float(took[CHANGE])
 
 
-@part()
+@inline
 def give(dt: float, seen: Array, took: Array) -> None:
     """What everything but friction adds to the speed by the middle and the end of a step."""
     took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
     took[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
 
 
-@part()
+@inline
 def _tanh_on_belt(
     dt: float, kinetic: float, slope: float | None, belt: float, stiffness: float, pull: float, state: Array
 ) -> None:
@@ -300,7 +300,7 @@ def _tanh_on_belt(
     state[0], state[1] = x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
 
 
-@part()
+@inline
 def _step_on_belt(
     end: float,
     dt: float,
@@ -335,7 +335,7 @@ def _step_on_belt(
     return n_events
 
 
-@lean()
+@jit
 def slide_on_belt(
     n_steps: int, dt: float, law: Law, belt: float, stiffness: float, pull: float, state: Array, events: Array
 ) -> int:

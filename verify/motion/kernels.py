@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import lean, part
+from verify.jit import jit, inline
 from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power, pulled
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import friction, give, slip
@@ -55,7 +55,7 @@ from verify.motion.surface_kernels import between, climb, find_piece, rotate_hal
 from verify.motion.way_kernels import advance, felt_way, until_caught, way
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _see(
     row: int,
     time: float,
@@ -79,14 +79,14 @@ def _see(
         seen[row, LOSS] = loss(surface.modes, books.answers, factors)
 
 
-@part()
+@inline
 def _remember(local: Array) -> None:
     """Keep the deflection at the start of a step."""
     for d in range(local.shape[1]):
         local[BEFORE, d] = local[STILL, d]
 
 
-@part()
+@inline
 def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: Law, space: Space) -> None:
     """Inertia and drift along the surface at the end of a step with what the contact has added, half at mid-step."""
     seen = space.seen
@@ -97,7 +97,7 @@ def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: 
     space.slip[GIVEN_END] += 0.5 * dt * (seen[2, PULL] - pull)
 
 
-@part()
+@inline
 def _answer(
     end: float, dt: float, x: float, v: float, here: Here, surface: Surface, rider: Rider, books: Books, space: Space
 ) -> tuple[float, float]:
@@ -120,7 +120,7 @@ def _answer(
     return works
 
 
-@part()
+@inline
 def _put_on(piece: int, edges: Array, motion: Array, law: Law, space: Space) -> None:
     """Height and climb of a slider that was seen at the start of a step, and what presses it on."""
     seen = space.seen
@@ -129,7 +129,7 @@ def _put_on(piece: int, edges: Array, motion: Array, law: Law, space: Space) -> 
     motion[CLIMB] = climb(space.local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law.half)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _starts(v: float, grip: float, dt: float, two_way: bool | None, seen: Array) -> float:
     """The slider's acceleration at the start of a step, by which its place in the step is foreseen."""
     if two_way is None:
@@ -137,7 +137,7 @@ def _starts(v: float, grip: float, dt: float, two_way: bool | None, seen: Array)
     return float(seen[0, PULL] + grip)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _step(
     number: int,
     dt: float,
@@ -192,7 +192,7 @@ def _step(
         books.ledger[LIFTED] += lifted
 
 
-@lean()
+@jit
 def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books, kept: Kept, space: Space) -> int:
     """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
@@ -221,7 +221,7 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
     return DONE
 
 
-@part()
+@inline
 def _note_events(time: float, x: float, took: Array, events: Array, tally: Indices) -> None:
     """Write down all events of a step, as long as there is room; all of them are counted."""
     for i in range(int(took[N_EVENTS])):
@@ -231,7 +231,7 @@ def _note_events(time: float, x: float, took: Array, events: Array, tally: Indic
         tally[EVENTS] += 1
 
 
-@part()
+@inline
 def _keep(dt: float, motion: Array, law: Law, kept: Kept, space: Space) -> None:
     """Write one sample; friction that sticks is the step's mean."""
     surface, row, points, rows = space.seen[2, SURFACE], kept.tally[SAMPLES], kept.points, kept.kept
@@ -246,7 +246,7 @@ def _keep(dt: float, motion: Array, law: Law, kept: Kept, space: Space) -> None:
         kept.deflections[row, p] = total
 
 
-@lean()
+@jit
 def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array, space: Space) -> int:
     """The same steps on a surface that is given at every half step, one way; how many were done on its piece.
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
+from verify.jit import FAST, inline
 from verify.motion.records import (
     BEFORE,
     DRIFT,
@@ -24,7 +24,7 @@ from verify.motion.records import (
 )
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def rotate_half(modes: Array) -> None:
     """Advance every free mode by half a step."""
     for j in range(modes.shape[1]):
@@ -33,7 +33,7 @@ def rotate_half(modes: Array) -> None:
         modes[Z_RE, j] = real
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def set_factors(time: float, modes: Array, drive: Drive, factors: Array) -> None:
     """Time factors of all rows and their rates: modes first, then (t/ramp)^d (cos, -sin) of the drive."""
     n = modes.shape[1]
@@ -53,7 +53,7 @@ def set_factors(time: float, modes: Array, drive: Drive, factors: Array) -> None
         power = power * time / unit
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def set_local(table: Array, piece: int, factors: Array, local: Array) -> None:
     """Polynomials of deflection and velocity on one piece; table is (pieces, degree + 1, rows)."""
     for d in range(table.shape[1]):
@@ -64,7 +64,7 @@ def set_local(table: Array, piece: int, factors: Array, local: Array) -> None:
         local[STILL, d], local[MOVING, d] = still, moving
 
 
-@part()
+@inline
 def find_piece(edges: Array, x: float, piece: int) -> int:
     """The piece that holds x, from the one that did; -1 off the pieces."""
     while piece >= 0 and x < edges[piece]:
@@ -76,7 +76,7 @@ def find_piece(edges: Array, x: float, piece: int) -> int:
     return piece if piece < len(edges) - 1 else -1
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def material(local: Array, edges: Array, piece: int, x: float, half: float) -> float:
     """The local coordinate of the material point under x: X = x + (h/2) w'."""
     length = edges[piece + 1] - edges[piece]
@@ -88,7 +88,7 @@ def material(local: Array, edges: Array, piece: int, x: float, half: float) -> f
     return float(xi + half * first / (length * length))
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def touch(local: Array, edges: Array, piece: int, x: float, speed: float, law: Law, seen: Array, row: int) -> None:
     """The surface under x: tangential velocity of its material, and what a slider that follows it feels.
 
@@ -111,14 +111,14 @@ def touch(local: Array, edges: Array, piece: int, x: float, speed: float, law: L
         seen[row, DRIFT] = -slope * rise
 
 
-@part()
+@inline
 def between(ends: Array, edges: Array, piece: int, x: float) -> float:
     """What changes evenly along a piece, at x; `ends` are its values at all edges."""
     share = (x - edges[piece]) / (edges[piece + 1] - edges[piece])
     return float((1.0 - share) * ends[piece] + share * ends[piece + 1])
 
 
-@part()
+@inline
 def climb(local: Array, edges: Array, piece: int, x: float, along: float, half: float) -> float:
     """Speed across the beam of a point on the surface over x that moves along x: dw/dt + w' dX/dt at its material."""
     length = edges[piece + 1] - edges[piece]
@@ -134,7 +134,7 @@ def climb(local: Array, edges: Array, piece: int, x: float, along: float, half: 
     return float(rise + slope / length * (along + half * (turn / length + bend * along)))
 
 
-@part()
+@inline
 def carried(local: Array, edges: Array, here: Here, half: float) -> float:
     """How far the whole motion moves the surface in a step, along the tangent here, metres."""
     at, slope, piece = here.at, here.slope, here.piece
@@ -145,7 +145,7 @@ def carried(local: Array, edges: Array, here: Here, half: float) -> float:
     return float((slope * value - half * first / (edges[piece + 1] - edges[piece])) / np.sqrt(1.0 + slope * slope))
 
 
-@part()
+@inline
 def climbed(local: Array, edges: Array, here: Here, half: float) -> float:
     """How far the whole motion lifts in a step what stands on the surface here, metres."""
     value, over, turn = 0.0, 0.0, 0.0

@@ -7,7 +7,7 @@ ends tell nothing. So its way is that of the surface and what the relative speed
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import part
+from verify.jit import inline
 from verify.motion.friction_kernels import friction
 from verify.motion.records import (
     CHANGE,
@@ -33,7 +33,7 @@ STIFF = 0.25
 """K mu N / m times a step: below it Eq. (3) is smooth in a step, whose ends tell the way to 1e-5 of r dt."""
 
 
-@part()
+@inline
 def _planck(w: float) -> float:
     """The integral of u / (e^u - 1) from 0 to w, by Bernoulli's numbers: off by less than 1e-15 for |w| <= ln 2."""
     s = w * w
@@ -42,7 +42,7 @@ def _planck(w: float) -> float:
     return float(w * (1.0 - 0.25 * w + s * (1.0 / 36.0 - s * (1.0 / 3600.0 - s * next_last))))
 
 
-@part()
+@inline
 def _by_coth(eta: float) -> float:
     """The integral of x coth x from 0 to eta >= 0; far out by Euler's reflection of the dilogarithm."""
     y = 2.0 * eta
@@ -52,7 +52,7 @@ def _by_coth(eta: float) -> float:
     return float(0.5 * (eta * eta + np.pi * np.pi / 6.0 - _planck(w) - y * w))
 
 
-@part()
+@inline
 def _by_tanh(delta: float) -> float:
     """The integral of x tanh x from 0 to delta."""
     y = 2.0 * abs(delta)
@@ -61,14 +61,14 @@ def _by_tanh(delta: float) -> float:
     return float(np.copysign(0.5 * found, delta))
 
 
-@part()
+@inline
 def _ln_cosh_change(start: float, end: float) -> float:
     """Ln cosh start - ln cosh end, without overflow."""
     first, last = abs(start), abs(end)
     return float(first - last + np.log1p(np.exp(-2.0 * first)) - np.log1p(np.exp(-2.0 * last)))
 
 
-@part()
+@inline
 def _held_way(rho: float, end: float, alpha: float, tau: float) -> float:
     """The integral of rho over tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1, from rho to `end`.
 
@@ -81,7 +81,7 @@ def _held_way(rho: float, end: float, alpha: float, tau: float) -> float:
     return float(rest * tau + side * told / (1.0 - alpha * alpha))
 
 
-@part()
+@inline
 def _swept_way(rho: float, end: float, alpha: float) -> float:
     """The same, alpha > 1: (alpha^2 - 1) d tau = -(alpha - tanh delta) d delta, delta = rho + artanh(1/alpha)."""
     lead = np.arctanh(1.0 / alpha)
@@ -91,7 +91,7 @@ def _swept_way(rho: float, end: float, alpha: float) -> float:
     return float((straight - told) / (alpha * alpha - 1.0))
 
 
-@part()
+@inline
 def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: float) -> float:
     """The integral of r over dt while r' = -b tanh(slope r) - a and friction adds `change` to the slider's speed.
 
@@ -110,19 +110,19 @@ def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: 
     return float(side * way / (slope * slope * b))
 
 
-@part()
+@inline
 def on_surface(dt: float, seen: Array) -> float:
     """The way of the surface in a step."""
     return float(dt * (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _ended(v: float, seen: Array, took: Array) -> float:
     """The slider's speed at the end of a step."""
     return float(seen[2, SURFACE] if took[STICKING] > 0.0 else v + took[GIVEN_END] + took[CHANGE])
 
 
-@part()
+@inline
 def smooth_way(v: float, rate: float, dt: float, law: Law, seen: Array, took: Array) -> float:
     """The distance that the slider's own speed makes in a step, by its speed and acceleration at both ends, order 4.
 
@@ -134,7 +134,7 @@ def smooth_way(v: float, rate: float, dt: float, law: Law, seen: Array, took: Ar
     return float(0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0)
 
 
-@part()
+@inline
 def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: Array, took: Array) -> float:
     """The same however hard friction grips; `took` is what `slip` made of it, `seen` the surface that has felt it.
 
@@ -150,7 +150,7 @@ def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: A
     return float(on_surface(dt, seen) + relative_way(start, rise / dt, law.kinetic, slope, dt, took[CHANGE]))
 
 
-@part()
+@inline
 def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Array, took: Array) -> float:
     """The same on a surface that feels the slider, which `hold` may have held till the end or till friction gave way.
 
@@ -162,13 +162,13 @@ def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Arra
     return float(on_surface(dt, seen) + 0.5 * slips * (_ended(v, seen, took) - seen[2, SURFACE]))
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def until_caught(grip: float, r: float, dt: float) -> float:
     """Friction per mass as it acts in the mean of a step in which it takes no slider past the surface's speed."""
     return float(-r / dt if abs(grip) * dt > abs(r) else grip)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _hardest(grip: float, dt: float, slope: float | None, law: Law, took: Array) -> float:
     """The largest friction per mass of a step: where it slips, the law's at its start; what grips hard, its mean."""
     if slope is None:
@@ -176,7 +176,7 @@ def _hardest(grip: float, dt: float, slope: float | None, law: Law, took: Array)
     return abs(grip) if slope * law.kinetic * dt < STIFF else abs(took[CHANGE]) / dt
 
 
-@part()
+@inline
 def advance(
     moved: float, grip: float, dt: float, slope: float | None, law: Law, motion: Array, seen: Array, took: Array
 ) -> None:

@@ -10,7 +10,7 @@ begins; within it the surface has, on the average, half of what the forces give 
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
+from verify.jit import FAST, inline
 from verify.motion.records import OMEGA, Z_IM
 from verify.motor.records import (
     ABOVE,
@@ -45,7 +45,7 @@ ENOUGH = 1e-13
 """Of mu N: as far as sweeps go on changing a force, they go on."""
 
 
-@part()
+@inline
 def _lever(d: int, at: float, slope: float, lever: float, length: float) -> float:
     """What coefficient d adds to the surface's way along the tangent."""
     value = at**d
@@ -53,7 +53,7 @@ def _lever(d: int, at: float, slope: float, lever: float, length: float) -> floa
     return float((slope * value - lever * first) / np.sqrt(1.0 + slope * slope))
 
 
-@part()
+@inline
 def _lift(i: int, d: int, lever: float, length: float, touch: Array) -> float:
     """What coefficient d adds to the height of the surface under point i, as its depth reads it."""
     value = touch[i, AT] ** d
@@ -62,7 +62,7 @@ def _lift(i: int, d: int, lever: float, length: float, touch: Array) -> float:
     return float(value)
 
 
-@part()
+@inline
 def _add(
     i: int, along: float, across: float, dt: float, length: float, half: float, feet: Feet, beam: BeamAnswer
 ) -> None:
@@ -80,7 +80,7 @@ def _add(
         _spread(0.5 * impulse, piece * degree + d, beam)
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _spread(impulse: float, column: int, beam: BeamAnswer) -> None:
     """What an impulse on one coefficient adds to all rates."""
     degree, row = beam.load.shape[1], beam.span[0] * beam.load.shape[1]
@@ -90,7 +90,7 @@ def _spread(impulse: float, column: int, beam: BeamAnswer) -> None:
             row += 1
 
 
-@part()
+@inline
 def clear(feet: Feet, beam: BeamAnswer) -> None:
     """Nothing is pushed yet, on the pieces from the first to the last that a point stands on."""
     first = last = feet.piece[0]
@@ -102,7 +102,7 @@ def clear(feet: Feet, beam: BeamAnswer) -> None:
             beam.load[p, d], beam.added[p, d] = 0.0, 0.0
 
 
-@part()
+@inline
 def bear(dt: float, edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
     """The surface takes the normal forces, and those of friction that are known."""
     for i in range(feet.points.shape[0]):
@@ -113,7 +113,7 @@ def bear(dt: float, edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> 
             _add(i, along, -feet.points[i, FACE] * feet.points[i, IMAGE] * force, dt, length, half, feet, beam)
 
 
-@part()
+@inline
 def _given(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> float:
     """What the forces so far add to the mean speed of the surface under point i, m/s."""
     lever, piece, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], feet.piece[i], 0.0
@@ -122,7 +122,7 @@ def _given(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> 
     return total
 
 
-@part()
+@inline
 def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: BeamAnswer) -> float:
     """What a unit force along the surface at point i adds to its mean speed there, m/s per newton."""
     lever, degree, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], beam.load.shape[1], 0.0
@@ -134,7 +134,7 @@ def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: BeamA
     return float(0.5 * dt * feet.points[i, WEIGHT] * total)
 
 
-@part()
+@inline
 def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None, beam: BeamAnswer) -> None:
     """The mean speeds of the sliders at which every point's friction suits its own slip: sweeps from point to point.
 
@@ -173,7 +173,7 @@ def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None,
         means[b, AFTER] = 2.0 * means[b, MEAN] - feet.body[b, V]
 
 
-@part()
+@inline
 def _suited(i: int, slip: float, ease: float, feet: Feet, slope: float | None) -> float:
     """Friction of point i where `slip` is what the surface is ahead by without it and `ease` what it takes of that."""
     most = feet.riders[feet.owner[i], MU] * feet.touch[i, PUSH]
@@ -183,7 +183,7 @@ def _suited(i: int, slip: float, ease: float, feet: Feet, slope: float | None) -
     return force
 
 
-@part()
+@inline
 def turn(most: float, ahead: float, slip: float, ease: float) -> tuple[float, float]:
     """(mean friction of a step, 1 if it ends sticking) by Coulomb's law of a surface that is ahead as the step begins.
 
@@ -206,7 +206,7 @@ def turn(most: float, ahead: float, slip: float, ease: float) -> tuple[float, fl
     return float(force), stuck
 
 
-@part()
+@inline
 def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
     """Force = most tanh(slope (slip - ease force)), which falls as the force rises."""
     low, high, force = -WIDER * most, WIDER * most, 0.0
@@ -227,7 +227,7 @@ def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
     return float(force)
 
 
-@part()
+@inline
 def leave(table: Array, modes: Array, beam: BeamAnswer) -> None:
     """Give the step's impulses to the modes, in its middle."""
     for p in range(beam.span[0], beam.span[1] + 1):
@@ -238,7 +238,7 @@ def leave(table: Array, modes: Array, beam: BeamAnswer) -> None:
                     modes[Z_IM, j] -= table[p, d, j] * impulse / modes[OMEGA, j]
 
 
-@part()
+@inline
 def moved(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> tuple[float, float]:
     """What all forces of a step add to the mean rates under point i: (along, across), m/s."""
     lever, piece, across = half * feet.points[i, FACE] * feet.points[i, IMAGE], feet.piece[i], 0.0

@@ -5,7 +5,7 @@ side is found from straight lines through its middle, of that speed and of the n
 """
 
 from verify.models.arrays import Array
-from verify.models.kernels import part
+from verify.jit import inline
 from verify.motor.records import (
     AHEAD,
     BEYOND,
@@ -24,14 +24,14 @@ NONE = 1e-12
 """Of the speeds at hand: by no more is a surface ahead that goes with the slider."""
 
 
-@part()
+@inline
 def _snapped(ahead: float, i: int, v: float, light: float, touch: Array) -> float:
     """How far a surface is ahead, 0 where that is rounding: points that stick are let go by nothing else."""
     speeds = abs(touch[i, SURFACE]) + abs(v) + light * touch[i, MOST]
     return 0.0 if abs(ahead) <= NONE * speeds else ahead
 
 
-@part()
+@inline
 def _begin(first: int, last: int, light: float, v: float, mu: float, touch: Array, points: Array) -> None:
     """How far every point's surface is ahead of v as the step begins, and what friction can do there.
 
@@ -48,7 +48,7 @@ def _begin(first: int, last: int, light: float, v: float, mu: float, touch: Arra
             touch[i, GAINED] = gained
 
 
-@part()
+@inline
 def _level(first: int, last: int, gain: float, touch: Array) -> tuple[float, float]:
     """Friction on a slider that gains so much in a step: (sum of what slides, what the points at its speed can do)."""
     total, reserve = 0.0, 0.0
@@ -63,7 +63,7 @@ def _level(first: int, last: int, gain: float, touch: Array) -> tuple[float, flo
     return total, reserve
 
 
-@part()
+@inline
 def _gain(first: int, last: int, light: float, pull: float, touch: Array) -> tuple[float, float]:
     """(what a slider would gain in a whole step by what acts now, m/s; the share of mu N that holds it at a point).
 
@@ -89,7 +89,7 @@ def _gain(first: int, last: int, light: float, pull: float, touch: Array) -> tup
     return float(free + light * total), 0.0
 
 
-@part()
+@inline
 def _next(first: int, last: int, left: float, gain: float, touch: Array) -> tuple[int, float]:
     """(the point whose surface next passes the slider's speed, below 0 if none does; after how much of the step)."""
     found, share = -1, left
@@ -100,7 +100,7 @@ def _next(first: int, last: int, left: float, gain: float, touch: Array) -> tupl
     return found, share
 
 
-@part()
+@inline
 def _go_on(
     first: int, last: int, done: float, share: float, gain: float, held: float, v: float, light: float, touch: Array
 ) -> None:
@@ -119,7 +119,7 @@ def _go_on(
             touch[i, BEYOND] += share * force * (before + 0.5 * share * more)
 
 
-@part()
+@inline
 def cross(
     first: int, last: int, light: float, pull: float, v: float, mu: float, touch: Array, points: Array
 ) -> tuple[float, float]:

@@ -1,7 +1,7 @@
 """The compiled feet: what their points see of the surface, how they press on it, what it gives them in a step."""
 
 from verify.models.arrays import Array
-from verify.models.kernels import part
+from verify.jit import inline
 from verify.motor.records import (
     ABOVE,
     ACROSS,
@@ -45,7 +45,7 @@ from verify.motor.records import (
 from verify.motor.surface_kernels import material
 
 
-@part()
+@inline
 def drift(t: float, feet: Feet) -> None:
     """Sliders and feet move on with their speeds."""
     body, state = feet.body, feet.state
@@ -56,7 +56,7 @@ def drift(t: float, feet: Feet) -> None:
         state[f, PITCH] += t * state[f, TURN]
 
 
-@part()
+@inline
 def see(i: int, x: float, edge: float, length: float, v: float, half: float, line: Line, feet: Feet) -> None:
     """What point i sees of the surface under x, of its material there: speed along, height and rate, slope.
 
@@ -75,7 +75,7 @@ def see(i: int, x: float, edge: float, length: float, v: float, half: float, lin
     touch[i, CLOSING] = face * (lift - state[foot, CLIMB] - arm * state[foot, TURN])
 
 
-@part()
+@inline
 def press(dt: float, feet: Feet, before: Array) -> bool:
     """Normal forces in mid-step and what they give to the feet; whether any point has a dashpot.
 
@@ -92,7 +92,7 @@ def press(dt: float, feet: Feet, before: Array) -> bool:
     return damped
 
 
-@part()
+@inline
 def _fall_free(dt: float, feet: Feet) -> None:
     """What presses the feet, given for the step."""
     given = feet.given
@@ -102,7 +102,7 @@ def _fall_free(dt: float, feet: Feet) -> None:
         feet.kick[f, 1] = 0.0
 
 
-@part()
+@inline
 def _push(feet: Feet, before: Array) -> bool:
     """Normal force of every point at its depth and mean speed; whether any has a dashpot.
 
@@ -123,7 +123,7 @@ def _push(feet: Feet, before: Array) -> bool:
     return damped
 
 
-@part()
+@inline
 def _gather(dt: float, feet: Feet) -> None:
     """Give the normal forces to the feet."""
     _fall_free(dt, feet)
@@ -136,7 +136,7 @@ def _gather(dt: float, feet: Feet) -> None:
             feet.kick[foot, 1] += way * points[i, ARM] * feet.given[foot, FOOT_INVERSE_INERTIA]
 
 
-@part()
+@inline
 def kick(dt: float, feet: Feet) -> None:
     """The feet take what the step gives them; its works."""
     state, sums, touch, points = feet.state, feet.sums, feet.touch, feet.points
@@ -160,7 +160,7 @@ def kick(dt: float, feet: Feet) -> None:
         state[f, TURN] += feet.kick[f, 1]
 
 
-@part()
+@inline
 def stored(dt: float, feet: Feet) -> None:
     """Energy in the springs at the end of a step, at the depths of its middle drawn on."""
     state = feet.state
@@ -174,13 +174,13 @@ def stored(dt: float, feet: Feet) -> None:
             feet.sums[feet.owner[i], STORED] += 0.5 * feet.points[i, STIFF] * depth * depth
 
 
-@part()
+@inline
 def gone(i: int, feet: Feet) -> float:
     """How fast the place of point i goes along the beam, m/s: with its slider, unless that is kept where it is."""
     return float(feet.body[feet.owner[i], V] * feet.riders[feet.owner[i], FREE])
 
 
-@part()
+@inline
 def place(i: int, feet: Feet) -> float:
     """Where point i stands, metres from where the slider started."""
     return float(feet.body[feet.owner[i], X] + feet.points[i, OFFSET])

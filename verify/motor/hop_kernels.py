@@ -7,7 +7,7 @@ by halving, wherever in a step they fall. So is where friction turns round.
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
+from verify.jit import jit, inline
 from verify.motion.records import Surface
 from verify.motion.surface_kernels import find_piece, set_factors
 from verify.motor.beam_kernels import slide_by_tanh
@@ -68,7 +68,7 @@ ALIKE = 1e-9
 """Of the speeds at hand: a slip that is no more than that is none."""
 
 
-@part()
+@inline
 def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Line, feet: Feet) -> float:
     """The surface under x at a time: its height, NaN off the beam; sets its speed, its slope and how fast it rises.
 
@@ -90,7 +90,7 @@ def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Li
     return level
 
 
-@part()
+@inline
 def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
     """How far the flying point is above the surface, s seconds after t."""
     body, state, along = feet.body, feet.state, feet.riders[0, INVERSE_MASS] * feet.riders[0, PULL]
@@ -101,13 +101,13 @@ def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, lin
     return float(z - _under(t + s, x, v, surface, rubbing.half, line, feet))
 
 
-@part()
+@inline
 def _pulling(rub: float, feet: Feet) -> float:
     """What pulls the point along beside this friction: `slider.pull`, or what holds its speed against friction."""
     return float(feet.riders[0, PULL] if feet.riders[0, INVERSE_MASS] > 0.0 else -rub)
 
 
-@part()
+@inline
 def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
     """The point flies for s seconds."""
     body, state, sums = feet.body, feet.state, feet.sums
@@ -121,7 +121,7 @@ def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
     sums[0, PRESSED] -= hard.mass * hard.press * rise
 
 
-@part()
+@inline
 def _suit(most: float, ahead: float, ease: float, slope: float | None) -> float:
     """What friction gives, at most `most`, where the surface is ahead and each unit takes `ease` of that."""
     if slope is not None:
@@ -132,7 +132,7 @@ def _suit(most: float, ahead: float, ease: float, slope: float | None) -> float:
     return most if given > most else -most if given < -most else given
 
 
-@part()
+@inline
 def _land(rubbing: Rubbing, hard: Hard, feet: Feet, slope: float | None) -> float:
     """A blow: restitution across, friction along; the speed away from the surface after it, m/s."""
     body, state, touch, sums = feet.body, feet.state, feet.touch, feet.sums
@@ -157,7 +157,7 @@ def _land(rubbing: Rubbing, hard: Hard, feet: Feet, slope: float | None) -> floa
     return hard.restitution * into
 
 
-@part()
+@inline
 def _pushed(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
     """What the surface presses the riding point with, over its mass, s seconds after t."""
     free = feet.riders[0, FREE]
@@ -165,7 +165,7 @@ def _pushed(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, 
     return float(hard.press + feet.kick[0, 0])
 
 
-@part()
+@inline
 def _margin(
     riding: bool, t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet
 ) -> float:
@@ -175,7 +175,7 @@ def _margin(
     return _gap(t, s, surface, rubbing, hard, line, feet)
 
 
-@part()
+@inline
 def _lasts(
     riding: bool, t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet
 ) -> float:
@@ -197,7 +197,7 @@ def _lasts(
     return high
 
 
-@part()
+@inline
 def _ahead(
     t: float, s: float, way: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet
 ) -> float:
@@ -212,7 +212,7 @@ def _ahead(
     return float(feet.touch[0, SURFACE] - after)
 
 
-@part()
+@inline
 def _slides(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
     """For how long the riding point slides one way, at most h seconds, by halving: h where it begins with no slip."""
     first = _ahead(t, 0.0, 0.0, surface, rubbing, hard, line, feet)
@@ -236,7 +236,7 @@ def _slides(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, 
     return high
 
 
-@part()
+@inline
 def _book_riding(s: float, mean: float, surface_mean: float, feet: Feet) -> None:
     """What s seconds of riding add to the sums along the beam, at these mean speeds of slider and surface."""
     sums, push, rub = feet.sums, feet.touch[0, PUSH], feet.touch[0, RUB]
@@ -249,7 +249,7 @@ def _book_riding(s: float, mean: float, surface_mean: float, feet: Feet) -> None
     sums[0, STICKING] += s * feet.touch[0, STUCK]
 
 
-@part()
+@inline
 def _move_riding(
     t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet, slope: float | None
 ) -> bool:
@@ -286,7 +286,7 @@ def _move_riding(
     return True
 
 
-@part()
+@inline
 def _rests(t: float, dt: float, away: float, presses: float, level: float, hard: Hard, touch: Array) -> bool:
     """Whether a bounce that begins at t is none: too short for the step, or low and fed by the rounding of the surface.
 
@@ -297,7 +297,7 @@ def _rests(t: float, dt: float, away: float, presses: float, level: float, hard:
     return 2.0 * away <= SETTLED * dt * presses or fed
 
 
-@part()
+@inline
 def _step(
     t: float, dt: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, before: Array, feet: Feet, log: Log
 ) -> int:
@@ -335,7 +335,7 @@ def _step(
     return DONE if dt - done <= 1e-15 * dt else CHATTERS
 
 
-@lean()
+@jit
 def hop(
     n_steps: int,
     dt: float,
@@ -361,7 +361,7 @@ def hop(
     return DONE
 
 
-@lean()
+@jit
 def put(t: float, surface: Surface, feet: Feet, rubbing: Rubbing, line: Line) -> float:
     """Put a hard point on the surface, with its rate of rise; what presses it on less gravity's part, m/s^2."""
     feet.state[0, HEIGHT] = _under(t, feet.body[0, X], feet.body[0, V], surface, rubbing.half, line, feet)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
+from verify.jit import jit, inline
 from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import between, find_piece, rotate_half, set_factors
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
@@ -60,7 +60,7 @@ GIVES_WAY = 4
 """Times that dashpots and the beam under them are matched: each leaves half of c times the beam's answer in a step."""
 
 
-@part()
+@inline
 def _stand(t: float, edges: Array, feet: Feet) -> bool:
     """Find the piece that every point stands on t seconds on, before anything moves; whether all are on the beam."""
     for i in range(feet.points.shape[0]):
@@ -73,7 +73,7 @@ def _stand(t: float, edges: Array, feet: Feet) -> bool:
     return True
 
 
-@part()
+@inline
 def _look(number: int, surface: Surface, given: GivenSurface, half: float, line: Line, feet: Feet) -> None:
     """Every point sees the surface under it, in the middle of a step of that number."""
     edges, reckoned = surface.edges, len(given.local) == 0
@@ -90,14 +90,14 @@ def _look(number: int, surface: Surface, given: GivenSurface, half: float, line:
             feet.touch[i, SURFACE] += between(given.along[number], edges, piece, x)
 
 
-@part()
+@inline
 def _copy(local: Array, piece: int, line: Line) -> None:
     """The polynomials of a piece as they are given."""
     for d in range(local.shape[2]):
         line.local[piece, STILL, d], line.local[piece, MOVING, d] = local[piece, STILL, d], local[piece, MOVING, d]
 
 
-@part()
+@inline
 def _rub(dt: float, feet: Feet, slope: float | None, before: Array) -> None:
     """Friction where the beam does not feel it, and what speeds the sliders have by it."""
     hold(dt, feet, before)
@@ -111,7 +111,7 @@ def _rub(dt: float, feet: Feet, slope: float | None, before: Array) -> None:
             means[b, MEAN], means[b, AFTER] = agree(first, last, light, pull, v, mu, slope, touch)
 
 
-@part()
+@inline
 def _close(i: int, across: float, feet: Feet) -> None:
     """How fast the gap at point i closes, with what the forces of the step give to the beam across there."""
     answer = feet.points[i, IMAGE] * feet.points[i, FACE] * across
@@ -119,7 +119,7 @@ def _close(i: int, across: float, feet: Feet) -> None:
     feet.touch[i, ANSWER] = answer
 
 
-@part()
+@inline
 def _give_way(edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
     """The beam gives way under the forces so far, which dashpots feel."""
     for i in range(feet.points.shape[0]):
@@ -128,7 +128,7 @@ def _give_way(edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
             _close(i, moved(i, length, half, feet, beam)[1], feet)
 
 
-@part()
+@inline
 def _rub_back(
     dt: float,
     damped: bool,
@@ -161,7 +161,7 @@ def _rub_back(
     leave(surface.table, surface.modes, beam)
 
 
-@part()
+@inline
 def _book(dt: float, feet: Feet) -> None:
     """What a step adds to the sums; shares are of all points of a slider. Then it has its speed at the end."""
     touch, sums, means, riders = feet.touch, feet.sums, feet.means, feet.riders
@@ -181,7 +181,7 @@ def _book(dt: float, feet: Feet) -> None:
         feet.body[b, V] = means[b, AFTER]
 
 
-@part()
+@inline
 def _finite(feet: Feet) -> bool:
     """Whether every slider is where a number says."""
     total = 0.0
@@ -192,7 +192,7 @@ def _finite(feet: Feet) -> bool:
     return bool(np.isfinite(total))
 
 
-@part()
+@inline
 def _take(middle: float, dt: float, before: Array, feet: Feet, log: Log) -> bool:
     """The feet take the forces of a step, whose middle was at that time, and end it; whether all are finite."""
     kick(dt, feet)
@@ -204,7 +204,7 @@ def _take(middle: float, dt: float, before: Array, feet: Feet, log: Log) -> bool
     return _finite(feet)
 
 
-@lean()
+@jit
 def ride(
     n_steps: int,
     dt: float,

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import part
+from verify.jit import inline
 from verify.motion.records import STILL
 from verify.motor.records import (
     ALONG,
@@ -45,7 +45,7 @@ from verify.motor.records import (
 )
 
 
-@part()
+@inline
 def note(time: float, dt: float, before: Array, feet: Feet, log: Log) -> None:
     """Write down who landed, left, stuck or slipped since the mid-step before, with `before` depth and sticking."""
     touch, tally = feet.touch, log.tally
@@ -60,7 +60,7 @@ def note(time: float, dt: float, before: Array, feet: Feet, log: Log) -> None:
         before[i, 0], before[i, 1] = depth, touch[i, STUCK]
 
 
-@part()
+@inline
 def write(time: float, kind: float, point: int, x: float, events: Array, tally: Indices) -> None:
     """One event, as long as there is room; all are counted."""
     row = tally[EVENTS]
@@ -70,7 +70,7 @@ def write(time: float, kind: float, point: int, x: float, events: Array, tally: 
     tally[EVENTS] += 1
 
 
-@part()
+@inline
 def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
     """Write one sample: the state now, means and sums since the last."""
     row, span = log.tally[SAMPLES], dt * log.every
@@ -88,7 +88,7 @@ def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
     log.tally[SAMPLES] += 1
 
 
-@part()
+@inline
 def _keep_slider(row: int, b: int, span: float, feet: Feet, log: Log) -> None:
     """One slider's state, means and sums since the last sample."""
     kept, sums, before = log.kept, feet.sums, log.before

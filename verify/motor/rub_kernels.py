@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import part
+from verify.jit import inline
 from verify.motor.beam_kernels import WIDER
 from verify.motor.records import (
     CLOSING,
@@ -31,7 +31,7 @@ FAR = 20.0
 """From there on tanh is 1 to the last digit, and ln cosh a straight line."""
 
 
-@part()
+@inline
 def _touched(i: int, dt: float, gone: float, feet: Feet, before: Array) -> float:
     """For how long point i has touched, of so much of the step: in the step of its landing, from there on."""
     depth, was = feet.touch[i, DEPTH], before[i, 0]
@@ -40,7 +40,7 @@ def _touched(i: int, dt: float, gone: float, feet: Feet, before: Array) -> float
     return float(dt * depth / (depth - was) + gone - 0.5 * dt)
 
 
-@part()
+@inline
 def stretch(dt: float, feet: Feet, before: Array) -> None:
     """Points that give way are stretched on by the end of the step, as far as friction there lets them.
 
@@ -58,7 +58,7 @@ def stretch(dt: float, feet: Feet, before: Array) -> None:
             touch[i, STRETCH] = -most if far < -most else far
 
 
-@part()
+@inline
 def hold(dt: float, feet: Feet, before: Array) -> None:
     """Friction in mid-step of points that give way, and their sum on every slider."""
     touch, points = feet.touch, feet.points
@@ -76,7 +76,7 @@ def hold(dt: float, feet: Feet, before: Array) -> None:
             feet.means[b, HELD] += touch[i, RUB]
 
 
-@part()
+@inline
 def _bent(x: float) -> tuple[float, float]:
     """(ln cosh x + ln 2, tanh x)."""
     size = abs(x)
@@ -87,7 +87,7 @@ def _bent(x: float) -> tuple[float, float]:
     return float(size + np.log1p(left)), float(turned if x > 0.0 else -turned)
 
 
-@part()
+@inline
 def _turned(ahead: float, half: float, slope: float) -> tuple[float, float]:
     """(tanh of how far a surface is ahead, its rise with that), of a step through whose half it goes by `half` m/s.
 
@@ -101,7 +101,7 @@ def _turned(ahead: float, half: float, slope: float) -> tuple[float, float]:
     return (above - below) / (2.0 * slope * half), (high - low) / (2.0 * half)
 
 
-@part()
+@inline
 def agree(
     first: int, last: int, light: float, pull: float, v: float, mu: float, slope: float, touch: Array
 ) -> tuple[float, float]:
@@ -131,7 +131,7 @@ def agree(
     return mean, 2.0 * mean - v
 
 
-@part()
+@inline
 def _slid(
     first: int, last: int, mean: float, wide: float, mu: float, slope: float, touch: Array
 ) -> tuple[float, float]:
