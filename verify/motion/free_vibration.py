@@ -6,11 +6,11 @@ from typing import Literal, TypeAlias
 
 import msgspec
 import numpy as np
+from msgspec import Struct
 
 from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown
-from msgspec import Struct
 from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.fields import LARGEST_SLOPE

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from verify.jit import inline, jit
 from verify.models.arrays import Array, Indices
-from verify.jit import jit, inline
 from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power, pulled
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import friction, give, slip

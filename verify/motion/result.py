@@ -1,8 +1,9 @@
 """What a simulation returns: times, what was asked to be kept, what it cost, where the energy went."""
 
+from msgspec import Struct
+
 from verify.beam import Beam
 from verify.errors import InputError
-from msgspec import Struct
 from verify.models.arrays import Array
 from verify.motion.contact import Coupling, Margins
 from verify.slider import Slider
