@@ -7,24 +7,8 @@ import numpy as np
 
 from verify.jit import inline, jit
 from verify.models.arrays import Array
-from verify.motion.records import (
-    CHANGE,
-    FIRST_EVENT,
-    GIVEN_END,
-    GIVEN_MIDDLE,
-    N_EVENTS,
-    NOUGHT,
-    PULL,
-    RELATIVE,
-    SLIPS,
-    SPANS,
-    STICKING,
-    STICKS,
-    SURFACE,
-    TURNS,
-    Law,
-    Space,
-)
+from verify.motion import records as rec
+from verify.motion.records import Law, Space
 
 
 @jit
@@ -145,21 +129,21 @@ def coulomb_span(
     """
     rate = (a1 - a0) / dt
     if stuck and abs(a0) > static * (1.0 + 1e-12):
-        return 0.0, 0.0, False, SLIPS
+        return 0.0, 0.0, False, rec.SLIPS
     if stuck:
         for bound in (static, -static):
             beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
             if beyond > 0.0 and rate != 0.0:
                 at = (bound - a0) / rate
                 at = 0.0 if at < 0.0 else at
-                return dt if dt < at else at, 0.0, False, SLIPS
+                return dt if dt < at else at, 0.0, False, rec.SLIPS
         return dt, 0.0, True, 0.0
     side = np.sign(r) if r != 0.0 else -np.sign(a0 if a0 != 0.0 else rate)
     slowing = kinetic * side + a0  # r(t) = r - slowing t - rate t^2 / 2
     used = _first_zero(r, slowing, rate, dt)
     if used >= dt:
         return dt, r - slowing * dt - 0.5 * rate * dt * dt, False, 0.0
-    return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
+    return used, 0.0, abs(a0 + rate * used) <= static, rec.STICKS if abs(a0 + rate * used) <= static else rec.TURNS
 
 
 @inline
@@ -227,32 +211,32 @@ def slip(
     slipping located on it.
     """
     seen, took = space.seen, space.slip
-    s0 = seen[0, SURFACE]
-    sm = seen[1, SURFACE] - took[GIVEN_MIDDLE] + push * half
-    s1 = seen[2, SURFACE] - took[GIVEN_END] + push * full
-    took[STICKING], took[N_EVENTS] = 0.0, 0.0
+    s0 = seen[0, rec.SURFACE]
+    sm = seen[1, rec.SURFACE] - took[rec.GIVEN_MIDDLE] + push * half
+    s1 = seen[2, rec.SURFACE] - took[rec.GIVEN_END] + push * full
+    took[rec.STICKING], took[rec.N_EVENTS] = 0.0, 0.0
     if static is None:
         mean, rise = (s0 + 4.0 * sm + s1) / 6.0, s1 - s0
-        took[CHANGE] = _tanh_slip(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
-        return float(took[CHANGE])
+        took[rec.CHANGE] = _tanh_slip(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
+        return float(took[rec.CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
-    r, used, took[RELATIVE] = 0.0 if stuck else v - s0, 0.0, 0.0
+    r, used, took[rec.RELATIVE] = 0.0 if stuck else v - s0, 0.0, 0.0
     if abs(r) <= 1e-9 * law.kinetic * dt and abs(a0) <= static:
         r, stuck = 0.0, True  # put on a surface at rest, to rounding
-    for _ in range(SPANS):
+    for _ in range(rec.SPANS):
         slips, before = not stuck, r
         span, r, stuck, event = coulomb_span(r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, static, dt - used, stuck)
         used += span
         if slips:  # r is a parabola
-            took[RELATIVE] += 0.5 * span * (before + r) + (a1 - a0) / dt * span * span * span / 12.0
-        if event in (STICKS, SLIPS):
-            here = FIRST_EVENT + 2 * int(took[N_EVENTS])
+            took[rec.RELATIVE] += 0.5 * span * (before + r) + (a1 - a0) / dt * span * span * span / 12.0
+        if event in (rec.STICKS, rec.SLIPS):
+            here = rec.FIRST_EVENT + 2 * int(took[rec.N_EVENTS])
             took[here], took[here + 1] = used, event
-            took[N_EVENTS] += 1.0
+            took[rec.N_EVENTS] += 1.0
         if used >= dt or (span <= 0.0 and event == 0.0):
             break
-    took[CHANGE], took[STICKING] = r + s1 - v, 1.0 if stuck else 0.0
-    return float(took[CHANGE])
+    took[rec.CHANGE], took[rec.STICKING] = r + s1 - v, 1.0 if stuck else 0.0
+    return float(took[rec.CHANGE])
 
 
 @inline
@@ -263,23 +247,23 @@ def hold(v: float, full: float, static: float, law: Law, dt: float, seen: Array,
     decide: at rest where what holds it is within static friction. Else it slips, from where the line through this mean
     and the last step's passes static friction: what a slip before the step would have spared is taken off in it.
     """
-    needed = (seen[2, SURFACE] - took[GIVEN_END] - v) / (dt + law.mass * full)
-    size, before = abs(needed), took[CHANGE] / dt * np.sign(needed)
-    known = took[STICKING] > 0.0 and took[N_EVENTS] == 0.0
-    took[STICKING], took[N_EVENTS], took[CHANGE] = 1.0, 0.0, needed * dt
+    needed = (seen[2, rec.SURFACE] - took[rec.GIVEN_END] - v) / (dt + law.mass * full)
+    size, before = abs(needed), took[rec.CHANGE] / dt * np.sign(needed)
+    known = took[rec.STICKING] > 0.0 and took[rec.N_EVENTS] == 0.0
+    took[rec.STICKING], took[rec.N_EVENTS], took[rec.CHANGE] = 1.0, 0.0, needed * dt
     if size > static:
         stays = (static - before) / (size - before) - 0.5 if known else 0.0
         mean = stays * 0.5 * (0.5 * (before + size) + static) + (1.0 - stays) * law.kinetic
-        took[STICKING], took[N_EVENTS], took[CHANGE] = 0.0, 1.0, np.sign(needed) * mean * dt
-        took[FIRST_EVENT], took[FIRST_EVENT + 1] = stays * dt, SLIPS
-    return float(took[CHANGE])
+        took[rec.STICKING], took[rec.N_EVENTS], took[rec.CHANGE] = 0.0, 1.0, np.sign(needed) * mean * dt
+        took[rec.FIRST_EVENT], took[rec.FIRST_EVENT + 1] = stays * dt, rec.SLIPS
+    return float(took[rec.CHANGE])
 
 
 @inline
 def give(dt: float, seen: Array, took: Array) -> None:
     """What everything but friction adds to the speed by the middle and the end of a step."""
-    took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
-    took[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+    took[rec.GIVEN_MIDDLE] = dt * (5.0 * seen[0, rec.PULL] + 8.0 * seen[1, rec.PULL] - seen[2, rec.PULL]) / 24.0
+    took[rec.GIVEN_END] = dt * (seen[0, rec.PULL] + 4.0 * seen[1, rec.PULL] + seen[2, rec.PULL]) / 6.0
 
 
 @inline
@@ -344,7 +328,7 @@ def slide_on_belt(
     `state` is (x, v, stuck) and is advanced in place; `stiffness` is k/m, `pull` an acceleration. `events` is
     (capacity, 3): time, kind, x; a turn of the velocity relative to the surface is an event as well.
     """
-    n_events = NOUGHT
+    n_events = rec.NOUGHT
     for step in range(n_steps):
         n_events = _step_on_belt((step + 1) * dt, dt, law.static, law, belt, stiffness, pull, state, events, n_events)
     return n_events

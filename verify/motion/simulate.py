@@ -60,7 +60,12 @@ def simulate(
 
     Parameters
     ----------
-    beam, forces, frequency_hz : Beam, PointForce or sequence, float
+    beam : Beam
+        With its supports and what it carries.
+    forces : PointForce or sequence
+        Amplitudes in newton, phases in degrees.
+    frequency_hz : float
+        Of all forces.
     duration : float
         Seconds.
     model, count : str, int

@@ -8,26 +8,9 @@ import numpy as np
 
 from verify.jit import inline
 from verify.models.arrays import Array
+from verify.motion import records as rec
 from verify.motion.friction_kernels import friction
-from verify.motion.records import (
-    CHANGE,
-    DRIFT,
-    FIRST_EVENT,
-    GIVEN_END,
-    GIVEN_MIDDLE,
-    HARDEST,
-    N_EVENTS,
-    PULL,
-    PUSHED,
-    RELATIVE,
-    STICKING,
-    STUCK,
-    SURFACE,
-    SWEPT,
-    Law,
-    V,
-    X,
-)
+from verify.motion.records import Law
 
 STIFF = 0.25
 """K mu N / m times a step: below it Eq. (3) is smooth in a step, whose ends tell the way to 1e-5 of r dt."""
@@ -113,13 +96,13 @@ def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: 
 @inline
 def on_surface(dt: float, seen: Array) -> float:
     """The way of the surface in a step."""
-    return float(dt * (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0)
+    return float(dt * (seen[0, rec.SURFACE] + 4.0 * seen[1, rec.SURFACE] + seen[2, rec.SURFACE]) / 6.0)
 
 
 @inline(forceinline=True)
 def _ended(v: float, seen: Array, took: Array) -> float:
     """The slider's speed at the end of a step."""
-    return float(seen[2, SURFACE] if took[STICKING] > 0.0 else v + took[GIVEN_END] + took[CHANGE])
+    return float(seen[2, rec.SURFACE] if took[rec.STICKING] > 0.0 else v + took[rec.GIVEN_END] + took[rec.CHANGE])
 
 
 @inline
@@ -129,8 +112,8 @@ def smooth_way(v: float, rate: float, dt: float, law: Law, seen: Array, took: Ar
     `rate` is its acceleration at the start.
     """
     v1, rate1 = _ended(v, seen, took), rate
-    if took[STICKING] <= 0.0:
-        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], law.static, law)
+    if took[rec.STICKING] <= 0.0:
+        rate1 = seen[2, rec.PULL] + friction(v1 - seen[2, rec.SURFACE], law.static, law)
     return float(0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0)
 
 
@@ -141,13 +124,17 @@ def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: A
     `slope` is the law's, by itself so that numba drops the branch of the other law.
     """
     if slope is None:
-        return float(on_surface(dt, seen) + took[RELATIVE])
+        return float(on_surface(dt, seen) + took[rec.RELATIVE])
     if slope * law.kinetic * dt < STIFF:
         return smooth_way(v, rate, dt, law, seen, took)
-    s0, sm, s1 = seen[0, SURFACE], seen[1, SURFACE] - took[GIVEN_MIDDLE], seen[2, SURFACE] - took[GIVEN_END]
+    s0, sm, s1 = (
+        seen[0, rec.SURFACE],
+        seen[1, rec.SURFACE] - took[rec.GIVEN_MIDDLE],
+        seen[2, rec.SURFACE] - took[rec.GIVEN_END],
+    )
     rise = s1 - s0  # of the line that `slip` puts in the surface's place
     start = v - (s0 + 4.0 * sm + s1) / 6.0 + 0.5 * rise
-    return float(on_surface(dt, seen) + relative_way(start, rise / dt, law.kinetic, slope, dt, took[CHANGE]))
+    return float(on_surface(dt, seen) + relative_way(start, rise / dt, law.kinetic, slope, dt, took[rec.CHANGE]))
 
 
 @inline
@@ -158,8 +145,8 @@ def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Arra
     """
     if not stuck:
         return way(v, rate, dt, law.slope, law, seen, took)
-    slips = 0.0 if took[STICKING] > 0.0 else dt - took[FIRST_EVENT]
-    return float(on_surface(dt, seen) + 0.5 * slips * (_ended(v, seen, took) - seen[2, SURFACE]))
+    slips = 0.0 if took[rec.STICKING] > 0.0 else dt - took[rec.FIRST_EVENT]
+    return float(on_surface(dt, seen) + 0.5 * slips * (_ended(v, seen, took) - seen[2, rec.SURFACE]))
 
 
 @inline(forceinline=True)
@@ -172,8 +159,8 @@ def until_caught(grip: float, r: float, dt: float) -> float:
 def _hardest(grip: float, dt: float, slope: float | None, law: Law, took: Array) -> float:
     """The largest friction per mass of a step: where it slips, the law's at its start; what grips hard, its mean."""
     if slope is None:
-        return abs(took[CHANGE]) / dt if took[STICKING] > 0.0 and took[N_EVENTS] == 0.0 else law.kinetic
-    return abs(grip) if slope * law.kinetic * dt < STIFF else abs(took[CHANGE]) / dt
+        return abs(took[rec.CHANGE]) / dt if took[rec.STICKING] > 0.0 and took[rec.N_EVENTS] == 0.0 else law.kinetic
+    return abs(grip) if slope * law.kinetic * dt < STIFF else abs(took[rec.CHANGE]) / dt
 
 
 @inline
@@ -184,11 +171,11 @@ def advance(
 
     `grip` is friction per mass at its start by the law, `slope` the law's, by itself so that numba drops the other.
     """
-    before = motion[V] + took[GIVEN_END]
-    motion[V] = _ended(motion[V], seen, took)
-    motion[PUSHED] += motion[V] - before
-    motion[SWEPT] += on_surface(dt, seen)
+    before = motion[rec.V] + took[rec.GIVEN_END]
+    motion[rec.V] = _ended(motion[rec.V], seen, took)
+    motion[rec.PUSHED] += motion[rec.V] - before
+    motion[rec.SWEPT] += on_surface(dt, seen)
     hard = _hardest(grip, dt, slope, law, took)
-    motion[HARDEST] = hard if hard > motion[HARDEST] else motion[HARDEST]
-    motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
-    motion[STUCK] = took[STICKING]
+    motion[rec.HARDEST] = hard if hard > motion[rec.HARDEST] else motion[rec.HARDEST]
+    motion[rec.X] += moved + dt * (seen[0, rec.DRIFT] + 4.0 * seen[1, rec.DRIFT] + seen[2, rec.DRIFT]) / 6.0
+    motion[rec.STUCK] = took[rec.STICKING]

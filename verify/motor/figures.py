@@ -10,10 +10,10 @@ from collections.abc import Callable, Sequence
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from msgspec import Struct
 from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase

@@ -1,7 +1,8 @@
 """What a run of a slider on feet returns."""
 
-from verify.beam import Beam
 from msgspec import Struct
+
+from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.motion.contact import Margins
 from verify.motion.result import Ride

@@ -1,10 +1,10 @@
 """A motor's periodic motion by shooting: the state that a period gives back, by Newton's method on the period's map."""
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from msgspec import Struct
 from verify.models.arrays import Array, ComplexArray, Indices
 from verify.motor import records
 from verify.motor.case import MotorCase

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from verify.models.arrays import Array
 from verify.jit import FAST, inline
+from verify.models.arrays import Array
 from verify.motion.records import MOVING, STILL
 from verify.motor.records import Line
 
