@@ -8,8 +8,8 @@ straight chain are the state, so that small stretches keep their digits.
 import numpy as np
 
 from verify.chain.records import Elastic
+from verify.jit import inline, jit
 from verify.models.arrays import Array
-from verify.jit import jit, inline
 
 
 @inline(fastmath={"contract"})
