@@ -9,17 +9,15 @@ from verify.checks import Relative, check_number
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
-from verify.studies.convergence import Counts, size_axis
+from verify.studies.charts import model_style, percent, plot_errors, plot_lines, si
+from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as MatplotlibFigure
 
     from verify.judge.cache import SolutionCache
-    from verify.models.arrays import Array
     from verify.motion.result import Motion as Run
     from verify.report.result import Movie, Result, Table
     from verify.scene.model import Scene
@@ -28,6 +26,18 @@ STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
+LARGE = 0.1
+"""Size of a neglected effect beyond which a summary is omitted."""
+WARNINGS = {
+    "lift-off": "Lift-off: the surface falls away with {:.3g} times the acceleration that weight and preload give the "
+    "slider; a slider free to lift off leaves it, which this contact law forbids.",
+    "coupling": "Coupling: the inertia of a slider held on the surface changes its motion by a factor of {:.2g}; a "
+    "normal contact without it is not valid for such a slider.",
+    "axial": "Nonlinearity: linear models neglect an axial inertia (kL)² ⟨θ²⟩ = {:.2g} of a chain of rigid links.",
+    "step": "Time step: halving it changes the displacement by a factor of {:.1g}, not converged.",
+}
+ERRORS = "Against the exact beam at the same time step."
+MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 ENERGIES = {
     "work_in": "work of the forces",
     "kinetic": "kinetic energy of the beam",
@@ -140,38 +150,44 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             runs[model] = self.simulate(scene, model, count, store=True)
         errors, step_error = self._errors(scene, models, runs, progress)
         chain = runs[bounding()[0].name]
-        warnings = self._warnings(runs)
+        warnings, valid = self._warnings(runs)
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{scene.slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
+        time, size = ("time", "s"), f"N = {self.count}"
+        paths = [(_title(run), run.times, run.travelled, model_style(run.model)) for run in runs.values()]
+        forces = [(_title(run), run.times, run.friction, model_style(run.model)) for run in runs.values()]
+        speed = [
+            ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"}),
+            ("slider", chain.times, chain.speed, {"color": SLIDER}),
+        ]
         return Result(
-            summary="" if warnings else f"Mean speed of the slider ({condition}): {speeds}.",
+            summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
             tables=[*_tables(runs, chain), _error_table(errors, step_error)],
             figures=[
                 Figure(
                     "slider-displacement",
-                    f"Displacement of the slider, N = {self.count}",
+                    f"Displacement of the slider, {size}",
                     "From its start, along +x.",
-                    lambda ax: _draw(ax, runs, lambda run: run.travelled, "displacement", "m"),
+                    lambda ax: plot_lines(ax, paths, time, ("displacement", "m")),
                 ),
                 Figure(
                     "slider-velocity",
                     f"Velocity of the slider and of the surface under it, {_title(chain)}",
-                    "Both along +x.",
-                    lambda ax: _draw_speeds(ax, chain),
+                    "Along +x.",
+                    lambda ax: plot_lines(ax, speed, time, ("velocity", "m/s")),
                 ),
                 Figure(
                     "slider-friction",
-                    f"Friction force on the slider, N = {self.count}",
-                    "Tangential force along +x; saturates at mu N.",
-                    lambda ax: _draw(ax, runs, lambda run: run.friction, "friction force", "N"),
+                    f"Friction force on the slider, {size}",
+                    "Along +x; its limit is mu N.",
+                    lambda ax: plot_lines(ax, forces, time, ("friction force", "N")),
                 ),
-                Figure(
-                    "slider-errors",
-                    "Error of the slider's displacement over N",
-                    "Against the exact beam at the same time step. Grey: change of the exact beam's displacement by "
-                    "half the step.",
-                    lambda ax: _draw_errors(ax, errors, step_error, self.counts),
-                ),
+                *[
+                    Figure(
+                        "slider-errors", "Error of the displacement over N", ERRORS, lambda ax: _draw_errors(ax, errors)
+                    )
+                ]
+                * bool(errors),
             ],
             movies=[_movie(chain)],
             warnings=warnings,
@@ -202,8 +218,8 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 before = count, error
         return rows, step_error
 
-    def _warnings(self, runs: "dict[str, Run]") -> list[str]:
-        """What is not converged or outside its range of validity; the summary is omitted then."""
+    def _warnings(self, runs: "dict[str, Run]") -> tuple[list[str], bool]:
+        """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
         from verify.motion.contact import FELT
         from verify.motion.judged_step import KNOWN
         from verify.motion.validity import NONLINEAR
@@ -213,28 +229,16 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             for run in runs.values()
             if not run.statistics.finished
         ]
+        stopped = bool(warnings)
         lift_off = max(run.margins.lift_off for run in runs.values())
-        if lift_off > 1.0:
-            warnings.append(
-                f"Lift-off: the surface accelerates downward {lift_off:.3g} times as fast as weight and preload "
-                "accelerate the slider; a slider free to lift off leaves the surface, which this contact law forbids."
-            )
-        nonlinearity = max(run.margins.nonlinearity for run in runs.values())
-        if nonlinearity > NONLINEAR:
-            warnings.append(
-                f"Nonlinearity: the axial inertia (kL)² ⟨θ²⟩ = {nonlinearity:.2g} exceeds {NONLINEAR:g}; linear models "
-                "do not represent a chain of rigid links."
-            )
-        coupling = max((run.coupling for run in runs.values() if run.coupling), key=lambda one: one.normal_size)
-        if not coupling.pushes_back and coupling.normal_size > FELT:
-            warnings.append(
-                f"Coupling: the inertia of a slider held on the surface changes its motion by "
-                f"{100 * coupling.normal_size:.2g} %; a normal contact without it is not valid for such a slider."
-            )
+        axial = max(run.margins.nonlinearity for run in runs.values())
         moved = max(run.statistics.moved or 0.0 for run in runs.values())
-        if moved > KNOWN:
-            warnings.append(f"Time step: halving it changes the displacement by {100 * moved:.2g} %, not converged.")
-        return warnings
+        one_way = [run.coupling for run in runs.values() if run.coupling and not run.coupling.pushes_back]
+        normal = max((coupling.normal_size for coupling in one_way), default=0.0)
+        limits = {"lift-off": (lift_off, 1.0), "coupling": (normal, FELT), "axial": (axial, NONLINEAR)}
+        limits |= {"step": (moved, KNOWN)}
+        warnings += [WARNINGS[key].format(value) for key, (value, limit) in limits.items() if value > limit]
+        return warnings, not stopped and lift_off <= 1.0 and max(normal, axial) < LARGE and moved <= KNOWN
 
 
 def _title(run: "Run") -> str:
@@ -258,23 +262,22 @@ def _tables(runs: "dict[str, Run]", chain: "Run") -> "list[Table]":
         sizes = ("two-way" if coupling.two_way else "one-way", coupling.friction_size, coupling.normal_size)
         frequency = (margins.model_form, margins.discretisation)
         validity.append((_title(run), *sizes, margins.lift_off, margins.nonlinearity, *frequency))
-    results = [Column("displacement", "m", "+.5g", prefix=True), Column("error", percent=True, format="+.3g")]
-    results += [Column("mean speed", "m/s", "+.5g", prefix=True), Column("largest friction", "N", ".4g", prefix=True)]
-    results += [Column("steps"), Column("energy imbalance", format=".1e")]
-    limits = [Column("coupling"), Column("friction coupling", format=".1e"), Column("normal coupling", format=".1e")]
-    limits += [Column("lift-off", format=".3g"), Column("(kL)² ⟨θ²⟩", format=".1e")]
-    limits += [Column("theory", percent=True, format="+.3g"), Column("discretisation", percent=True, format="+.3g")]
+    results = [Column("model"), si("displacement", "m", "+.5g"), percent("error", "+.3g")]
+    results += [si("mean speed", "m/s", "+.5g"), si("largest friction", "N"), Column("steps")]
+    results += [Column("energy imbalance", format=".1e")]
+    limits = [Column("model"), Column("coupling"), Column("friction coupling", format=".1e")]
+    limits += [Column("normal coupling", format=".1e"), Column("lift-off", format=".3g")]
+    limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), percent("theory", "+.3g"), percent("discretisation", "+.3g")]
     notes = [
         "Coupling: change of the surface's motion by full friction and by the inertia of the slider held on it.",
         "Lift-off: largest downward acceleration of the surface over that by weight and preload.",
         "Theory (Timoshenko) and discretisation: frequency error at the mode nearest to the drive.",
     ]
     energies = [(text, getattr(chain.ledger, key)) for key, text in ENERGIES.items()]
-    energy = [Column("energy"), Column("value", "J", ".4g", prefix=True)]
     return [
-        Table("Slider on each model", [Column("model"), *results], rows),
-        Table("Validity of these runs", [Column("model"), *limits], validity, notes),
-        Table(f"Energy balance, {_title(chain)}", energy, energies),
+        Table("Slider on each model", results, rows),
+        Table("Validity of these runs", limits, validity, notes),
+        Table(f"Energy balance, {_title(chain)}", [Column("energy"), si("value", "J")], energies),
     ]
 
 
@@ -282,11 +285,10 @@ def _error_table(rows: list[dict[str, Any]], step_error: float | None) -> "Table
     from verify.models.catalogue import MODELS
     from verify.report.result import Column, Table
 
-    columns = [Column("model"), Column("N"), Column("displacement", "m", "+.7g", prefix=True)]
-    columns += [Column("error", percent=True, format="+.4g"), Column("order", format=".2f")]
+    columns = [Column("model"), Column("N"), si("displacement", "m", "+.7g"), percent("error")]
     notes = [] if step_error is None else [f"Half the time step changes the exact value by {100 * step_error:.1g} %."]
     cells = [(MODELS[row["model"]].title, *list(row.values())[1:]) for row in rows]
-    return Table("Displacement over N, against the exact beam", columns, cells, notes)
+    return Table("Displacement over N, against the exact beam", [*columns, Column("order", format=".2f")], cells, notes)
 
 
 def _plain(run: "Run") -> dict[str, Any]:
@@ -294,49 +296,15 @@ def _plain(run: "Run") -> dict[str, Any]:
     return {key: getattr(run, key) for key in (*keys, "coupling", "margins", "ledger", "statistics", "notes")}
 
 
-def _draw(ax: "Axes", runs: "dict[str, Run]", read: "Callable[[Run], Array]", name: str, unit: str) -> None:
-    """One line over time for every model, the exact beam broad."""
+def _draw_errors(ax: "Axes", rows: list[dict[str, Any]]) -> None:
     from verify.models.catalogue import MODELS
-    from verify.report.plotting import MODEL_COLORS
-    from verify.units import unit_over
 
-    time = unit_over((float(run.times[-1]) for run in runs.values()), "s")
-    scaled = unit_over((float(abs(read(run)).max()) for run in runs.values()), unit)
-    for model, run in runs.items():
-        color, width = MODEL_COLORS.get(model, MODELS[model].colour), 1.4 if run.count else 4.0
-        every = slice(None, None, max(len(run.times) // 2000, 1))
-        x, y = time.factor * run.times[every], scaled.factor * read(run)[every]
-        ax.plot(x, y, color=color, linewidth=width, label=_title(run))
-    ax.set(xlabel=f"time, {time.name}", ylabel=f"{name}, {scaled.name}")
-    ax.legend()
-
-
-def _draw_speeds(ax: "Axes", run: "Run") -> None:
-    from verify.units import unit_over
-
-    lines = {"surface under the slider": (run.surface_speed, "#7d8590"), "slider": (run.speed, SLIDER)}
-    time = unit_over([float(run.times[-1])], "s")
-    unit = unit_over((float(abs(values).max()) for values, _ in lines.values()), "m/s")
-    every = slice(None, None, max(len(run.times) // 2000, 1))
-    for label, (values, color) in lines.items():
-        ax.plot(time.factor * run.times[every], unit.factor * values[every], color=color, label=label)
-    ax.set(xlabel=f"time, {time.name}", ylabel=f"velocity, {unit.name}")
-    ax.legend()
-
-
-def _draw_errors(ax: "Axes", rows: list[dict[str, Any]], step_error: float | None, counts: tuple[int, ...]) -> None:
-    from verify.models.catalogue import MODELS
-    from verify.report.plotting import MODEL_COLORS
-
+    lines = []
     for model in dict.fromkeys(row["model"] for row in rows):
-        own = [row for row in rows if row["model"] == model and row["error"]]
-        errors, color = [100 * abs(row["error"]) for row in own], MODEL_COLORS.get(model, MODELS[model].colour)
-        ax.loglog([row["N"] for row in own], errors, "-o", color=color, label=MODELS[model].title)
-    if step_error:
-        ax.axhline(100 * step_error, color=MODEL_COLORS["analytic"], linestyle="--", label="half the time step")
-    size_axis(ax, counts)
-    ax.set_ylabel("|error of the displacement|, %")
-    ax.legend()
+        own = [row for row in rows if row["model"] == model]
+        errors = [100 * row["error"] for row in own]
+        lines.append((MODELS[model].title, model_style(model)["color"], "-o", [row["N"] for row in own], errors))
+    plot_errors(ax, lines, "|error of the displacement|, %")
 
 
 def _movie(run: "Run") -> "Movie":
@@ -346,14 +314,13 @@ def _movie(run: "Run") -> "Movie":
         import numpy as np
         from matplotlib.animation import FuncAnimation
 
-        from verify.report.plotting import MODEL_COLORS
         from verify.units import unit_of, unit_over
 
         kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
         ax, along = figure.subplots(), unit_of(float(run.points[-1]))
         up, time = unit_over([float(abs(run.deflection).max())]), unit_over([float(run.times[-1])], "s")
         x, friction = along.factor * run.points, run.friction / (float(abs(run.friction).max()) or 1.0)
-        (links,) = ax.plot(x, 0.0 * x, "-o", color=MODEL_COLORS["segment"], markersize=3, label=_title(run))
+        (links,) = ax.plot(x, 0.0 * x, "-o", markersize=3, label=_title(run), **model_style(run.model))
         (force,) = ax.plot([], [], color=FRICTION, linewidth=3.0, label="friction on the slider")
         (block,) = ax.plot([], [], "s", color=SLIDER, markersize=10, label="slider")
         top = 1.2 * up.factor * float(abs(run.deflection).max())
@@ -374,5 +341,4 @@ def _movie(run: "Run") -> "Movie":
 
         return FuncAnimation(figure, update, frames=kept.tolist(), interval=60)
 
-    caption = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
-    return Movie("slider-moving", f"The slider on the wave, {_title(run)}", caption, animate)
+    return Movie("slider-moving", f"The slider on the wave, {_title(run)}", MOVIE, animate)
