@@ -288,6 +288,7 @@ def _type_name(kind: Any) -> str:
     return {int: "whole number", float: "number", str: "word", bool: "true | false"}.get(arm, str(arm))
 
 
+_UNKNOWN = re.compile(r"Object contains unknown field `(.*)`")
 _MISSING = re.compile(r"Object missing required field `(.*)`")
 _PLAIN = {"int": "a whole number", "float": "a number", "str": "a word", "bool": "true or false", "array": "a list"}
 
