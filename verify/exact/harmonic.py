@@ -22,7 +22,6 @@ from verify.models.fields import (
     unit_drives,
     wavenumber,
 )
-from verify.models.ordered import distinct
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.options import THEORIES
 
@@ -98,7 +97,7 @@ def resonant(beam: Beam, frequencies: Array) -> Indices:
     if beam.loss_factor:
         return np.zeros(0, dtype=int)
     turns = np.sqrt(2.0 * pi * frequencies / beam.wave_constant) * beam.length / pi
-    numbers = distinct(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
+    numbers = np.unique(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
     resonances = np.array([mode_frequency_hz(beam, int(n)) for n in numbers])
     above = np.clip(np.searchsorted(resonances, frequencies), 0, len(resonances) - 1)
     around = np.stack([np.maximum(above - 1, 0), above], axis=1)
@@ -274,7 +273,7 @@ def spliced_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable
     def shapes(x: Array, derivative: int) -> ComplexArray:
         span = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
         field = np.zeros((*each.shape, len(x)), dtype=complex)
-        for j in distinct(span):
+        for j in np.unique(span):
             parts = np.moveaxis(_exponentials(k, ends, int(j), x[span == j], derivative), 0, -2)
             field[..., span == j] = (amplitudes[..., j, :, :] @ parts)[..., 0, :]
         return field
