@@ -9,7 +9,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.checks import check_whole
 from verify.compare.candidates import CHAIN, ELEMENTS, EXACT, EULER, Candidate, candidates, frequencies_hz
-from verify.compare.fit import TOLERANCE, Data, identify
+from verify.compare.fit import TOLERANCE, Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, Required, result_of
 from verify.errors import InputError
@@ -22,8 +22,6 @@ RIGID = 3e-3
 """Of the next frequency: smaller leading ones are rigid motions, unless the beam has such a gap."""
 SPARE = 4
 """Modes above those of a list among which shapes are paired."""
-LARGEST, IN_A_ROW, STEP = 1000, 5, 1.15
-"""Required N: the largest, how many of increasing sizes satisfy the tolerance, and their ratio."""
 ERRORS = (1e-2, 1e-3)
 """For which N is required."""
 
@@ -88,7 +86,7 @@ def compare(scene: Any, given: FrequencyList, shapes: ModeShapes | None = None, 
     if found.status == "unknown" and (supports := _other_supports(beam, data.logs[entries], modes)):
         warnings.append(f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.")
     mode = options.mode or max(row.mode for row in rows)
-    sizes = [_required(beam, one, mode) for one in _worth_sizing(beam, found.best.candidate) if found.status != "unknown"]
+    sizes = [_required(beam, one, mode, max(mode, data.n_modes)) for one in _worth_sizing(beam, found.best.candidate) if found.status != "unknown"]
     return result_of(scene, given, options, data, found, rows, sizes, warnings)
 
 
@@ -111,20 +109,24 @@ def _paired(
     """(entries (k,) of those kept, their modes (k,) from 0, MAC (k,), whether more than the order says which they are)."""
     order = np.arange(len(kept))
     if shapes is not None:
-        values = shapes.values[kept]
-        values = values / abs(values).max(axis=1, keepdims=True)
-        weights = np.sqrt(node_weights(shapes.x))
-        reference = exact_shapes(beam, max(len(kept), min(len(kept) + SPARE, len(shapes.x) - 2)), shapes.x)
-        modes, likeness = pair_modes(mac(values * weights, reference * weights))
+        modes, likeness = pair_shapes(beam, shapes.x, shapes.values[kept])
         like = likeness >= LIKENESS
-        if not like.any():
-            raise InputError(f"modes: no shape is like one of the beam's (MAC {likeness.max():.2f}): check x and supports")
         return order[like], modes[like], likeness[like], True
     if given.numbers is not None:
         shift = 1 + (len(given.hertz) - len(kept) if given.numbers[0] == 1 else 0)
         modes = np.array(given.numbers)[kept] - shift
         return order, modes, None, bool((modes != order).any())
     return order, order, None, False
+
+
+def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
+    """(modes from 0 (k,), MAC (k,)) of shapes (k, len(x)) of the largest sum of MAC. Raises InputError for no likeness."""
+    scaled, weights = values / abs(values).max(axis=1, keepdims=True), np.sqrt(node_weights(x))
+    n = max(len(values), min(len(values) + SPARE, len(x) - 2))
+    modes, likeness = pair_modes(mac(scaled * weights, exact_shapes(beam, n, x) * weights))
+    if likeness.max() < LIKENESS:
+        raise InputError(f"modes: no shape is one of the beam's (MAC {likeness.max():.2f}): check x and beam.supports")
+    return modes, likeness
 
 
 def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
@@ -167,23 +169,29 @@ def _worth_sizing(beam: Beam, best: Candidate) -> list[Candidate]:
     return [best, *[accurate] * (accurate != best)]
 
 
-def _required(beam: Beam, candidate: Candidate, mode: int) -> Required:
-    """N from which on all solved sizes satisfy each tolerance at a mode; None up to the largest."""
-    found: list[int | None] = []
+def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> Required:
+    """N from which on larger ones satisfy each tolerance at a mode, by interpolation, corrected by solves."""
     exact = float(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1])
+    sizes, logs = spectrum(beam, candidate, n_modes, (None,))
+    counts: list[int | None] = []
     for error in ERRORS:
 
         def within(size: int, error: float = error) -> bool:
-            hertz = frequencies_hz(candidate, beam, size, mode)
-            return len(hertz) == mode and abs(float(hertz[-1]) / exact - 1.0) <= error
+            hertz = frequencies_hz(candidate, beam, size, n_modes)
+            return len(hertz) >= mode and abs(float(hertz[mode - 1]) / exact - 1.0) <= error
 
-        low, size = max(mode, len(beam.pieces), 2) - 1, max(mode, len(beam.pieces), 2)
-        passed: list[int] = []
-        while len(passed) < IN_A_ROW and (size <= LARGEST or passed):
-            passed = [*passed, size] if within(size) else []
-            low, size = low if passed else size, max(size + 1, round(STEP * size))
-        while passed and passed[0] - low > 1:
-            middle = (passed[0] + low) // 2
-            low, passed[0] = (low, middle) if within(middle) else (middle, passed[0])
-        found.append(passed[0] if passed else None)
-    return Required(candidate=candidate, mode=mode, counts=tuple(found))
+        failing = np.flatnonzero(~(abs(np.expm1(logs[:, mode - 1] - np.log(exact))) <= error))
+        low, high = (int(sizes[failing[-1]]), failing[-1] + 1) if len(failing) else (0, 0)
+        if high == len(sizes):
+            counts.append(None)
+            continue
+        size = int(sizes[high])
+        while size - low > 1:
+            middle = (size + low) // 2
+            size, low = (middle, low) if within(middle) else (size, middle)
+        while not within(size):
+            size += 1
+        while size > 1 and within(size - 1):
+            size -= 1
+        counts.append(size)
+    return Required(candidate=candidate, mode=mode, counts=tuple(counts))

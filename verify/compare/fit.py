@@ -22,8 +22,10 @@ AMBIGUOUS = 2.0
 """Factor of rms within which candidates or faults are alternatives."""
 EFFECT = 0.05
 """A fitted fault leaves at most so much of what it changes."""
-SIZES = (2, 400)
+SIZES = (2, 1000)
 """N, where the user does not say it."""
+UNEVEN = 400
+"""The largest N, where errors do not fall smoothly."""
 FEWEST = 3
 """Entries below which a fitted fault is no evidence."""
 REFINED = 5
@@ -267,7 +269,7 @@ def _refined(data: Data, fit: Fit) -> Fit | None:
     if best is None or fit.count is None or data.count is not None:
         return best
     if falls_within(data.beam):
-        for size in range(*SIZES):
+        for size in range(SIZES[0], UNEVEN):
             other = _solved(data, msgspec.structs.replace(fit, count=size))
             best = other if other is not None and other.rms < best.rms else best
             if best.rms <= data.floor:
@@ -320,7 +322,7 @@ def spectrum(
         sizes = np.array([count or 0 for count in counts])
         return sizes, np.array([solve(count) for count in counts])
     uneven, size = falls_within(beam), max(SIZES[0], n_modes // 2)
-    while size < (SIZES[1] if uneven else 12 * n_modes):
+    while size < (UNEVEN if uneven else 12 * n_modes):
         table[size] = solve(size)
         size = max(size + 1, round(size * (1.3 if size < 3 * n_modes else 1.5)))
     knots, solved = np.array(list(table)), np.array(list(table.values()))

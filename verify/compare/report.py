@@ -156,7 +156,7 @@ def _modes(beam: Beam, best: Fit, rows: list[Entry], errors: list[float]) -> Tab
 def _candidates(beam: Beam, found: Identification) -> Table:
     """The best candidates."""
     columns = [Column("candidate"), Column("N"), Column("order"), Column("rms difference", format=".3g", percent=True)]
-    columns += [Column("largest", format=".3g", percent=True), Column("")]
+    columns += [Column("largest", format=".3g", percent=True), Column("status")]
     words = {id(one): "equivalent" for one in found.equivalent} | {id(one): "alternative" for one in found.alternatives}
     words[id(found.best)] = "best"
     rows = [
@@ -170,7 +170,7 @@ def _candidates(beam: Beam, found: Identification) -> Table:
 def _faults(found: Identification) -> Table:
     """Every kind of fault that was tested, by its best candidate."""
     columns = [Column("fault of the list"), Column("value"), Column("candidate"), Column("N")]
-    columns += [Column("rms difference", format=".3g", percent=True), Column("")]
+    columns += [Column("rms difference", format=".3g", percent=True), Column("status")]
     rows = []
     for one in found.tested:
         word = "diagnosis" if one.fault.kind == found.best.fault.kind else ""
