@@ -38,7 +38,7 @@ class WrongSceneError(InputError):
         return self._sentences
 
 
-def raise_all(sentences: "list[str]", most: int) -> None:
+def raise_all(sentences: "list[str]", most: int = 1_000_000) -> None:
     """Raise InputError for one sentence, WrongSceneError for several (the first `most`); nothing for none."""
     sentences = list(dict.fromkeys(sentences))
     if len(sentences) > 1:

@@ -9,10 +9,12 @@ import numpy as np
 
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.judge.bracket import Bracket
-from verify.judge.crossing import ASTRAY
 from verify.models.arrays import Array, Indices
 from verify.models.modes import Modes
 from verify.models.search import zero_between
+
+ASTRAY = 1.0
+"""Largest difference between observed orders, and from the known one."""
 
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14

@@ -58,7 +58,7 @@ class Exact(Model):
         self, beam: "Beam", forces: "Sequence[PointForce]", frequencies_hz: "Array", count: int | None, **settings: Any
     ) -> "HarmonicSweep":
         """All at once."""
-        from verify.exact.sweeps import sweep_harmonic
+        from verify.exact.harmonic import sweep_harmonic
 
         return sweep_harmonic(beam, forces, frequencies_hz, **settings)
 

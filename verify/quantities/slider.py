@@ -247,25 +247,14 @@ def order(
 
 @quantity("slider.deflection", unit="m")
 def deflection_with_slider(
-    scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
-    by: TimeOptions,
-    slider: SliderOptions,
-    *,
-    x: Place,
+    scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, slider: SliderOptions, *, x: Place
 ) -> float:
     """Deflection of the beam at x after a time, with the slider on it."""
     return float(slider_run(scene, cache, drive, by, slider, at=(x,)).deflection[-1, 0])
 
 
 def _energy_balance(
-    scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
-    by: TimeOptions,
-    slider: SliderOptions,
-    step: float | None,
+    scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, slider: SliderOptions
 ) -> "Ledger":
     balance = slider_run(scene, cache, drive, by, slider, ledger=True).ledger
     if balance is None:

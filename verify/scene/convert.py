@@ -10,7 +10,6 @@ import msgspec
 
 from verify.checks import RELATIVE
 from verify.errors import InputError, near_name, raise_all, shown
-from verify.scene.model import MAX_SENTENCES
 
 T = TypeVar("T")
 
@@ -35,7 +34,7 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
     try:
         return msgspec.convert(data, kind, strict=True)
     except msgspec.ValidationError as error:
-        raise_all(list(_errors(data, kind, where)), MAX_SENTENCES)
+        raise_all(list(_errors(data, kind, where)))
         raise InputError(f"{where or 'scene'}: {error}") from None
 
 

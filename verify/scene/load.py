@@ -10,10 +10,12 @@ import msgspec
 from verify.errors import InputError, NoTomlError, near_name, raise_all, shown
 from verify.files import exists
 from verify.scene.convert import convert, entry_of, table_of, typed
-from verify.scene.model import MAX_SENTENCES, Scene
+from verify.scene.model import Scene
 
 DATA = Path(__file__).parent / "data"
 STARTER = DATA / "starter.toml"
+MAX_SENTENCES = 30
+"""Errors of one scene that are listed."""
 SCHEMA_LINE = "#:schema ./verify.schema.json"
 """Names the schema for TOML editors; `verify schema --to verify.schema.json` writes the file."""
 _OWN = tuple(name for name in Scene.__struct_fields__ if name != "studies")

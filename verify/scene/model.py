@@ -14,9 +14,6 @@ from verify.errors import InputError, raise_all
 from verify.options import DriveKind, Reference
 from verify.slider import Slider
 
-MAX_SENTENCES = 30
-"""Errors of one scene that are listed."""
-
 Id: TypeAlias = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
 
 
@@ -238,7 +235,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Studies by the names of their sections; in a file they stand at the top level."""
 
     def __post_init__(self) -> None:
-        raise_all(list(dict.fromkeys(self._errors())), MAX_SENTENCES)
+        raise_all(list(self._errors()))
 
     def _errors(self) -> Iterator[str]:
         """A sentence for every inconsistency between parts that are right by themselves."""

@@ -1,6 +1,7 @@
 """What a study is: a section of a scene that runs itself and returns a `Result`."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import msgspec
@@ -33,11 +34,6 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError where the scene lacks what the study needs, or has what it does not model."""
-        if scene.devices and not self.devices:
-            raise InputError(
-                f"{self.name}: this study does not model drive.device, and one stands at "
-                f"{scene.devices[0].position:g} m: leave out drive.device or [{self.name}]"
-            )
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Compute the study. Raises InputError."""
@@ -65,20 +61,20 @@ STUDIES: Registry[type[Study]] = Registry(
 def studies_of(scene: "Scene") -> list[tuple[str, Study]]:
     """(name, study) of the scene's sections and of the implied ones, in the order of `STUDIES`.
 
-    `claims` is implied by [[claim]], `wave` by a [drive] with two forces on a beam where it runs with its defaults.
+    [[claim]] implies `claims`, a [drive] with two forces `wave` where it runs with its defaults. [motion] without a
+    slider that stays on the beam has settings for quantities in time and is no study.
     """
-    found = dict(scene.studies)
+    found: dict[str, Study] = dict(scene.studies)
+    if scene.slider is None or scene.slider.contact is not None:
+        found.pop("motion", None)
     if scene.claim:
         found.setdefault("claims", STUDIES["claims"]())
-    if len(scene.forces) == 2 and "wave" not in found:
+    if "wave" not in found and len(scene.forces) == 2 and not scene.devices:
         wave = STUDIES["wave"]()
-        try:
+        with suppress(InputError):
             wave.check(scene)
             found["wave"] = wave
-        except InputError:
-            pass
-    order = [name for name in STUDIES if name in found]
-    return [(name, found[name]) for name in order]
+    return [(name, found[name]) for name in STUDIES if name in found]
 
 
 def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":

@@ -52,11 +52,13 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         columns = [Column("mode"), Column(f"exact {theory_name(theory)}", "Hz", ".7g")]
         columns += [Column(one.title, percent=True, format="+.4g") for one in variants]
         columns += [Column(f"{theory_name(name)} theory", percent=True, format="+.4g") for name in theories]
-        rows = [
+        rows: list[tuple[float | None, ...]] = [
             (mode, cache.exact_hz(mode, theory), *(own[mode - 1] for own in (*errors.values(), *theories.values())))
             for mode in numbers
         ]
-        parts = [(f"discretisation, {one.title}", own[-1]) for one, own in errors.items()]
+        parts: list[tuple[str, float | None]] = [
+            (f"discretisation, {one.title}", own[-1]) for one, own in errors.items()
+        ]
         parts += [(f"theory, {theory_name(name)}", own[-1]) for name, own in theories.items()]
         parts += [("rounding of eigenvalues, at most", EIGENVALUE_FLOOR)]
         known = [f"{one.title} {100 * own[-1]:+.4g} %" for one, own in errors.items() if own[-1] is not None]

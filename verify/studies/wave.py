@@ -69,7 +69,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.waves.measures import middle_half
         from verify.waves.window import check_window
 
-        super().check(scene)
         if len(scene.forces) != 2 or scene.drive is None:
             raise InputError("wave: the study needs a [drive] with two forces, add them")
         for verb in ("solve_harmonic", "unit_responses"):
