@@ -143,7 +143,8 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """For JSON: summary, warnings, tables as records, and the data."""
         tables = [{"title": table.title, "rows": table.records()} for table in self.tables]
-        return {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | plain(self.data)
+        data: dict[str, Any] = plain(self.data)
+        return {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | data
 
     def print(self, console: "Console") -> None:
         """Print summary, tables and warnings."""
