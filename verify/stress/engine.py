@@ -44,7 +44,8 @@ class Check:
 
     def run(self) -> "Outcome":
         """Measure the check. Raises nothing for what is measured."""
-        start, base = perf_counter(), None
+        start = perf_counter()
+        baseline: Points = ()
         with localcontext() as context, warnings.catch_warnings():
             context.prec = DIGITS
             points = self._costs() if self.rounds else tuple((v, _error(self.error, v)[0]) for v in self.values)
@@ -53,13 +54,13 @@ class Check:
             warnings.simplefilter("ignore")
             if self.baseline:
                 _, error, *values = self.baseline
-                base = max(_error(error, value)[0] for value in (values[0] if values else self.values))
+                baseline = tuple((v, _error(error, v)[0]) for v in (values[0] if values else self.values))
         passed = worst <= self.tolerance and (how == "refused" or not self.refused)
-        return Outcome(self.id, worst, passed, points, breaks_at, how, base, perf_counter() - start)
+        return Outcome(self.id, worst, passed, points, breaks_at, how, baseline, perf_counter() - start)
 
     def _costs(self) -> Points:
         """Least cost of each size over rounds in which the sizes take turns."""
-        table = [[self.error(size) for size in self.values] for _ in range(self.rounds)]
+        table = [[_error(self.error, size)[0] for size in self.values] for _ in range(self.rounds)]
         return tuple((size, min(column)) for size, column in zip(self.values, zip(*table, strict=True), strict=True))
 
     def _limit(self) -> tuple[float | None, str]:
@@ -93,8 +94,8 @@ class Outcome:
     """Value from which the tolerance is exceeded or the input refused; None where neither was reached."""
     breaks_by: str
     """'error', 'refused', or empty."""
-    baseline: float | None
-    """Largest error of the standard method, infinite where it fails."""
+    baseline: Points
+    """(value, error) of the standard method, infinite where it fails."""
     seconds: float
 
 
@@ -145,16 +146,18 @@ def select(ids: Sequence[str] = (), *, slow: bool = False) -> list[Check]:
     return [checks[name] for name in ids] or [one for one in checks.values() if slow or not one.slow]
 
 
-def run(checks: Sequence[Check], jobs: int | None = None, progress: Callable[[str], None] = str) -> list[Outcome]:
+def run(
+    checks: Sequence[Check], jobs: int | None = None, progress: Callable[[str], None] = lambda id: None
+) -> list[Outcome]:
     """Outcomes in the order of the checks: errors in `jobs` processes, then costs, each alone on the machine."""
     from verify.parallel import map_processes
 
-    errors = [one.id for one in checks if not one.rounds]
-    found = dict(zip(errors, map_processes(_run_by_id, errors, progress=progress, max_workers=jobs), strict=True))
+    ids = [one.id for one in checks if not one.rounds]
+    found = dict(zip(ids, map_processes(_run_by_id, ids, lambda n: progress(ids[n - 1]), jobs), strict=True))
     for one in checks:
         if one.rounds:
-            progress(one.id)
             found[one.id] = one.run()
+            progress(one.id)
     return [found[one.id] for one in checks]
 
 

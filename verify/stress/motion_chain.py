@@ -76,13 +76,13 @@ def time_stepping(steps: float) -> float:
     """Modes advanced step by step against their closed form, error over 1.1e-16 per step."""
     stepped = driven(steps * STEP, slider(), ledger=False)
     closed = driven(steps * STEP).deflection[-1, 0]
-    return abs(float(stepped.deflection[-1, 0] - closed)) / amplitude() / (ULP * stepped.statistics.steps)
+    return float(abs(stepped.deflection[-1, 0] - closed)) / (amplitude() * ULP * float(stepped.statistics.steps))
 
 
 def imbalance(steps: float, slope: float) -> float:
     """Energy missing from the balance of a slider on the driven strip, over input work and friction loss."""
     ledger = driven(steps * STEP, slider(slope)).ledger
-    return abs(ledger.residual) / (ledger.rubbed + ledger.work_in)
+    return float(abs(ledger.residual) / (ledger.rubbed + ledger.work_in))
 
 
 @check("energy-steps", "steps", (1e4, 1e6, 1e7), 1e-6, slow=True)

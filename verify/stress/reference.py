@@ -5,7 +5,7 @@ No model and no solver of the package takes part. `Check.run` sets the digits.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal as D  # noqa: N817
+from decimal import Decimal
 from itertools import combinations_with_replacement
 from typing import Any, TypeAlias
 
@@ -13,6 +13,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 
+D = Decimal
 PI = D("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803")
 Bands: TypeAlias = list[list[D]]
 """Row j holds the entries (j, j), (j, j + 1), ... up to the half bandwidth."""
@@ -39,15 +40,16 @@ class Parts:
     ra: Sequence[D]
     masses: Mapping[int, float] = field(default_factory=dict)
     springs: Mapping[int, float] = field(default_factory=dict)
-    foundation: D = D(0)
-    tension: D = D(0)
+    foundation: D | int = 0
+    tension: D | int = 0
 
 
 def equal(beam: Beam, n: int, **attached: Any) -> Parts:
     """N equal parts of a uniform beam with its foundation and tension; `attached` are `masses` and `springs`."""
     one = D(beam.length) / n, D(beam.bending_stiffness), D(beam.mass_per_length)
+    lengths, ei, ra = ([value] * n for value in one)
     more = {"foundation": D(beam.foundation), "tension": D(beam.tension), **attached}
-    return Parts(beam.supports, *([value] * n for value in one), **more)
+    return Parts(beam.supports, lengths, ei, ra, **more)
 
 
 def hermite(parts: Parts) -> tuple[Bands, Bands]:
