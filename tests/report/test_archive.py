@@ -3,6 +3,7 @@
 import json
 from datetime import UTC, datetime, timedelta
 
+import msgspec
 import pytest
 
 from verify.errors import InputError
@@ -10,6 +11,11 @@ from verify.report import archive
 from verify.report.archive import read_runs, report_name, save_run, saved_in
 from verify.report.diff import compare_runs
 from verify.report.summary import run_data
+
+
+@pytest.fixture(scope="module")
+def bare_run(small_run):
+    return msgspec.structs.replace(small_run, results={})
 
 
 @pytest.fixture
@@ -27,42 +33,42 @@ def clock(monkeypatch):
     monkeypatch.setattr(archive, "datetime", Clock)
 
 
-def test_newest_runs_are_kept(small_run, tmp_path, clock):
-    folders = [save_run(small_run, tmp_path, "small", keep=2).folder for _ in range(3)]
+def test_newest_runs_are_kept(bare_run, tmp_path, clock):
+    folders = [save_run(bare_run, tmp_path, "small", keep=2).folder for _ in range(3)]
     assert saved_in(tmp_path / "small") == folders[1:]
     assert sorted(one.name for one in folders[2].iterdir()) == ["index.html", "run.json"]
     assert (tmp_path / "small.html").read_bytes() == (folders[2] / "index.html").read_bytes()
     assert [one.name for one in tmp_path.iterdir() if one.name.startswith(".")] == []
 
 
-def test_other_folders_stay(small_run, tmp_path, clock):
+def test_other_folders_stay(bare_run, tmp_path, clock):
     notes = tmp_path / "small" / "notes"
     notes.mkdir(parents=True)
-    save_run(small_run, tmp_path, "small", keep=1)
-    save_run(small_run, tmp_path, "small", keep=1)
+    save_run(bare_run, tmp_path, "small", keep=1)
+    save_run(bare_run, tmp_path, "small", keep=1)
     assert notes.is_dir()
     assert len(saved_in(tmp_path / "small")) == 1
 
 
-def test_without_keeping_one_page(small_run, tmp_path):
-    saved = save_run(small_run, tmp_path, "small", keep=0)
+def test_without_keeping_one_page(bare_run, tmp_path):
+    saved = save_run(bare_run, tmp_path, "small", keep=0)
     assert saved.folder is None
     assert [one.name for one in tmp_path.iterdir()] == ["small.html"]
 
 
-def test_failed_write_leaves_nothing(small_run, tmp_path):
+def test_failed_write_leaves_nothing(bare_run, tmp_path):
     (tmp_path / "small").write_text("a file")
     with pytest.raises(InputError, match="--keep 0"):
-        save_run(small_run, tmp_path, "small")
+        save_run(bare_run, tmp_path, "small")
     assert [one.name for one in tmp_path.iterdir()] == ["small"]
 
 
-def test_runs_are_read_from_every_level(small_run, tmp_path):
-    folder = save_run(small_run, tmp_path, "small", "verify run small.toml").folder
+def test_runs_are_read_from_every_level(bare_run, tmp_path):
+    folder = save_run(bare_run, tmp_path, "small", "verify run small.toml").folder
     for path in (folder / "run.json", folder, tmp_path / "small", tmp_path):
         (run,) = read_runs(path, "A").values()
         assert run["command"] == "verify run small.toml"
-        assert run["gates"][0]["value"] == small_run.gates[0].value
+        assert run["gates"][0]["value"] == bare_run.gates[0].value
 
 
 @pytest.mark.parametrize("text", ["{}", "[]", "no json", '{"gates": []}'])
