@@ -244,7 +244,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         except InputError as error:
             yield from error.sentences
             return
-        for name, study in studies_of(self):
+        for name, study in (self.studies | dict(studies_of(self))).items():
             if self.devices and name in self.studies and not study.devices:
                 yield f"drive.device: [{name}] does not model it, leave out [{name}] or drive.device"
             try:
