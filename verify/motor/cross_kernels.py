@@ -4,66 +4,54 @@ Where the surface under a point passes the slider's speed, its friction turns ro
 side is found from straight lines through its middle, of that speed and of the normal force.
 """
 
+from verify.jit import inline
 from verify.models.arrays import Array
-from verify.models.kernels import part
-from verify.motor.records import (
-    AHEAD,
-    BEYOND,
-    GAINED,
-    GRIP,
-    MOST,
-    PUSH,
-    PUSH_BEFORE,
-    RUB,
-    STUCK,
-    SURFACE,
-    SURFACE_BEFORE,
-)
+from verify.motor import records as rec
 
 NONE = 1e-12
 """Of the speeds at hand: by no more is a surface ahead that goes with the slider."""
 
 
-@part()
+@inline
 def _snapped(ahead: float, i: int, v: float, light: float, touch: Array) -> float:
     """How far a surface is ahead, 0 where that is rounding: points that stick are let go by nothing else."""
-    speeds = abs(touch[i, SURFACE]) + abs(v) + light * touch[i, MOST]
+    speeds = abs(touch[i, rec.SURFACE]) + abs(v) + light * touch[i, rec.MOST]
     return 0.0 if abs(ahead) <= NONE * speeds else ahead
 
 
-@part()
+@inline
 def _begin(first: int, last: int, light: float, v: float, mu: float, touch: Array, points: Array) -> None:
     """How far every point's surface is ahead of v as the step begins, and what friction can do there.
 
     The line has the mean speed of the step, which is off that of its middle by what the surface gains the more over 24.
     """
     for i in range(first, last):
-        touch[i, MOST] = 0.0
-        if points[i, GRIP] == 0.0:
-            touch[i, RUB], touch[i, BEYOND], touch[i, STUCK] = 0.0, 0.0, 0.0
-            touch[i, MOST] = mu * touch[i, PUSH]
-            gained = touch[i, SURFACE] - touch[i, SURFACE_BEFORE]
-            ahead = touch[i, SURFACE] + (gained - touch[i, GAINED]) / 24.0 - 0.5 * gained - v
-            touch[i, AHEAD] = _snapped(ahead, i, v, light, touch)
-            touch[i, GAINED] = gained
+        touch[i, rec.MOST] = 0.0
+        if points[i, rec.GRIP] == 0.0:
+            touch[i, rec.RUB], touch[i, rec.BEYOND], touch[i, rec.STUCK] = 0.0, 0.0, 0.0
+            touch[i, rec.MOST] = mu * touch[i, rec.PUSH]
+            gained = touch[i, rec.SURFACE] - touch[i, rec.SURFACE_BEFORE]
+            ahead = touch[i, rec.SURFACE] + (gained - touch[i, rec.GAINED]) / 24.0 - 0.5 * gained - v
+            touch[i, rec.AHEAD] = _snapped(ahead, i, v, light, touch)
+            touch[i, rec.GAINED] = gained
 
 
-@part()
+@inline
 def _level(first: int, last: int, gain: float, touch: Array) -> tuple[float, float]:
     """Friction on a slider that gains so much in a step: (sum of what slides, what the points at its speed can do)."""
     total, reserve = 0.0, 0.0
     for i in range(first, last):
-        way = touch[i, AHEAD] if touch[i, AHEAD] != 0.0 else touch[i, GAINED] - gain
+        way = touch[i, rec.AHEAD] if touch[i, rec.AHEAD] != 0.0 else touch[i, rec.GAINED] - gain
         if way > 0.0:
-            total += touch[i, MOST]
+            total += touch[i, rec.MOST]
         elif way < 0.0:
-            total -= touch[i, MOST]
+            total -= touch[i, rec.MOST]
         else:
-            reserve += touch[i, MOST]
+            reserve += touch[i, rec.MOST]
     return total, reserve
 
 
-@part()
+@inline
 def _gain(first: int, last: int, light: float, pull: float, touch: Array) -> tuple[float, float]:
     """(what a slider would gain in a whole step by what acts now, m/s; the share of mu N that holds it at a point).
 
@@ -72,11 +60,11 @@ def _gain(first: int, last: int, light: float, pull: float, touch: Array) -> tup
     """
     free, most = light * pull, 0.0
     for i in range(first, last):
-        most += touch[i, MOST]
+        most += touch[i, rec.MOST]
     low, high = free - light * most, free + light * most
     for i in range(first, last):
-        at = touch[i, GAINED]
-        if low < at < high and touch[i, AHEAD] == 0.0 and touch[i, MOST] > 0.0:
+        at = touch[i, rec.GAINED]
+        if low < at < high and touch[i, rec.AHEAD] == 0.0 and touch[i, rec.MOST] > 0.0:
             total, reserve = _level(first, last, at, touch)
             wanted = (at - free) / light - total
             if abs(wanted) <= reserve:
@@ -89,37 +77,37 @@ def _gain(first: int, last: int, light: float, pull: float, touch: Array) -> tup
     return float(free + light * total), 0.0
 
 
-@part()
+@inline
 def _next(first: int, last: int, left: float, gain: float, touch: Array) -> tuple[int, float]:
     """(the point whose surface next passes the slider's speed, below 0 if none does; after how much of the step)."""
     found, share = -1, left
     for i in range(first, last):
-        ahead, more = touch[i, AHEAD], touch[i, GAINED] - gain
-        if ahead * more < 0.0 and abs(ahead) < share * abs(more) and touch[i, MOST] > 0.0:
+        ahead, more = touch[i, rec.AHEAD], touch[i, rec.GAINED] - gain
+        if ahead * more < 0.0 and abs(ahead) < share * abs(more) and touch[i, rec.MOST] > 0.0:
             found, share = i, -ahead / more
     return found, share
 
 
-@part()
+@inline
 def _go_on(
     first: int, last: int, done: float, share: float, gain: float, held: float, v: float, light: float, touch: Array
 ) -> None:
     """What a share of the step adds to the friction of all points, and by how much the surface is ahead then."""
     middle = done + 0.5 * share - 0.5
     for i in range(first, last):
-        most = touch[i, MOST]
+        most = touch[i, rec.MOST]
         if most > 0.0:
-            before, more = touch[i, AHEAD], touch[i, GAINED] - gain
+            before, more = touch[i, rec.AHEAD], touch[i, rec.GAINED] - gain
             way = before if before != 0.0 else more
-            force = most * (1.0 + middle * (1.0 - touch[i, PUSH_BEFORE] / touch[i, PUSH]))
+            force = most * (1.0 + middle * (1.0 - touch[i, rec.PUSH_BEFORE] / touch[i, rec.PUSH]))
             force = 0.0 if force < 0.0 else force if way > 0.0 else -force if way < 0.0 else held * most
-            touch[i, AHEAD] = _snapped(before + share * more, i, v, light, touch)
-            touch[i, STUCK] = 1.0 if way == 0.0 else 0.0
-            touch[i, RUB] += share * force
-            touch[i, BEYOND] += share * force * (before + 0.5 * share * more)
+            touch[i, rec.AHEAD] = _snapped(before + share * more, i, v, light, touch)
+            touch[i, rec.STUCK] = 1.0 if way == 0.0 else 0.0
+            touch[i, rec.RUB] += share * force
+            touch[i, rec.BEYOND] += share * force * (before + 0.5 * share * more)
 
 
-@part()
+@inline
 def cross(
     first: int, last: int, light: float, pull: float, v: float, mu: float, touch: Array, points: Array
 ) -> tuple[float, float]:
@@ -136,11 +124,11 @@ def cross(
         done += share
         if found < 0:
             break
-        touch[found, AHEAD] = 0.0
+        touch[found, rec.AHEAD] = 0.0
     for i in range(first, last):
-        pull += touch[i, RUB] if touch[i, MOST] > 0.0 else 0.0
+        pull += touch[i, rec.RUB] if touch[i, rec.MOST] > 0.0 else 0.0
     mean = v + 0.5 * light * pull
     for i in range(first, last):
-        if touch[i, MOST] > 0.0:
-            touch[i, BEYOND] -= touch[i, RUB] * (touch[i, SURFACE] - mean)
+        if touch[i, rec.MOST] > 0.0:
+            touch[i, rec.BEYOND] -= touch[i, rec.RUB] * (touch[i, rec.SURFACE] - mean)
     return mean, v + light * pull

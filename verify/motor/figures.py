@@ -10,10 +10,10 @@ from collections.abc import Callable, Sequence
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
@@ -60,7 +60,7 @@ UNKNOWN = Means(*6 * (np.inf,))
 """How far a first block is off."""
 
 
-class AtSpeed(Value, frozen=True, kw_only=True):
+class AtSpeed(Struct, frozen=True, kw_only=True):
     """A motor whose slider is held at one speed, means over the last block of periods, or over half of all."""
 
     speed: float
@@ -307,7 +307,7 @@ def crest_speed(case: MotorCase) -> float:
     return standing_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
-class Timed(Value, frozen=True, eq=False, kw_only=True):
+class Timed(Struct, frozen=True, eq=False, kw_only=True):
     """How a motor gets from one speed to another."""
 
     start_speed: float

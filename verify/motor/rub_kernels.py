@@ -2,26 +2,11 @@
 
 import numpy as np
 
+from verify.jit import inline
 from verify.models.arrays import Array
-from verify.models.kernels import part
+from verify.motor import records as rec
 from verify.motor.beam_kernels import WIDER
-from verify.motor.records import (
-    CLOSING,
-    DEPTH,
-    GRIP,
-    HELD,
-    MEAN,
-    MU,
-    PUSH,
-    RUB,
-    STIFF,
-    STRETCH,
-    STUCK,
-    SURFACE,
-    SURFACE_BEFORE,
-    Feet,
-    V,
-)
+from verify.motor.records import Feet
 
 ROUNDS = 100
 """Of the search for a speed under tanh: each halves what is left at least."""
@@ -31,16 +16,16 @@ FAR = 20.0
 """From there on tanh is 1 to the last digit, and ln cosh a straight line."""
 
 
-@part()
+@inline
 def _touched(i: int, dt: float, gone: float, feet: Feet, before: Array) -> float:
     """For how long point i has touched, of so much of the step: in the step of its landing, from there on."""
-    depth, was = feet.touch[i, DEPTH], before[i, 0]
+    depth, was = feet.touch[i, rec.DEPTH], before[i, 0]
     if depth <= 0.0 or was > 0.0:
         return gone
     return float(dt * depth / (depth - was) + gone - 0.5 * dt)
 
 
-@part()
+@inline
 def stretch(dt: float, feet: Feet, before: Array) -> None:
     """Points that give way are stretched on by the end of the step, as far as friction there lets them.
 
@@ -48,35 +33,39 @@ def stretch(dt: float, feet: Feet, before: Array) -> None:
     """
     touch, points = feet.touch, feet.points
     for i in range(points.shape[0]):
-        if points[i, GRIP] > 0.0:
+        if points[i, rec.GRIP] > 0.0:
             b = feet.owner[i]
-            push = touch[i, PUSH] + 0.5 * dt * points[i, STIFF] * touch[i, CLOSING]
-            most = feet.riders[b, MU] * (push if push > 0.0 else 0.0) / points[i, GRIP]
-            most = most if touch[i, PUSH] > 0.0 else 0.0
-            far = touch[i, STRETCH] + _touched(i, dt, dt, feet, before) * (touch[i, SURFACE] - feet.means[b, MEAN])
+            push = touch[i, rec.PUSH] + 0.5 * dt * points[i, rec.STIFF] * touch[i, rec.CLOSING]
+            most = feet.riders[b, rec.MU] * (push if push > 0.0 else 0.0) / points[i, rec.GRIP]
+            most = most if touch[i, rec.PUSH] > 0.0 else 0.0
+            far = touch[i, rec.STRETCH] + _touched(i, dt, dt, feet, before) * (
+                touch[i, rec.SURFACE] - feet.means[b, rec.MEAN]
+            )
             far = most if far > most else far
-            touch[i, STRETCH] = -most if far < -most else far
+            touch[i, rec.STRETCH] = -most if far < -most else far
 
 
-@part()
+@inline
 def hold(dt: float, feet: Feet, before: Array) -> None:
     """Friction in mid-step of points that give way, and their sum on every slider."""
     touch, points = feet.touch, feet.points
     for b in range(feet.body.shape[0]):
-        feet.means[b, HELD] = 0.0
+        feet.means[b, rec.HELD] = 0.0
     for i in range(points.shape[0]):
-        if points[i, GRIP] > 0.0:
+        if points[i, rec.GRIP] > 0.0:
             b = feet.owner[i]
-            most = feet.riders[b, MU] * touch[i, PUSH]
+            most = feet.riders[b, rec.MU] * touch[i, rec.PUSH]
             since = _touched(i, dt, 0.5 * dt, feet, before)
-            force = points[i, GRIP] * (touch[i, STRETCH] + since * (touch[i, SURFACE] - feet.body[b, V]))
-            touch[i, STUCK] = 1.0 if abs(force) < most else 0.0
+            force = points[i, rec.GRIP] * (
+                touch[i, rec.STRETCH] + since * (touch[i, rec.SURFACE] - feet.body[b, rec.V])
+            )
+            touch[i, rec.STUCK] = 1.0 if abs(force) < most else 0.0
             force = most if force > most else force
-            touch[i, RUB] = -most if force < -most else force
-            feet.means[b, HELD] += touch[i, RUB]
+            touch[i, rec.RUB] = -most if force < -most else force
+            feet.means[b, rec.HELD] += touch[i, rec.RUB]
 
 
-@part()
+@inline
 def _bent(x: float) -> tuple[float, float]:
     """(ln cosh x + ln 2, tanh x)."""
     size = abs(x)
@@ -87,7 +76,7 @@ def _bent(x: float) -> tuple[float, float]:
     return float(size + np.log1p(left)), float(turned if x > 0.0 else -turned)
 
 
-@part()
+@inline
 def _turned(ahead: float, half: float, slope: float) -> tuple[float, float]:
     """(tanh of how far a surface is ahead, its rise with that), of a step through whose half it goes by `half` m/s.
 
@@ -101,7 +90,7 @@ def _turned(ahead: float, half: float, slope: float) -> tuple[float, float]:
     return (above - below) / (2.0 * slope * half), (high - low) / (2.0 * half)
 
 
-@part()
+@inline
 def agree(
     first: int, last: int, light: float, pull: float, v: float, mu: float, slope: float, touch: Array
 ) -> tuple[float, float]:
@@ -112,7 +101,7 @@ def agree(
     """
     gain, wide, free, mean = 0.5 * light, 0.0, v + 0.5 * light * pull, v
     for i in range(first, last):
-        wide += gain * mu * touch[i, PUSH]
+        wide += gain * mu * touch[i, rec.PUSH]
     low, high = free - WIDER * wide, free + WIDER * wide
     mean = low if mean < low else high if mean > high else mean
     for _ in range(ROUNDS):
@@ -131,7 +120,7 @@ def agree(
     return mean, 2.0 * mean - v
 
 
-@part()
+@inline
 def _slid(
     first: int, last: int, mean: float, wide: float, mu: float, slope: float, touch: Array
 ) -> tuple[float, float]:
@@ -141,10 +130,10 @@ def _slid(
     """
     total, fall = 0.0, 0.0
     for i in range(first, last):
-        most = mu * touch[i, PUSH]
-        half = 0.5 * abs(touch[i, SURFACE] - touch[i, SURFACE_BEFORE]) - wide
-        turned, more = _turned(touch[i, SURFACE] - mean, half, slope)
-        touch[i, RUB], touch[i, STUCK] = most * turned, 0.0
+        most = mu * touch[i, rec.PUSH]
+        half = 0.5 * abs(touch[i, rec.SURFACE] - touch[i, rec.SURFACE_BEFORE]) - wide
+        turned, more = _turned(touch[i, rec.SURFACE] - mean, half, slope)
+        touch[i, rec.RUB], touch[i, rec.STUCK] = most * turned, 0.0
         total += most * turned
         fall += most * more
     return total, fall

@@ -1,10 +1,10 @@
 """A motor's periodic motion by shooting: the state that a period gives back, by Newton's method on the period's map."""
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray, Indices
 from verify.motor import records
 from verify.motor.case import MotorCase
@@ -19,7 +19,7 @@ REPEATS = 1e-3
 """Of its own size: what is off by more after a period does not repeat itself. Landings on dashpots jump by steps."""
 
 
-class Periodic(Value, frozen=True, eq=False, kw_only=True):
+class Periodic(Struct, frozen=True, eq=False, kw_only=True):
     """A motion that repeats itself."""
 
     run: MotorRun

@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from verify.jit import FAST, inline
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
 from verify.motion.records import MOVING, STILL
 from verify.motor.records import Line
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def draw(table: Array, piece: int, line: Line) -> None:
     """Polynomials of deflection and velocity on one piece, by the factors of the rows."""
     factors, local = line.factors, line.local
@@ -20,7 +20,7 @@ def draw(table: Array, piece: int, line: Line) -> None:
         local[piece, STILL, d], local[piece, MOVING, d] = still, moving
 
 
-@part()
+@inline
 def material(
     piece: int, xi: float, length: float, lever: float, line: Line
 ) -> tuple[float, float, float, float, float, float, float]:
