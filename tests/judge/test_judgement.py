@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from verify.judge.workbench import Need, Workbench, merged
+from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 
 from verify.attached import PointMass
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.judge import compare
-from verify.judge.workbench import Need, Workbench, merged
 from verify.models.modes import Modes
-from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.scenes.scene import load_scene
 
 X = np.linspace(0, 1, 41)

@@ -4,13 +4,13 @@ import json
 
 import pytest
 from msgspec.structs import replace
+from verify.judge.workbench import Workbench
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.judge.sizing import choose_of_all
 from verify.judge.variants import Rules, Variant, beside, every_rule, falls_within
-from verify.judge.workbench import Workbench
 from verify.scenes.scene import load_scene
 from verify.section import Section
 
