@@ -2,6 +2,7 @@
 
 import pytest
 from msgspec.structs import replace
+from packaged_beams import packaged_beam
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
@@ -13,44 +14,7 @@ from verify.judge.variants import Variant
 from verify.models.catalogue import MODELS
 from verify.section import Section
 
-STEPPED = Beam(
-    length=0.6,
-    width=0.02,
-    thickness=0.004,
-    youngs_modulus=70e9,
-    density=2700.0,
-    supports=("clamped", "pinned"),
-    section=(
-        Section(length=0.25),
-        Section(length=0.35, thickness=0.002, youngs_modulus=210e9, density=7850.0),
-    ),
-)
-ARM = Beam(
-    length=0.8,
-    shape="tube",
-    diameter=0.025,
-    wall_thickness=0.0015,
-    youngs_modulus=70e9,
-    density=2700.0,
-    supports=("free", "free"),
-    spring=(PointSpring(position=0.0, stiffness=2e5, rotational=900.0),),
-    mass=(PointMass(position=0.31, mass=0.15), PointMass(position=0.8, mass=0.35, rotary_inertia=4e-4)),
-)
-PATCHED = Beam(
-    length=0.5,
-    width=0.02,
-    thickness=0.001,
-    youngs_modulus=70e9,
-    density=2700.0,
-    supports=("clamped", "pinned"),
-    section=(
-        Section(length=0.004),
-        Section(length=0.0152, thickness=0.0016, youngs_modulus=66e9, density=4900.0),
-        Section(length=0.4489),
-        Section(length=0.025, width=0.024, thickness=0.0014, youngs_modulus=67e9, density=4500.0),
-        Section(length=0.0069),
-    ),
-)
+STEPPED, ARM, PATCHED = map(packaged_beam, ("stepped-beam", "instrument-arm", "patched-strip"))
 
 
 def errors_of(bench, model, mode, sizes, settings=()):

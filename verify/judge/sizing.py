@@ -41,8 +41,8 @@ _WALK = (40, 100_000, 100)
 third, and never beyond its double."""
 _LOWER = 100
 """Modes up to which those below are checked."""
-_TIMES = 5
-"""Times as many parts as by the defaults up to which another rule is scanned."""
+_OTHER_RULES = 500
+"""Size up to which other rules than the defaults are scanned, or five times that of the defaults."""
 _NEAR = 3
 """Parts by which the size that is solved may differ from that of the discrete dispersion."""
 
@@ -297,7 +297,8 @@ def choose_of_all(
     for one in rules.beside(cache.beam):
         try:
             if one not in found:
-                largest = _TIMES * max((e.count for v, e in found.items() if v.model == one.model), default=_CLOSELY)
+                own = max((enough.count for same, enough in found.items() if same.model == one.model), default=0)
+                largest = max(_OTHER_RULES, 5 * own)
                 found[one] = enough_from(cache, one.model, mode, error, one.settings, largest)
         except InputError as problem:
             left_out[one.title] = str(problem)
