@@ -378,14 +378,13 @@ def _warnings(fields: list[Field]) -> tuple[list[str], bool]:
     return warnings, converged and max(contact, sag, axial) < LARGE
 
 
-def _times(field: Field) -> tuple[float | None, float | None, float | None]:
+def _times(field: Field) -> list[float | None]:
     """Time constants of starting, stopping and reversing, s; None where the motor does not reach a speed."""
     from verify.motor.figures import started_of
 
-    if not (field.converged and abs(field.speed) > field.spread):
-        return None, None, None
-    stop, reversal = field.stop and field.stop.time, field.reversal and field.reversal.time
-    return started_of(field.free, field.speed), stop, reversal
+    if not field.converged or abs(field.speed) <= field.spread:
+        return [None, None, None]
+    return [started_of(field.free, field.speed), *(one.time if one else None for one in (field.stop, field.reversal))]
 
 
 def _tables(fields: list[Field]) -> "list[Table]":
@@ -394,34 +393,29 @@ def _tables(fields: list[Field]) -> "list[Table]":
     overview, held, validity = [], [], []
     for field in fields:
         run, last, still = field.free, field.last, field.curve[0]
+        stall = still.force if still.settled("force") else None
         pushing = [at for at in field.curve if at.settled("force")]
-        powers = [at.power for at in pushing if at.power > 0.0]
-        efficiencies = [at.efficiency for at in pushing if at.settled("powers") and at.efficiency]
-        speeds = (field.crest_speed, field.no_load and field.no_load.speed, field.speed if field.converged else None)
-        best = (
-            still.force if still.settled("force") else None,
-            max(powers, default=None),
-            max(efficiencies, default=None),
-        )
-        times = (started_of(run, field.speed), field.stop and field.stop.time, field.reversal and field.reversal.time)
+        power = max((at.power for at in pushing if at.power > 0.0), default=None)
+        efficient = [at.efficiency for at in pushing if at.settled("powers") and at.efficiency]
+        unloaded = field.no_load.speed if field.no_load else None
+        own = (field.crest_speed, unloaded, field.speed if field.converged else None, stall, power)
         shares = (float(run.contact_share[-last:].mean()), float(run.stuck_share[-last:].mean()))
         friction = float(run.rubbed[-last:].sum()) / float(run.times[-1] - run.times[-1 - last])
         dashpots = (run.ledger.damped + run.ledger.impacts) / run.duration
-        overview.append((field.name, *speeds, *best, *shares, *_times(field), friction, dashpots))
+        best = max(efficient, default=None)
+        overview.append((field.name, *own, best, *shares, *_times(field), friction, dashpots))
         for at in field.curve:
             power = at.power if at.settled("force") else None
             efficiency = at.efficiency if at.settled("force", "powers") else None
-            own = (at.force, at.spread, power, efficiency, at.contact_share, at.stuck_share, at.settled())
-            held.append((field.name, at.speed, *own))
+            shares = (at.contact_share, at.stuck_share)
+            held.append((field.name, at.speed, at.force, at.spread, power, efficiency, *shares, at.settled()))
         margins, coupling, repeated = run.motor_margins, run.coupling, field.periodic
         assert coupling is not None
         sag = None if margins.sag is None else round(margins.sag, 12)  # of balanced loads rounding is left
         sizes = (coupling.normal_size, coupling.friction_size, margins.chain, margins.step, field.spread)
         force = float(repeated.run.friction[1:].mean()) if repeated else None
         multiplier = float(abs(repeated.multipliers).max()) if repeated else None
-        validity.append(
-            (field.name, margins.epsilon, margins.sag, field.amplitude, *sizes, field.spread, force, multiplier)
-        )
+        validity.append((field.name, margins.epsilon, sag, field.amplitude, *sizes, force, multiplier))
     columns = [Column("model"), si("crest speed", "m/s", ".5g"), si("no-load speed", "m/s", "+.5g")]
     columns += [si("free speed", "m/s", "+.5g"), si("stall force", "N", "+.4g"), si("largest power", "W")]
     columns += [percent("best efficiency", ".3g"), percent("contact", ".3g"), percent("stick", ".3g")]
@@ -437,8 +431,8 @@ def _tables(fields: list[Field]) -> "list[Table]":
     limits += [Column("largest multiplier", format=".5f")]
     notes = [
         "No-load speed: held, without mean friction. Free speed, contact, stick, friction power: last quarter of a "
-        "free run. Start, stop, reversal: time constants (1 - 1/e) from the slider's own speed, with the drive switched "
-        "off, with its phases reversed."
+        "free run. Start, stop, reversal: time constants (1 - 1/e) from the slider's own speed, with the drive "
+        "switched off, with its phases reversed."
     ]
     return [
         Table("The motor on each model", columns, overview, notes),
