@@ -175,7 +175,10 @@ VERBS = [
     (lambda: analytic_modes.solve_harmonic(STRIP, FORCE, HERTZ).deflection([0.9]), r"x = .*0\.9|0\.9"),
     (lambda: travelling_wave.measure(analytic_modes.solve_harmonic(STRIP, FORCES, HERTZ), (0.5, 0.2)), r"window"),
     (lambda: simulate(STRIP, FORCE, HERTZ, 0.0, count=9), r"duration = 0\.0"),
-    (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, model="segmnt"), r"model = 'segmnt'.* did you mean 'segment'"),
+    (
+        lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, model="segmnt"),
+        r"model = 'segmnt'.* did you mean 'segment'",
+    ),
     (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, samples=1), r"samples = 1"),
     (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, slider=3.0), r"slider = 3\.0: give a Slider"),
     (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, slider=HOPPER), r"slider\.contact"),
