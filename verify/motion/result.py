@@ -27,8 +27,6 @@ class Statistics(Struct, frozen=True, kw_only=True):
     """Wall time of the run itself."""
     loop_s: float = 0.0
     """Processor time of a slider's compiled loop, of the one thread that runs it; 0 without one."""
-    estimated_s: float = 0.0
-    """Wall time that a motor's run was thought to take, from above; of others 0."""
     moved: float | None = None
     """Part of a slider's way by which halving the step last moved it; None where no second run judged the step."""
     stopped: str

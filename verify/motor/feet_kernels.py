@@ -1,10 +1,50 @@
-"""The compiled feet: what their points see of the surface, how they press on it, what it gives them in a step."""
+"""The compiled feet: surface under their points, normal forces, motion across the beam, samples and events."""
 
-from verify.jit import inline
-from verify.models.arrays import Array
+import numpy as np
+
+from verify.jit import FAST, inline
+from verify.models.arrays import Array, Indices
+from verify.motion.records import MOVING, STILL
 from verify.motor import records as rec
-from verify.motor.records import Feet, Line
-from verify.motor.surface_kernels import material
+from verify.motor.records import Feet, Line, Log
+
+
+@inline(fastmath=FAST)
+def draw(table: Array, piece: int, line: Line) -> None:
+    """Polynomials of deflection and velocity on one piece, by the factors of the rows."""
+    factors, local = line.factors, line.local
+    for d in range(table.shape[1]):
+        still, moving = 0.0, 0.0
+        for j in range(table.shape[2]):
+            still += table[piece, d, j] * factors[STILL, j]
+            moving += table[piece, d, j] * factors[MOVING, j]
+        local[piece, STILL, d], local[piece, MOVING, d] = still, moving
+
+
+@inline
+def material(
+    piece: int, xi: float, length: float, lever: float, line: Line
+) -> tuple[float, float, float, float, float, float, float]:
+    """What stands over xi = 0 to 1 of a piece: (its own xi, w, w', w'', dw/dt, dw'/dt, its speed along the tangent).
+
+    The material over x stands at X = x + lever w'(X) of the mid-line and moves with (-lever dw'/dt, dw/dt); `lever` is
+    h/2 on the upper face, metres. All are of the mid-line at X, by metres and seconds.
+    """
+    local = line.local
+    value, first = 0.0, 0.0
+    for d in range(local.shape[2] - 1, 0, -1):
+        value = value * xi + local[piece, STILL, d]
+        first = first * xi + value
+    at = xi + lever * first / (length * length)
+    level, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[2] - 1, -1, -1):
+        bend = bend * at + slope
+        slope = slope * at + level
+        level = level * at + local[piece, STILL, d]
+        turn = turn * at + rise
+        rise = rise * at + local[piece, MOVING, d]
+    slope, bend, turn = slope / length, 2.0 * bend / (length * length), turn / length
+    return at, level, slope, bend, rise, turn, (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
 
 
 @inline
@@ -161,3 +201,67 @@ def gone(i: int, feet: Feet) -> float:
 def place(i: int, feet: Feet) -> float:
     """Where point i stands, metres from where the slider started."""
     return float(feet.body[feet.owner[i], rec.X] + feet.points[i, rec.OFFSET])
+
+
+@inline
+def note(time: float, dt: float, before: Array, feet: Feet, log: Log) -> None:
+    """Write down who landed, left, stuck or slipped since the mid-step before, with `before` depth and sticking."""
+    touch, tally = feet.touch, log.tally
+    for i in range(touch.shape[0]):
+        depth, was, x = touch[i, rec.DEPTH], before[i, 0], feet.body[feet.owner[i], rec.X]
+        if (depth > 0.0) != (was > 0.0):
+            kind = rec.LANDS if depth > 0.0 else rec.LEAVES
+            write(time - dt * depth / (depth - was), kind, i, x, log.events, tally)
+        elif depth > 0.0 and (touch[i, rec.STUCK] > 0.0) != (before[i, 1] > 0.0):
+            kind = rec.STICKS if touch[i, rec.STUCK] > 0.0 else rec.SLIPS
+            write(time - 0.5 * dt, kind, i, x, log.events, tally)
+        before[i, 0], before[i, 1] = depth, touch[i, rec.STUCK]
+
+
+@inline
+def write(time: float, kind: float, point: int, x: float, events: Array, tally: Indices) -> None:
+    """One event, as long as there is room; all are counted."""
+    row = tally[rec.EVENTS]
+    if row < len(events):
+        events[row, rec.EVENT_TIME], events[row, rec.EVENT_KIND] = time, kind
+        events[row, rec.EVENT_POINT], events[row, rec.EVENT_X] = point, x
+    tally[rec.EVENTS] += 1
+
+
+@inline
+def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
+    """Write one sample: the state now, means and sums since the last."""
+    row, span = log.tally[rec.SAMPLES], dt * log.every
+    for b in range(feet.body.shape[0]):
+        _keep_slider(row, b, span, feet, log)
+    for i in range(feet.points.shape[0]):
+        log.pressures[row, i] = feet.touch[i, rec.PUSH]
+    for f in range(feet.state.shape[0]):
+        log.heights[row, f, 0], log.heights[row, f, 1] = feet.state[f, rec.HEIGHT], feet.state[f, rec.PITCH]
+    for p in range(log.points.shape[0]):
+        total = 0.0
+        for j in range(log.points.shape[1]):
+            total += log.points[p, j] * line.factors[STILL, j]
+        log.deflections[row, p] = total
+    log.tally[rec.SAMPLES] += 1
+
+
+@inline
+def _keep_slider(row: int, b: int, span: float, feet: Feet, log: Log) -> None:
+    """One slider's state, means and sums since the last sample."""
+    kept, sums, before = log.kept, feet.sums, log.before
+    kept[row, b, rec.KEPT_X], kept[row, b, rec.KEPT_V] = feet.body[b, rec.X], feet.body[b, rec.V]
+    kept[row, b, rec.KEPT_RUB] = (sums[b, rec.MEAN_RUB] - before[b, rec.MEAN_RUB]) / span
+    kept[row, b, rec.KEPT_PUSH] = (sums[b, rec.MEAN_PUSH] - before[b, rec.MEAN_PUSH]) / span
+    kept[row, b, rec.KEPT_TOUCHING] = (sums[b, rec.TOUCHING] - before[b, rec.TOUCHING]) / span
+    kept[row, b, rec.KEPT_STICKING] = (sums[b, rec.STICKING] - before[b, rec.STICKING]) / span
+    kept[row, b, rec.KEPT_RUBBED] = sums[b, rec.RUBBED] - before[b, rec.RUBBED]
+    kept[row, b, rec.KEPT_ALONG] = sums[b, rec.ALONG] - before[b, rec.ALONG]
+    speed, n = 0.0, 0
+    for i in range(feet.first[b], feet.first[b + 1]):
+        if feet.touch[i, rec.PUSH] > 0.0:
+            speed += feet.touch[i, rec.SURFACE]
+            n += 1
+    kept[row, b, rec.KEPT_SURFACE] = speed / n if n > 0 else np.nan
+    for s in range(sums.shape[1]):
+        before[b, s] = sums[b, s]

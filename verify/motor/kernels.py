@@ -8,12 +8,9 @@ from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import between, find_piece, rotate_half, set_factors
 from verify.motor import records as rec
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
-from verify.motor.cross_kernels import cross
-from verify.motor.feet_kernels import drift, gone, kick, place, press, see, stored
-from verify.motor.logging_kernels import keep, note
+from verify.motor.feet_kernels import draw, drift, gone, keep, kick, note, place, press, see, stored
+from verify.motor.friction_kernels import agree, cross, hold, stretch
 from verify.motor.records import BeamAnswer, Feet, GivenSurface, Line, Log, Rubbing
-from verify.motor.rub_kernels import agree, hold, stretch
-from verify.motor.surface_kernels import draw
 
 GIVES_WAY = 4
 """Times that dashpots and the beam under them are matched: each leaves half of c times the beam's answer in a step."""

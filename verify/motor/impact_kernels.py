@@ -12,9 +12,8 @@ from verify.motion.records import Surface
 from verify.motion.surface_kernels import find_piece, set_factors
 from verify.motor import records as rec
 from verify.motor.beam_kernels import slide_by_tanh
-from verify.motor.logging_kernels import keep, write
+from verify.motor.feet_kernels import draw, keep, material, write
 from verify.motor.records import Feet, Hard, Line, Log, Rubbing
-from verify.motor.surface_kernels import draw, material
 
 HALVINGS = 100
 BLOWS = 100_000
