@@ -107,6 +107,8 @@ REFUSED = [
     ("run bare.toml --keep -1", "--keep"),
     ("run bare.toml --set spectrum.modes=x", "spectrum.modes"),
     ("sweep bare.toml", "sweep"),
+    ("sweep bare.toml count=4,8", "QUANTITY is missing"),
+    ("sweep bare.toml mode.frequency model=fem mode=1 cuont=4,8", "did you mean 'count'"),
 ]
 
 
@@ -222,10 +224,11 @@ def test_choose_takes_ranges_and_rules(data):
 
 
 def test_sweep_of_a_quantity(data, bare):
-    line = "sweep bare.toml quantity=mode.frequency over={'count'=[7,11]}"
-    status = status_of(["schema", "sweep"])
-    assert status == 0
-    assert line
+    line = "sweep bare.toml mode.frequency model=segment mode=2 count=9,17 beam.length=0.43,0.86"
+    rows = data(line)["tables"][0]["rows"]
+    assert len(rows) == 4
+    short, long = ([row["mode.frequency"] for row in rows if row["beam.length"] == length] for length in (0.43, 0.86))
+    assert [a / b for a, b in zip(short, long, strict=True)] == pytest.approx([4.0, 4.0], rel=1e-9)
 
 
 def test_schema_of_sections(call, data):

@@ -40,12 +40,13 @@ def run_study(
 ) -> None:
     """Run a study by its name, with the scene's section, or its defaults, and 'key=value' options."""
     from verify.judge.cache import SolutionCache
+    from verify.scene.convert import convert
     from verify.scene.load import load_scene
     from verify.studies.base import STUDIES, studies_of
 
     STUDIES.named(name)
     loaded = load_scene(scene, (*overrides, *(f"{name}.{option}" for option in options)))
-    study = dict(studies_of(loaded)).get(name) or STUDIES[name]()
+    study = dict(studies_of(loaded)).get(name) or convert({}, STUDIES[name], name)
     study.check(loaded)
     with progress(quiet=any(formats.values())) as step:
         result = study.run(loaded, SolutionCache(loaded.beam), step)
