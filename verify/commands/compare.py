@@ -14,7 +14,9 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 @scene_argument
 @click.argument("given", nargs=-1, metavar="FILE | FREQUENCIES...")
 @overrides_option
-@click.option("--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any.")
+@click.option(
+    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any."
+)
 @click.option("--modes", "shapes", metavar="FILE", help="Mode shapes: x in the first column, then one column a mode.")
 @click.option("--model", metavar="MODULE:FUNCTION", help="A Python model (beam, n_modes, count) -> frequencies in Hz.")
 @click.option("--unit", type=click.Choice(["Hz", "kHz", "rad/s"]), help="Of the list. Default: its header's, else Hz.")
