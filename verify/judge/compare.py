@@ -13,6 +13,9 @@ from verify.models.arrays import Array, Indices
 from verify.models.modes import Modes
 from verify.models.search import zero_between
 
+ASTRAY = 1.0
+"""Largest difference between observed orders, and from the known one."""
+
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
 """Relative frequency error that rounding may leave (measured: 1.1e-14 up to 10^4 segments or elements)."""

@@ -1,12 +1,12 @@
 """Named quantities of interest: the `@quantity` decorator, the registry, evaluation, arguments and their listing.
 
-A quantity is a function of a scene, a solution cache and keyword arguments. Its signature is its schema: an annotation
-carries type, limits and description, the default value makes an argument optional, and a parameter annotated with a
-`msgspec.Struct` is an option group whose fields become arguments of the quantity.
+A quantity is a function whose signature is its schema: an annotation carries type, limits and description, a default
+value makes an argument optional, and a parameter annotated with a `msgspec.Struct` is an option group whose fields
+become arguments of the quantity. Parameters named `scene` and `cache` are supplied where the function has them.
 
-    @quantity("mode.frequency", unit="Hz", reads=("beam",))
-    def frequency(scene: Scene, cache: SolutionCache, *, model: AnyModel, mode: Mode, count: Size | None = None):
-        \"\"\"Frequency of one mode.\"\"\"
+    @quantity("drive.rule_frequency", unit="Hz", reads=("beam",))
+    def rule_frequency(scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two")] = 22):
+        \"\"\"Root mean square of two neighbouring natural frequencies.\"\"\"
 
 Nothing here imports numpy.
 """
@@ -57,11 +57,11 @@ class Scene(Protocol):
 
     @property
     def forces(self) -> "Sequence[PointForce]":
-        """Of the drive, measured from the left end."""
+        """Forces of the drive, measured from the left end."""
 
     @property
     def devices(self) -> "Sequence[Device]":
-        """Of the drive, measured from the left end."""
+        """Devices of the drive, measured from the left end."""
 
     @property
     def slider(self) -> "Slider | None":
@@ -103,18 +103,16 @@ class Quantity:
         self.name, self.unit, self.reads, self.devices = name, unit, tuple(reads), devices
         self.summary = summary or " ".join((inspect.getdoc(function) or "").split("\n\n")[0].split())
         self.function = function
-        self.groups: dict[str, type[msgspec.Struct]] = {}
-        self._types: dict[str, Any] = {}
-        self._group_of: dict[str, str] = {}
+        parameters = inspect.signature(function).parameters
+        self._supplied = [name for name in ("scene", "cache") if name in parameters]
+        self._groups: dict[str, type[msgspec.Struct]] = {}
         fields: list[Any] = []
-        for parameter in list(inspect.signature(function).parameters.values())[2:]:
+        for parameter in (one for name, one in parameters.items() if name not in self._supplied):
             kind = parameter.annotation
             if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
-                self.groups[parameter.name] = kind
-                for field in msgspec.structs.fields(kind):
-                    self._group_of[field.name] = kind.__name__
-                    default = () if field.required else (field.default,)
-                    fields.append((field.name, field.type, *default))
+                self._groups[parameter.name] = kind
+                own = msgspec.structs.fields(kind)
+                fields += [(one.name, one.type, *(() if one.required else (one.default,))) for one in own]
             else:
                 default = () if parameter.default is inspect.Parameter.empty else (parameter.default,)
                 fields.append((parameter.name, kind, *default))
@@ -122,13 +120,14 @@ class Quantity:
         self._types = {field[0]: field[1] for field in fields}
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
-    def __call__(self, scene: Scene, cache: "SolutionCache", *groups: Any, **arguments: Any) -> Value:
+    def __call__(self, *values: Any, **arguments: Any) -> Value:
         """The function itself, with option groups as values."""
-        return self.function(scene, cache, *groups, **arguments)
+        return self.function(*values, **arguments)
 
     @property
     def arguments(self) -> tuple[Argument, ...]:
         """The arguments with their types, defaults and descriptions."""
+        group_of = {name: kind.__name__ for kind in self._groups.values() for name in kind.__struct_fields__}
         return tuple(
             Argument(
                 name=field.name,
@@ -136,7 +135,7 @@ class Quantity:
                 required=field.required,
                 default=None if field.required else field.default,
                 description=next((meta.description for meta in _metas(field.type) if meta.description), ""),
-                group=self._group_of.get(field.name, ""),
+                group=group_of.get(field.name, ""),
             )
             for field in msgspec.structs.fields(self.schema)
         )
@@ -152,10 +151,11 @@ class Quantity:
                 data[name] = [data[name]]
         checked = _convert(data, self.schema, self._types)
         values = {name: getattr(checked, name) for name in self._types}
-        bound = {name: value for name, value in values.items() if name not in self._group_of}
-        for parameter, group in self.groups.items():
-            bound[parameter] = group(**{name: values[name] for name in group.__struct_fields__})
-        return bound
+        groups = {
+            parameter: kind(**{name: values.pop(name) for name in kind.__struct_fields__})
+            for parameter, kind in self._groups.items()
+        }
+        return values | groups
 
     def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
         """The value for arguments that are plain data. Raises InputError."""
@@ -165,20 +165,16 @@ class Quantity:
                 f"quantity = {self.name!r} does not model drive.device, and one stands at "
                 f"{scene.devices[0].position:g} m: leave drive.device out, or use a quantity of the steady wave"
             )
-        self._check_places(arguments, scene)
-        value = plain(self.function(scene, cache, **bound), self.name)
+        length = scene.beam.length
+        for name, x in arguments.items():
+            place = any((meta.extra or {}).get("place") for meta in _metas(self._types[name]))
+            if place and x is not None and not -ROUNDING * length <= x <= length * (1.0 + ROUNDING):
+                raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
+        supplied = {"scene": scene, "cache": cache}
+        value = plain(self.function(**{name: supplied[name] for name in self._supplied}, **bound), self.name)
         if not isinstance(value, float | int | complex | Bracket):
             raise InputError(f"quantity = {self.name!r} returns {shown(value)}: return a number or a Bracket")
         return value
-
-    def _check_places(self, arguments: Mapping[str, Any], scene: Scene) -> None:
-        for name, x in arguments.items():
-            if isinstance(x, float | int) and any(
-                (meta.extra or {}).get("place") for meta in _metas(self._types[name])
-            ):
-                length = scene.beam.length
-                if not -ROUNDING * length <= x <= length * (1.0 + ROUNDING):
-                    raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
 
 
 QUANTITIES: Registry[Quantity] = Registry("quantity", "verify.quantities")
@@ -253,9 +249,6 @@ def as_text(value: Value, digits: int = 12) -> str:
     return "NaN" if isnan(value) else f"{value:.{digits}g}" if isfinite(value) else "infinity"
 
 
-# --- annotations ------------------------------------------------------------------------------------------------------
-
-
 def _arms(kind: Any) -> tuple[Any, ...]:
     """The types of a union without None and annotations."""
     if hasattr(kind, "__metadata__"):
@@ -294,8 +287,6 @@ def _type_name(kind: Any) -> str:
         return f"list of {_type_name(parts[0])}s" if parts[-1] is Ellipsis else f"{len(parts)} {_type_name(parts[0])}s"
     return {int: "whole number", float: "number", str: "word", bool: "true | false"}.get(arm, str(arm))
 
-
-# --- values -----------------------------------------------------------------------------------------------------------
 
 _UNKNOWN = re.compile(r"Object contains unknown field `(.*)`")
 _MISSING = re.compile(r"Object missing required field `(.*)`")

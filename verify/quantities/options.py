@@ -29,19 +29,14 @@ FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
 DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
 UnitModel = Annotated[str, model_meta("which model", "unit_responses")]
 TimeModel = Annotated[str, model_meta("which model", "time_basis")]
-Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
 Frequency = Annotated[float, Meta(gt=0, description="Hz; default: the scene's drive")]
-Loss = Annotated[Relative, Meta(description="eta of E (1 + i eta); default: the beam's")]
-Imposed = Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
 Theory = Annotated[options.Theory, Meta(description="beam theory")]
-Reading = Annotated[
-    str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default: the model's first")
-]
 Wall = Annotated[options.Wall, Meta(description="joint at a clamped end; half: k = 2EI/l")]
 Joints = Annotated[options.Joints, Meta(description="joint stiffness of Eq. (1)")]
 Attachment = Annotated[options.Attachment, Meta(description="point masses and springs on segments")]
 Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
+SoftStart = Annotated[float, Meta(ge=0, description="periods over which the forces grow; default: the scene's")]
 ForceAmplitude = Annotated[float, Meta(ge=0, description="of every force, N; default: the scene's")]
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
@@ -77,13 +72,35 @@ class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
     attachment: Attachment = "reciprocal"
 
     @property
-    def chosen(self) -> "Settings":
+    def settings(self) -> "Settings":
         """Those other than their defaults."""
-        return _chosen(self)
+        return not_default(self, without=("model", "mode", "count"))
 
-    def settings(self, model: str, kind: str = "modal") -> "Settings":
-        """`chosen`. Raises InputError for one that the model lacks."""
-        return self.chosen if model == MEAN else check_settings(model, self.chosen, kind)
+
+class OneMode(ModelOptions, frozen=True, kw_only=True):
+    """One mode of one model."""
+
+    model: ModesModel
+    mode: Mode
+    count: Size | None = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+        if self.model != MEAN:
+            check_settings(self.model, self.settings, "modal")
+
+
+class OneModeOrMean(OneMode, frozen=True, kw_only=True):
+    """One mode of one model or of the mean of segment and fem."""
+
+    model: AnyModel
+
+
+class OneDiscreteMode(OneMode, frozen=True, kw_only=True):
+    """One mode of one discrete model."""
+
+    model: DiscreteModel
+    count: Size
 
 
 class DriveOptions(msgspec.Struct, frozen=True, kw_only=True):
@@ -135,6 +152,7 @@ def given(values: Any, names: Sequence[str]) -> dict[str, Any]:
     return {name: value for name in names if (value := getattr(values, name)) is not None}
 
 
-def _chosen(group: msgspec.Struct) -> "Settings":
-    fields = msgspec.structs.fields(type(group))
+def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> "Settings":
+    """(name, value) of the fields of an option group that differ from their defaults, but for those of `without`."""
+    fields = [field for field in msgspec.structs.fields(type(group)) if field.name not in without]
     return tuple((f.name, getattr(group, f.name)) for f in fields if getattr(group, f.name) != f.default)

@@ -1,348 +1,229 @@
-"""A drawing of a scene's beam as SVG: supports, sections, what stands on it, forces, the slider, all where they are.
+"""A drawing of a scene's beam: supports, sections, attached parts, devices, forces and slider, each at its position.
 
-Lengths along the beam are to scale; heights are not, but sections keep their order of thickness. Lines follow the page.
-Words are laid where nothing else stands: beside what they name, else farther from the beam.
+Lengths along the beam are to scale. Heights are not; sections keep their order of thickness.
 """
 
-from collections.abc import Iterator
-from math import log10
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any
 
-import msgspec
-
-from verify.options import Support
-from verify.report.labels import Box, Label, placed, words_at
+from verify.report.plotting import INK, MODEL_COLORS
+from verify.report.result import Figure
 from verify.units import in_words
 
 if TYPE_CHECKING:
     from verify.beam import Beam
-    from verify.device import Device
-    from verify.scenes.scene import Scene
-    from verify.section import Piece
-    from verify.slider import Foot, Slider
 
-BROAD, NARROW = (860.0, 60.0), (400.0, 48.0)
-"""Width of the picture and of its margins: for a page, for a phone."""
-LEAST, MOST = 5.0, 24.0
-"""Thickness of the thinnest and the thickest section."""
-ARROW = 46.0
-"""Length of a force."""
-PLATE, TOOTH = 9.0, 6.0
-"""Thickness of a foot, and length of its contact points."""
-POINT_FOOT, TEETH = 14.0, 24
-"""Length of a foot of one point; contact points that are drawn at most."""
-STAGE = "#e8760c"
-INK, SOFT, BODY, FORCE, SPRING = "var(--ink)", "var(--soft)", "var(--bar)", "#d6427a", "#2a9d5c"
-
-Drawn: TypeAlias = "Box | Label | str"
-"""What a part of the picture consists of: room that words keep clear of, words, strokes."""
+BODY, SLIDER, FORCE, SPRING, SOFT = MODEL_COLORS["segment"], MODEL_COLORS["fem"], "#cc3f76", "#2a9d5c", "#7d8590"
+THINNEST, THICKEST = 0.10, 0.34
+"""Drawn thickness of sections, inches."""
+LETTER, ROW = 0.078, 0.17
+"""Width of a character and height of a row of text, inches."""
+DEVICE_UNITS = {
+    "dashpot": "N s/m",
+    "stiffness": "N/m",
+    "mass": "kg",
+    "rotational_dashpot": "N m s",
+    "rotational": "N m/rad",
+    "rotary_inertia": "kg m²",
+    "amplitude": "N",
+}
 
 
-class View(msgspec.Struct, frozen=True):
-    """Where on the picture a place of the beam is; its neutral line is at height 0, downwards positive."""
+def beam_figure(scene: Any, width: float = 8.4) -> Figure:
+    """The drawing as a figure of this width in inches.
 
-    beam: "Beam"
-    width: float
-    edge: float
+    `scene` needs `beam`, `drive`, `forces`, `devices` and `slider`.
+    """
+    from matplotlib.figure import Figure as MatplotlibFigure
 
-    def at(self, x: float) -> float:
-        """Across the picture, of a place in metres."""
-        return self.edge + (self.width - 2 * self.edge) * x / self.beam.length
-
-
-def beam_drawing(scene: "Scene", size: tuple[float, float] = BROAD) -> str:
-    """The whole picture."""
-    view = View(scene.beam, *size)
-    parts = list(_parts(scene, view))
-    boxes = [one for one in parts if isinstance(one, Box)]
-    words, boxes = placed([one for one in parts if isinstance(one, Label)], boxes, view.width)
-    top = min(box.top for box in boxes) - 6.0
-    bottom = max(box.bottom for box in boxes) + 32.0
-    strokes = [one for one in parts if isinstance(one, str)] + words + list(_length(view, bottom - 10.0))
-    return (
-        f'<svg viewBox="0 {top:.0f} {view.width:g} {bottom - top:.0f}" role="img" aria-label="{_told(scene)}" '
-        f'style="width:100%;max-width:{view.width:g}px;display:block;margin:auto" font-size="12" fill="none">'
-        f"{''.join(strokes)}</svg>"
+    sketch = _Sketch(scene, MatplotlibFigure().subplots(), width)
+    beam = scene.beam
+    counts = {"section": beam.section, "mass": beam.mass, "spring": beam.spring, "force": scene.forces}
+    counts |= {"device": scene.devices, "slider": (scene.slider,) if scene.slider else ()}
+    there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
+    return Figure(
+        id=f"beam-{width:.0f}",
+        title="The beam",
+        caption=f"{_length(beam.length)} long, {beam.supports[0]} at the left, {beam.supports[1]} at the right{there}.",
+        draw=lambda ax: _Sketch(scene, ax, width).frame(),
+        size=(width, sketch.top - sketch.bottom),
     )
 
 
-def _parts(scene: "Scene", view: View) -> Iterator[Drawn]:
-    """Everything that stands in the picture; of words the first have the choice of places."""
-    yield from _foundation(view)
-    yield from _pieces(view)
-    yield from _supports(view)
-    yield from _springs(view)
-    yield from _masses(view)
-    yield from _devices(scene, view)
-    yield from _tension(view)
-    if scene.slider is not None:
-        yield from _slider(scene.slider, view)
-    yield from _forces(scene, view)
-
-
-def _told(scene: "Scene") -> str:
-    """The picture in words."""
-    beam = scene.beam
-    words = [f"A beam of {_metres(beam.length)}, {beam.supports[0]} at the left and {beam.supports[1]} at the right"]
-    counts = {"sections": beam.section, "bodies": beam.mass, "springs": beam.spring, "forces": scene.forces}
-    counts |= {"devices": scene.devices}
-    words += [f"{len(found)} {name}" for name, found in counts.items() if found]
-    return ", ".join([*words, *(["a slider"] if scene.slider else [])])
-
-
-def _metres(x: float) -> str:
-    """A length with a unit that suits it."""
+def _length(x: float) -> str:
     return in_words(x, form=".4g")
 
 
-def _line(*points: tuple[float, float], colour: str = INK, width: float = 1.4, more: str = "") -> str:
-    d = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points)
-    return f'<path d="{d}" stroke="{colour}" stroke-width="{width:g}"{more}/>'
+class _Sketch:
+    """Draws everything on axes whose unit is an inch; keeps the extent and the places taken by text."""
 
+    def __init__(self, scene: Any, ax: Any, width: float) -> None:
+        self.ax, self.width, self.beam = ax, width, scene.beam
+        self.edge = 0.075 * width + 0.2
+        self.top, self.bottom = 0.4, -0.4
+        self.taken: list[tuple[float, float, float, float]] = []
+        sizes = [(piece.bending_stiffness / piece.mass_per_length) ** 0.5 for piece in self.beam.pieces]
+        spread = max(sizes) - min(sizes)
+        growth = [(size - min(sizes)) / spread if spread else 0.25 for size in sizes]
+        self.heights = [THINNEST + (THICKEST - THINNEST) * share for share in growth]
+        self.sections()
+        self.attached()
+        for x, support, out in ((0.0, self.beam.supports[0], -1), (self.beam.length, self.beam.supports[1], 1)):
+            self.support(self.at(x), self.half(x), support, out)
+        self.slider(scene.slider)
+        if len(self.beam.pieces) == 1:
+            self.text(0.5 * width, -self.heights[0], [_section(self.beam)], down=True)
+        for device in scene.devices:
+            words = [f"{value:.4g} {u}" for name, u in DEVICE_UNITS.items() if (value := getattr(device, name))]
+            self.dashpot(self.at(device.position), self.half(device.position), words)
+        unit = "m" if scene.drive is not None and scene.drive.kind == "displacement" else "N"
+        for force in scene.forces:
+            phase = f", {force.phase_deg:g}°" if force.phase_deg else ""
+            x, y = self.at(force.position), self.half(force.position) + self.load(scene, force.position)
+            self.arrow((x, y + 0.6), (x, y + 0.03), FORCE)
+            self.text(x, y + 0.64, [f"x = {_length(force.position)}", f"{force.amplitude:.4g} {unit}{phase}"])
+        if scene.drive is not None:
+            self.text(0.5 * width, self.top, [f"drive at {scene.drive.frequency_hz:g} Hz"])
 
-def _heights(beam: "Beam") -> list[float]:
-    """Of each piece, by (EI over the mass of a metre)^(1/2), which of a rectangle is its thickness."""
-    sizes = [log10(piece.bending_stiffness / piece.mass_per_length) for piece in beam.pieces]
-    low, span = min(sizes), max(sizes) - min(sizes)
-    if span == 0.0:
-        return [8.0] * len(sizes)
-    return [LEAST + (MOST - LEAST) * (size - low) / span for size in sizes]
+    def frame(self) -> None:
+        self.ax.set_axis_off()
+        self.ax.set(xlim=(0.0, self.width), ylim=(self.bottom, self.top), aspect="equal")
 
+    def at(self, x: float) -> float:
+        return float(self.edge + (self.width - 2 * self.edge) * x / self.beam.length)
 
-def _half(beam: "Beam", x: float) -> float:
-    """Half the height of the beam as it is drawn at x."""
-    end = 0.0
-    heights = _heights(beam)
-    for piece, height in zip(beam.pieces, heights, strict=True):
-        end += piece.length
-        if x <= end * (1.0 + 1e-12):
-            return 0.5 * height
-    return 0.5 * heights[-1]
+    def half(self, x: float) -> float:
+        end = 0.0
+        for piece, height in zip(self.beam.pieces, self.heights, strict=True):
+            end += piece.length
+            if x <= end * (1.0 + 1e-12):
+                return 0.5 * height
+        return 0.5 * self.heights[-1]
 
+    def load(self, scene: Any, x: float) -> float:
+        """Height of a mass or slider that stands on the beam near x."""
+        near = 0.25 * self.beam.length / (self.width - 2 * self.edge)
+        if any(abs(mass.position - x) < near for mass in self.beam.mass):
+            return 0.24
+        return 0.22 if scene.slider and abs(scene.slider.start_on(self.beam) - x) < near else 0.0
 
-def _pieces(view: View) -> Iterator[Drawn]:
-    beam, start = view.beam, 0.0
-    for piece, height in zip(beam.pieces, _heights(beam), strict=True):
-        x, width = view.at(start), view.at(piece.length) - view.edge
-        yield (
-            f'<rect x="{x:.1f}" y="{-0.5 * height:.1f}" width="{width:.1f}" height="{height:.1f}" '
-            f'fill="{BODY}" fill-opacity=".35" stroke="{BODY}"/>'
-        )
-        yield Box(x, -0.5 * height, x + width, 0.5 * height)
-        start += piece.length
-    if len(beam.pieces) == 1:
-        yield Label(0.5 * view.width, 14.0, (_section_words(beam.pieces[0], beam),), down=True)
+    def line(self, *points: tuple[float, float], color: str = INK, width: float = 1.3, **more: Any) -> None:
+        self.ax.plot(*zip(*points, strict=True), color=color, linewidth=width, gid="guide", **more)
+        self.top = max(self.top, *(y + 0.05 for _, y in points))
+        self.bottom = min(self.bottom, *(y - 0.05 for _, y in points))
 
+    def box(self, x: float, y: float, width: float, height: float, color: str, **more: Any) -> None:
+        from matplotlib.patches import Rectangle
 
-def _section_words(piece: "Piece", beam: "Beam") -> str:
-    if beam.thickness is not None and beam.width is not None:
-        return f"{_metres(beam.width)} × {_metres(beam.thickness)}"
-    if beam.diameter is not None:
-        return f"⌀ {_metres(beam.diameter)}"
-    return f"EI = {piece.bending_stiffness:.4g} N m²"
+        self.ax.add_patch(Rectangle((x, y), width, height, facecolor=color, edgecolor=color, **{"alpha": 0.75} | more))
+        self.top, self.bottom = max(self.top, y + height + 0.05), min(self.bottom, y - 0.05)
 
+    def arrow(self, tail: tuple[float, float], head: tuple[float, float], color: str) -> None:
+        style = {"arrowstyle": "-|>,head_width=0.22,head_length=0.45", "color": color, "linewidth": 1.8}
+        self.ax.annotate("", head, tail, arrowprops=style | {"shrinkA": 0.0, "shrinkB": 0.0})
+        self.top, self.bottom = max(self.top, tail[1], head[1]), min(self.bottom, tail[1], head[1])
 
-def _supports(view: View) -> Iterator[Drawn]:
-    beam = view.beam
-    ends: tuple[tuple[float, Support, float], ...] = ((0.0, beam.supports[0], -1.0), (beam.length, beam.supports[1], 1))
-    for x, support, out in ends:
-        at, half = view.at(x), _half(beam, x)
-        if support == "clamped":
-            yield from _wall(at, out, half)
-        elif support == "guided":
-            yield from _wall(at + 9 * out, out, half)
-            for up in (-0.5, 0.5):
-                yield f'<circle cx="{at + 4.5 * out:.1f}" cy="{16 * up:.1f}" r="3.5" stroke="{INK}"/>'
+    def text(self, x: float, y: float, rows: list[str], down: bool = False) -> None:
+        """Text above y, or below it: moved away from the beam, row by row, until nothing else stands there."""
+        half = 0.5 * LETTER * max(map(len, rows))
+        x = min(max(x, half), self.width - half)
+        low, high = (y - ROW * len(rows), y) if down else (y, y + ROW * len(rows))
+        crossed = [(b, t) for left, right, b, t in self.taken if left < x + half and right > x - half]
+        while any(b < high - 0.01 and t > low + 0.01 for b, t in crossed):
+            low, high = (low - ROW, high - ROW) if down else (low + ROW, high + ROW)
+        self.taken.append((x - half, x + half, low, high))
+        for i, row in enumerate(rows):
+            self.ax.text(x, high - ROW * (i + 0.5), row, ha="center", va="center", fontsize=8.5)
+        self.top, self.bottom = max(self.top, high), min(self.bottom, low)
+
+    def sections(self) -> None:
+        beam, start = self.beam, 0.0
+        for piece, height in zip(beam.pieces, self.heights, strict=True):
+            self.box(self.at(start), -0.5 * height, self.at(piece.length) - self.edge, height, BODY, alpha=0.45)
+            start += piece.length
+        if beam.foundation:
+            n = int(4 * self.width)
+            for i in range(n):
+                x = self.edge + (self.width - 2 * self.edge) * (i + 0.5) / n
+                zigzag = ((x, 0.0), (x - 0.05, -0.16), (x + 0.05, -0.26), (x, -0.36))
+                self.line(*zigzag, color=SOFT, width=0.8, zorder=0)
+            self.line((self.edge, -0.36), (self.width - self.edge, -0.36), color=SOFT)
+            self.taken.append((self.edge, self.width - self.edge, -0.38, 0.0))
+            self.text(0.5 * self.width, -0.4, [f"foundation {beam.foundation:.4g} N/m²"], down=True)
+        if beam.tension:
+            for x, out in ((self.edge - 0.14, -1), (self.width - self.edge + 0.14, 1)):
+                tail, head = sorted((x, x + 0.32 * out), reverse=(out > 0) != (beam.tension > 0))
+                self.arrow((tail, 0.0), (head, 0.0), SPRING)
+            self.text(self.width - 0.3, 0.2, [f"{beam.tension:.4g} N"])
+
+    def support(self, x: float, half: float, support: str, out: int) -> None:
+        if support in ("clamped", "guided"):
+            wall, tall = (x if support == "clamped" else x + 0.12 * out), half + 0.2
+            self.line((wall, -tall), (wall, tall), width=2.0)
+            for i in range(6):
+                y = -tall + 2 * tall * (i + 0.7) / 6
+                self.line((wall, y), (wall + 0.1 * out, y - 0.08), color=SOFT, width=0.9)
+            if support == "guided":
+                self.line((x + 0.06 * out, 0.1), (x + 0.06 * out, -0.1), width=0.0, marker="o", markersize=5.0)
         elif support == "pinned":
-            yield from _foot(at, half, rolls=out > 0)
-        yield Label(at, half + 8.0, (support,), down=True)
+            self.line((x, -half), (x - 0.13, -half - 0.2), (x + 0.13, -half - 0.2), (x, -half))
+            self.line((x - 0.2, -half - 0.22), (x + 0.2, -half - 0.22), color=SOFT)
+        self.text(x, -half - 0.26, [support], down=True)
 
+    def attached(self) -> None:
+        for spring in self.beam.spring:
+            x, y = self.at(spring.position), -self.half(spring.position)
+            if spring.stiffness:
+                zigzag = [(x + (0.07 if i % 2 else -0.07), y - 0.1 - 0.045 * i) for i in range(6)]
+                self.line((x, y), (x, y - 0.06), *zigzag, (x, y - 0.37), (x, y - 0.42), color=SPRING)
+                self.line((x - 0.14, y - 0.42), (x + 0.14, y - 0.42), color=SOFT)
+                self.taken.append((x - 0.15, x + 0.15, y - 0.44, y))
+                self.text(x, y - 0.46, [f"{spring.stiffness:.4g} N/m"], down=True)
+            if spring.rotational:
+                self.line((x, 0.0), color=SPRING, width=0.0, marker="$↺$", markersize=16.0)
+                self.text(x, -y + 0.12, [f"{spring.rotational:.4g} N m/rad"])
+        for mass in self.beam.mass:
+            x, y = self.at(mass.position), self.half(mass.position)
+            self.line((x, y + 0.11), width=0.0, marker="o", markersize=15.0)
+            values = ((mass.mass, "kg"), (mass.rotary_inertia, "kg m²"))
+            self.text(x, y + 0.26, [f"{value:.4g} {unit}" for value, unit in values if value])
 
-def _wall(at: float, out: float, half: float) -> Iterator[Drawn]:
-    tall = half + 16
-    yield _line((at, -tall), (at, tall), width=2)
-    yield Box(min(at, at + 9 * out), -tall, max(at, at + 9 * out), tall + 7)
-    for k in range(6):
-        y = -tall + 2 * tall * (k + 0.5) / 6
-        yield _line((at, y), (at + 9 * out, y + 7), colour=SOFT, width=1)
+    def dashpot(self, x: float, y: float, words: list[str]) -> None:
+        self.line((x, y), (x, y + 0.24), color=SPRING)
+        self.line((x - 0.06, y + 0.24), (x + 0.06, y + 0.24), color=SPRING)
+        cup = ((x - 0.1, y + 0.14), (x - 0.1, y + 0.34), (x + 0.1, y + 0.34), (x + 0.1, y + 0.14))
+        self.line(*cup, color=SPRING)
+        self.line((x, y + 0.34), (x, y + 0.5), color=SPRING)
+        self.line((x - 0.15, y + 0.5), (x + 0.15, y + 0.5), color=SOFT)
+        self.text(x, y + 0.55, words)
 
-
-def _foot(at: float, half: float, *, rolls: bool) -> Iterator[Drawn]:
-    y = half
-    yield _line((at, y), (at - 11, y + 18), (at + 11, y + 18), (at, y), more=' stroke-linejoin="round"')
-    if rolls:
-        yield f'<circle cx="{at - 6:.1f}" cy="{y + 22:.1f}" r="3.2" stroke="{INK}"/>'
-        yield f'<circle cx="{at + 6:.1f}" cy="{y + 22:.1f}" r="3.2" stroke="{INK}"/>'
-    ground = y + (27 if rolls else 19)
-    yield _line((at - 16, ground), (at + 16, ground), colour=SOFT)
-    yield Box(at - 16, y, at + 16, ground)
-
-
-def _springs(view: View) -> Iterator[Drawn]:
-    for spring in view.beam.spring:
-        at, half = view.at(spring.position), _half(view.beam, spring.position)
-        if spring.stiffness:
-            zigzag = [(at + (6 if k % 2 else -6), half + 8 + 4 * k) for k in range(6)]
-            yield _line((at, half), (at, half + 5), *zigzag, (at, half + 32), (at, half + 36), colour=SPRING)
-            yield _line((at - 11, half + 36), (at + 11, half + 36), colour=SOFT)
-            yield Box(at - 11, half, at + 11, half + 37)
-            yield Label(at, half + 40, (f"{spring.stiffness:.4g} N/m",), down=True)
-        if spring.rotational:
-            yield f'<path d="M{at + 12:.1f} 0a12 12 0 1 1 -12 -12" stroke="{SPRING}" stroke-width="1.6"/>'
-            yield Box(at - 12, -12, at + 12, 12)
-            yield Label(at, -half - 10, (f"{spring.rotational:.4g} N m/rad",))
-
-
-def _devices(scene: "Scene", view: View) -> Iterator[Drawn]:
-    """Above the beam, clear of its supports, a dashpot to the ground; what the device has in words."""
-    for device in scene.devices:
-        at, y = view.at(device.position), -_half(view.beam, device.position)
-        cup, ground = y - 12, y - 36
-        yield _line((at, y), (at, cup - 8), colour=SPRING)
-        yield _line((at - 5, cup - 8), (at + 5, cup - 8), colour=SPRING)
-        yield _line((at - 8, cup), (at - 8, cup - 16), (at + 8, cup - 16), (at + 8, cup), colour=SPRING)
-        yield _line((at, cup - 16), (at, ground), colour=SPRING)
-        yield _line((at - 12, ground), (at + 12, ground), colour=SOFT)
-        yield Box(at - 12, ground - 1, at + 12, y)
-        yield Label(at, ground - 4, (f"x = {_metres(device.position)}", *_device_words(device)))
-
-
-def _device_words(device: "Device") -> tuple[str, ...]:
-    """Each thing that it has."""
-    units = {
-        "dashpot": "N s/m",
-        "stiffness": "N/m",
-        "mass": "kg",
-        "rotational_dashpot": "N m s",
-        "rotational": "N m/rad",
-        "rotary_inertia": "kg m²",
-        "amplitude": "N",
-    }
-    return tuple(f"{value:.4g} {unit}" for name, unit in units.items() if (value := getattr(device, name)))
-
-
-def _masses(view: View) -> Iterator[Drawn]:
-    for mass in view.beam.mass:
-        at, y = view.at(mass.position), -_half(view.beam, mass.position)
-        yield f'<circle cx="{at:.1f}" cy="{y - 9:.1f}" r="9" fill="{INK}" fill-opacity=".75"/>'
-        yield Box(at - 9, y - 18, at + 9, y)
-        words = [f"{mass.mass:.4g} kg"] * bool(mass.mass)
-        words += [f"{mass.rotary_inertia:.4g} kg m²"] * bool(mass.rotary_inertia)
-        yield Label(at, y - 20, tuple(words))
-
-
-def _tension(view: View) -> Iterator[Drawn]:
-    if not view.beam.tension:
-        return
-    pull = view.beam.tension > 0
-    for at, out in ((view.edge - 8, -1.0), (view.width - view.edge + 8, 1.0)):
-        near, far = at + 6 * out, at + 36 * out
-        yield from _arrow((near if pull else far, 0.0), (far if pull else near, 0.0), SPRING)
-        yield Box(min(near, far), -4, max(near, far), 4)
-    yield Label(view.width - 4, -8, (f"{view.beam.tension:.4g} N",))
-
-
-def _foundation(view: View) -> Iterator[Drawn]:
-    if not view.beam.foundation:
-        return
-    left, right, n = view.edge, view.width - view.edge, int(view.width / 34)
-    for k in range(n):
-        at = left + (right - left) * (k + 0.5) / n
-        yield _line((at, 0.0), (at - 4, 14.0), (at + 4, 22.0), (at, 34.0), colour=SOFT, width=0.9)
-    yield _line((left, 34.0), (right, 34.0), colour=SOFT)
-    yield Box(left, 0.0, right, 35.0)
-    yield Label(0.5 * view.width, 36.0, (f"foundation {view.beam.foundation:.4g} N/m²",), down=True)
-
-
-def _arrow(tail: tuple[float, float], head: tuple[float, float], colour: str) -> Iterator[str]:
-    """A shaft with a head."""
-    (x0, y0), (x1, y1) = tail, head
-    size = 6.0 / max(((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5, 1e-9)
-    ux, uy = size * (x1 - x0), size * (y1 - y0)
-    yield _line(tail, (x1 - ux, y1 - uy), colour=colour, width=2)
-    points = f"{x1:.1f},{y1:.1f} {x1 - 1.5 * ux - 0.7 * uy:.1f},{y1 - 1.5 * uy + 0.7 * ux:.1f} "
-    yield f'<polygon points="{points}{x1 - 1.5 * ux + 0.7 * uy:.1f},{y1 - 1.5 * uy - 0.7 * ux:.1f}" fill="{colour}"/>'
-
-
-def _forces(scene: "Scene", view: View) -> Iterator[Drawn]:
-    """Arrows that stand on the beam, or on what it carries there."""
-    if scene.drive is None:
-        return
-    unit = "N" if scene.drive.kind == "force" else "m"
-    for force in scene.forces:
-        at, y = view.at(force.position), -_half(view.beam, force.position) - _carried(scene, view, force.position)
-        yield from _arrow((at, y - ARROW), (at, y - 2), FORCE)
-        yield Box(at - 5, y - ARROW, at + 5, y)
-        phase = f", {force.phase_deg:g}°" if force.phase_deg else ""
-        yield Label(at, y - ARROW - 2, (f"x = {_metres(force.position)}", f"{force.amplitude:.4g} {unit}{phase}"))
-    yield Label(0.5 * view.width, -MOST - ARROW, (f"driven at {scene.drive.frequency_hz:g} Hz",))
-
-
-def _carried(scene: "Scene", view: View, x: float) -> float:
-    """Height of what the beam carries at x: a body, the slider."""
-    near = 20.0 / (view.width - 2 * view.edge) * view.beam.length
-    slider = scene.slider.start_on(view.beam) if scene.slider is not None else None
-    if any(abs(mass.position - x) < 0.5 * near for mass in view.beam.mass):
-        return 18.0
-    if scene.slider is not None and scene.slider.foot:
-        return PLATE + TOOTH if any(_stands_over(foot, slider or 0.0, x, near) for foot in scene.slider.foot) else 0.0
-    return 17.0 if slider is not None and abs(slider - x) < near else 0.0
-
-
-def _stands_over(foot: "Foot", start: float, x: float, near: float) -> bool:
-    return foot.face == "upper" and abs(start + foot.offset - x) < 0.5 * (foot.length + near)
-
-
-def _slider(slider: "Slider", view: View) -> Iterator[Drawn]:
-    if slider.foot:
-        yield from _feet(slider, view)
-        return
-    x = slider.start_on(view.beam)
-    at, y = view.at(x), -_half(view.beam, x)
-    yield f'<rect x="{at - 16:.1f}" y="{y - 17:.1f}" width="32" height="16" rx="2" fill="{STAGE}" fill-opacity=".8"/>'
-    yield Box(at - 16, y - 17, at + 16, y)
-    yield Label(at, y - 19, (f"slider, {in_words(1e3 * slider.mass, 'g', '.4g')}, mu {slider.mu:g}",))
-
-
-def _feet(slider: "Slider", view: View) -> Iterator[Drawn]:
-    """Feet on the faces that they stand on, with a tooth for every contact point; a second beam over mirrored ones."""
-    x = slider.start_on(view.beam)
-    tops = []
-    for foot in slider.foot:
-        middle = x + foot.offset
-        half, up = _half(view.beam, middle), 1.0 if foot.face == "lower" else -1.0
-        length = max(view.at(foot.length) - view.edge, POINT_FOOT)
-        left = view.at(middle) - 0.5 * length
-        near, far = up * half, up * (half + TOOTH + PLATE)
-        yield _plate(left, length, up * (half + TOOTH))
-        for k in range(min(foot.points, TEETH)):
-            at = left + length * (k + 0.5) / min(foot.points, TEETH)
-            yield _line((at, near), (at, up * (half + TOOTH)), colour=STAGE)
+    def slider(self, slider: Any) -> None:
+        if slider is None:
+            return
+        start = slider.start_on(self.beam)
+        if not slider.foot:
+            x, y = self.at(start), self.half(start)
+            self.box(x - 0.2, y + 0.02, 0.4, 0.2, SLIDER)
+            self.text(x, y + 0.26, [f"slider {in_words(1e3 * slider.mass, 'g', '.4g')}, μ = {slider.mu:g}"])
+            return
+        tops = []
+        for foot in slider.foot:
+            x, half = self.at(start + foot.offset), self.half(start + foot.offset)
+            length, sign = max(self.at(foot.length) - self.edge, 0.2), -1.0 if foot.face == "lower" else 1.0
+            near, far = sorted((sign * (half + 0.08), sign * (half + 0.2)))
+            self.box(x - 0.5 * length, near, length, far - near, SLIDER)
+            self.taken.append((x - 0.5 * length, x + 0.5 * length, near - 0.05, far + 0.05))
+            for i in range(min(foot.points, 24)):
+                tooth = x - 0.5 * length + length * (i + 0.5) / min(foot.points, 24)
+                self.line((tooth, sign * half), (tooth, sign * (half + 0.08)), color=SLIDER)
             if foot.mirrored:
-                yield _line((at, far), (at, far - TOOTH), colour=STAGE)
-        if foot.mirrored:
-            far -= TOOTH + 2.0 * half
-            yield (
-                f'<rect x="{left - 12:.1f}" y="{far:.1f}" width="{length + 24:.1f}" height="{2 * half:.1f}" '
-                f'fill="{BODY}" fill-opacity=".2" stroke="{BODY}" stroke-dasharray="4 3"/>'
-            )
-        yield Box(left, min(near, far), left + length, max(near, far))
-        tops.append(min(near, far))
-    words = f"slider on {len(slider.foot)} f{'ee' if len(slider.foot) > 1 else 'oo'}t"
-    yield Label(view.at(x), min(tops) - 3, (f"{words}, {in_words(1e3 * slider.mass, 'g', '.4g')}, mu {slider.mu:g}",))
+                self.box(x - 0.5 * length - 0.2, far + 0.08, length + 0.4, 2 * half, BODY, alpha=0.25, linestyle="--")
+                far += 0.1 + 2 * half
+            tops.append(far)
+        rows = [f"slider {in_words(1e3 * slider.mass, 'g', '.4g')}, feet: {len(slider.foot)}"]
+        self.text(self.at(start), max(tops) + 0.08, rows)
 
 
-def _plate(left: float, length: float, edge: float) -> str:
-    top = edge if edge > 0 else edge - PLATE
-    return (
-        f'<rect x="{left:.1f}" y="{top:.1f}" width="{length:.1f}" height="{PLATE:g}" rx="2" fill="{STAGE}" '
-        'fill-opacity=".8"/>'
-    )
-
-
-def _length(view: View, y: float) -> Iterator[str]:
-    left, right = view.edge, view.width - view.edge
-    yield _line((left, y), (right, y), colour=SOFT, width=1)
-    for at in (left, right):
-        yield _line((at, y - 5), (at, y + 5), colour=SOFT, width=1)
-    yield words_at(0.5 * view.width, y - 6, _metres(view.beam.length))
+def _section(beam: "Beam") -> str:
+    if beam.thickness is not None and beam.width is not None:
+        return f"{_length(beam.width)} × {_length(beam.thickness)}"
+    return f"⌀ {_length(beam.diameter)}" if beam.diameter is not None else f"EI = {beam.bending_stiffness:.4g} N m²"

@@ -1,0 +1,191 @@
+"""Quantities of friction and contact laws by themselves: belts, decay, driving layer, bouncing, landing."""
+
+from math import pi
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from verify.checks import check_sizes
+from verify.errors import InputError
+from verify.quantities.base import Scene, quantity
+from verify.quantities.options import Frequency, Mass, Mu, Slope, drive_frequency
+from verify.slider import GRAVITY
+
+Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
+HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
+SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]
+Compliance = Annotated[float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), tangential; 0 for Coulomb")]
+Stiffness = Annotated[float, Meta(gt=0, description="N/m")]
+
+
+@quantity("friction.creep_speed", unit="m/s", reads=())
+def creep_speed(
+    *,
+    mu: Mu,
+    slope: Slope,
+    pull: Annotated[float, Meta(description="external force over mass, m/s^2")],
+    gravity: Gravity = GRAVITY,
+) -> float:
+    """Speed under a constant force below the friction limit, tanh friction."""
+    from verify.motion.rigid_surface import creep_speed
+
+    return creep_speed(mu, slope, pull, gravity)
+
+
+class Belt(msgspec.Struct, frozen=True, kw_only=True):
+    """A mass held by a spring on a moving belt, Coulomb friction."""
+
+    mass: Mass
+    stiffness: Stiffness
+    static: Annotated[float, Meta(gt=0, description="largest friction at rest, N")]
+    kinetic: Annotated[float, Meta(gt=0, description="friction in sliding, N")]
+    speed: Annotated[float, Meta(gt=0, description="of the belt, m/s")]
+
+    def times(self) -> tuple[float, float]:
+        """(stick, slip) time of a cycle, s."""
+        from verify.motion.rigid_surface import stick_slip_times
+
+        return stick_slip_times(self.mass, self.stiffness, self.static, self.kinetic, self.speed)
+
+
+@quantity("friction.belt_stick_time", unit="s", reads=())
+def belt_stick_time(belt: Belt) -> float:
+    """Time of a stick-slip cycle in which the mass sticks to the belt."""
+    return belt.times()[0]
+
+
+@quantity("friction.belt_slip_time", unit="s", reads=())
+def belt_slip_time(belt: Belt) -> float:
+    """Time of a stick-slip cycle in which the mass slips."""
+    return belt.times()[1]
+
+
+@quantity("friction.coulomb_decrement", unit="m", reads=())
+def coulomb_decrement(
+    *, mass: Mass, stiffness: Stiffness, force: Annotated[float, Meta(gt=0, description="friction, N")]
+) -> float:
+    """Amplitude that an oscillator with Coulomb friction loses in a cycle."""
+    from verify.motion.rigid_surface import coulomb_decrement
+
+    return coulomb_decrement(mass, stiffness, force)
+
+
+@quantity("slider.winkler_speed_ratio", unit="1", reads=())
+def winkler_speed_ratio(*, contact_half_angle: HalfAngle, epsilon: Compliance = 0.0) -> float:
+    """No-load speed over crest speed of a rigid slider on a Winkler layer over a wave."""
+    from verify.contact.layer import no_load_speed
+
+    return no_load_speed(contact_half_angle, epsilon)
+
+
+@quantity("slider.layer_force", unit="1", reads=())
+def layer_force(*, contact_half_angle: HalfAngle, speed_ratio: SpeedRatio, epsilon: Compliance = 0.0) -> float:
+    """Friction force over mu N on a rigid slider on a Winkler layer over a wave."""
+    from verify.contact.layer import force
+
+    return force(contact_half_angle, speed_ratio, epsilon)
+
+
+@quantity("slider.layer_efficiency", unit="1", reads=())
+def layer_efficiency(
+    *,
+    contact_half_angle: HalfAngle,
+    speed_ratio: Annotated[float, Meta(ge=0, lt=1, description="of the slider over the surface at the crests")],
+) -> float:
+    """Power of that slider over power into the layer, Coulomb friction."""
+    from verify.contact.layer import efficiency
+
+    return efficiency(contact_half_angle, speed_ratio)
+
+
+@quantity("contact.landing_phase", unit="rad", reads=())
+def landing_phase(
+    *, acceleration_ratio: Annotated[float, Meta(gt=1, description="A omega^2 over the acceleration of the preload")]
+) -> float:
+    """Phase of a vibrating surface at the first impact of a mass that has lifted off."""
+    from verify.contact.bouncing import landing_phase
+
+    return landing_phase(acceleration_ratio)
+
+
+@quantity("contact.restitution", unit="1", reads=())
+def restitution(
+    *,
+    damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)); or mass, stiffness, damping")]
+    | None = None,
+    mass: Mass | None = None,
+    stiffness: Stiffness | None = None,
+    damping: Annotated[float, Meta(ge=0, description="of the dashpot, N s/m")] | None = None,
+) -> float:
+    """Coefficient of restitution of an impact on a spring and dashpot that only push."""
+    from verify.contact.landing import damping_ratio as ratio_of
+    from verify.contact.landing import restitution
+
+    if damping_ratio is not None:
+        for name, value in (("mass", mass), ("stiffness", stiffness), ("damping", damping)):
+            if value is not None:
+                raise InputError(f"{name} = {value!r} beside damping_ratio: leave one of them out")
+        return restitution(damping_ratio)
+    if mass is None or stiffness is None or damping is None:
+        raise InputError("damping_ratio is missing: give it, or mass, stiffness and damping")
+    return restitution(ratio_of(mass, stiffness, damping))
+
+
+class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
+    """A rigid foot of springs over one wavelength at a fixed height over a pure wave."""
+
+    contact_half_angle: HalfAngle
+    speed_ratio: SpeedRatio
+    epsilon: Compliance = 0.0
+    mu: Mu = 0.2
+    steps_per_period: Annotated[int, Meta(ge=4, description="of the wave")] = 256
+    amplitude: Annotated[float, Meta(gt=0, description="of the wave, m")] = 1e-9
+    frequency_hz: Frequency | None = None
+
+    def force(self, scene: Scene, points: int, steps_per_period: int) -> float:
+        """-F/(mu N) of so many springs. Raises InputError where none is in contact."""
+        from verify.motor.on_wave import over_a_wave
+
+        found, _ = over_a_wave(
+            scene.beam,
+            drive_frequency(scene, self.frequency_hz),
+            speed_ratio=self.speed_ratio,
+            contact_half_angle=self.contact_half_angle,
+            epsilon=self.epsilon,
+            mu=self.mu,
+            points=points,
+            steps_per_period=steps_per_period,
+            amplitude=self.amplitude,
+        )
+        if found.normal_force <= 0.0:
+            raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
+        return -found.force / (self.mu * found.normal_force)
+
+
+@quantity("slider.wave_force", unit="1", reads=("beam", "drive"))
+def wave_force(
+    scene: Scene,
+    contact: WaveContact,
+    *,
+    points: Annotated[int, Meta(ge=2, description="springs in a wavelength")] = 61,
+) -> float:
+    """Friction force over mu N on a rigid foot of springs over a pure wave, by time integration."""
+    return contact.force(scene, points, contact.steps_per_period)
+
+
+@quantity("slider.wave_force_order", unit="1", reads=("beam", "drive"))
+def wave_force_order(
+    scene: Scene,
+    contact: WaveContact,
+    *,
+    counts: Annotated[tuple[int, ...], Meta(min_length=3, description="three or more numbers of springs")],
+) -> float:
+    """Observed order of that force in the number of springs, against the Winkler layer; steps in proportion."""
+    from verify.contact.layer import force
+    from verify.judge.compare import observed_order
+
+    check_sizes("counts", counts)
+    exact = force(contact.contact_half_angle, contact.speed_ratio, contact.epsilon)
+    steps = [round(contact.steps_per_period * n / counts[0]) for n in counts]
+    return observed_order(counts, [contact.force(scene, n, s) - exact for n, s in zip(counts, steps, strict=True)])
