@@ -89,7 +89,7 @@ def test_byte_order_mark_and_line_ends_are_ignored(tmp_path):
 
 
 def test_every_error_of_a_file_is_listed(tmp_path):
-    text = SCENE.replace("width", "widht").replace('mode = 3 }', 'mod = 3 }').replace("expect", "expct")
+    text = SCENE.replace("width", "widht").replace("mode = 3 }", "mod = 3 }").replace("expect", "expct")
     text = "colour = 'red'\n" + text + "[spectrum]\nmodes = 0\n[convergence]\ncounts = 'x'\n"
     assert [sentence.split(" = ")[0].split(":")[0] for sentence in errors(tmp_path, text)] == [
         "colour is not a known key",
@@ -181,7 +181,7 @@ def test_copy_keeps_comments_under_another_name():
     text = read_text(STARTER)
     copied = copy_with_name(text, "mine")
     assert copied == text.replace('name = "my-beam"', 'name = "mine"')
-    assert copy_with_name("name = 'a'  # own\n", "b").startswith("#:schema ./verify.schema.json\nname = \"b\"  # own")
+    assert copy_with_name("name = 'a'  # own\n", "b").startswith('#:schema ./verify.schema.json\nname = "b"  # own')
 
 
 def test_name_follows_the_file(tmp_path):

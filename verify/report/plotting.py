@@ -96,6 +96,7 @@ def figure_svg(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> st
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, count=1, flags=re.DOTALL)
+    svg = re.sub(r'<g id="[^"]*"', "<g", svg)
     svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{figure.id}-", svg)
     svg = re.sub(r"'DejaVu Sans'[^;\"]*", "'DejaVu Sans', Verdana, sans-serif", svg)
     for colour, variable in VARIABLES.items():

@@ -31,13 +31,7 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
     def on(self, beam: Beam) -> PointForce:
         """The force in the beam's coordinate. Raises InputError for a position off the beam."""
-        check_number("drive.force.position", self.position, "metres")
-        if not 0 <= self.position <= beam.length:
-            raise InputError(
-                f"drive.force.position = {self.position!r} lies off the beam: "
-                f"give a position between 0 and {beam.length!r} m"
-            )
-        x = self.position if self.measured_from == "left" else beam.length - self.position
+        x = _from_left("drive.force.position", self.position, self.measured_from, beam)
         return PointForce(position=x, amplitude=self.amplitude, phase_deg=self.phase_deg)
 
 
@@ -50,16 +44,18 @@ class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True)
     def on(self, beam: Beam) -> Device:
         """The device in the beam's coordinate. Raises InputError off the beam or on a support."""
         own = {name: getattr(self, name) for name in Device.__struct_fields__}
-        if not self.position <= beam.length:
-            raise InputError(
-                f"drive.device.position = {self.position!r} lies off the beam: "
-                f"give a position between 0 and {beam.length!r} m"
-            )
-        if self.measured_from == "right":
-            own["position"] = beam.length - self.position
+        own["position"] = _from_left("drive.device.position", self.position, self.measured_from, beam)
         device = Device(**own)
         device.check_on(beam)
         return device
+
+
+def _from_left(field: str, position: float, side: str, beam: Beam) -> float:
+    """Distance from the left end of a position measured from one end. Raises InputError off the beam."""
+    check_number(field, position, "metres")
+    if not 0 <= position <= beam.length:
+        raise InputError(f"{field} = {position!r} lies off the beam: give a position between 0 and {beam.length!r} m")
+    return position if side == "left" else beam.length - position
 
 
 class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -187,11 +183,8 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             return computed < 0.0 if self.value == "negative" else computed > 0.0
         if self.value is not None and self.tolerance is not None:
             return abs(computed - self.value) <= self.tolerance
-        return (
-            (-inf if self.at_least is None else self.at_least)
-            <= computed
-            <= (inf if self.at_most is None else self.at_most)
-        )
+        low = -inf if self.at_least is None else self.at_least
+        return low <= computed <= (inf if self.at_most is None else self.at_most)
 
 
 def _check_limits(field: str, one: Gate | Claim) -> None:
@@ -251,7 +244,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         except InputError as error:
             yield from error.sentences
             return
-        for name, study in studies_of(self):
+        for name, study in (self.studies | dict(studies_of(self))).items():
             if self.devices and name in self.studies and not study.devices:
                 yield f"drive.device: [{name}] does not model it, leave out [{name}] or drive.device"
             try:

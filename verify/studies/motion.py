@@ -31,10 +31,10 @@ LARGE = 0.1
 WARNINGS = {
     "lift-off": "Lift-off: the surface falls away with {:.3g} times the acceleration that weight and preload give the "
     "slider; a slider free to lift off leaves it, which this contact law forbids.",
-    "coupling": "Coupling: the inertia of a slider held on the surface changes its motion by a factor of {:.2g}; a normal "
-    "contact without it is not valid for such a slider.",
+    "coupling": "Coupling: the inertia of a slider held on the surface changes its motion by {:.1%}; a "
+    "normal contact without it is not valid for such a slider.",
     "axial": "Nonlinearity: linear models neglect an axial inertia (kL)² ⟨θ²⟩ = {:.2g} of a chain of rigid links.",
-    "step": "Time step: halving it changes the displacement by a factor of {:.1g}, not converged.",
+    "step": "Time step: halving it changes the displacement by {:.1%}, not converged.",
 }
 ERRORS = "Against the exact beam at the same time step."
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
