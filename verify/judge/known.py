@@ -4,14 +4,14 @@ from math import inf
 
 from verify.errors import InputError
 from verify.exact.error_laws import KEPT, KEPT_FROM, expected_error, has_law, is_kept
+from verify.judge.cache import Settings, SolutionCache
 from verify.judge.compare import ORDER_FLOOR
-from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS
 
 UNKNOWN = "neither larger nor smaller ones were looked through"
 
 
-def kept(bench: Workbench, model: str, modes: range, count: int, does: dict[int, bool]) -> str:
+def kept(bench: SolutionCache, model: str, modes: range, count: int, does: dict[int, bool]) -> str:
     """That larger sizes do by the error law, where every size tried from here on keeps to it; empty where one does not.
 
     Which of its terms' sizes an error may differ by is counted in for those that were not tried (`certain_from`).
@@ -36,7 +36,7 @@ def solved(count: int, does: dict[int, bool], beyond: str = "") -> str:
     return f"{said}; larger ones {beyond or 'were not solved'}"
 
 
-def by_law(bench: Workbench, model: str, mode: int, count: int) -> str:
+def by_law(bench: SolutionCache, model: str, mode: int, count: int) -> str:
     """What is said of larger sizes where a size was found next to the error law's answer alone."""
     if not has_law(bench.beam, mode, count):
         return UNKNOWN
@@ -46,7 +46,7 @@ def by_law(bench: Workbench, model: str, mode: int, count: int) -> str:
     return f"every larger N does by the error law, {off:.1%} off here; smaller ones were not looked through"
 
 
-def worst_of(bench: Workbench, model: str, modes: range, count: int, settings: Settings) -> int:
+def worst_of(bench: SolutionCache, model: str, modes: range, count: int, settings: Settings) -> int:
     """Which of the modes has the largest error at a size; the highest where the size has not all of them."""
     if len(modes) == 1:
         return modes[0]
@@ -54,12 +54,12 @@ def worst_of(bench: Workbench, model: str, modes: range, count: int, settings: S
     return max(modes, key=lambda mode: (inf if (error := found[mode]) is None else abs(error), mode))
 
 
-def largest_error(bench: Workbench, model: str, modes: range, count: int, settings: Settings) -> float:
+def largest_error(bench: SolutionCache, model: str, modes: range, count: int, settings: Settings) -> float:
     """The error, signed, of the mode that is furthest off at a size that has them all."""
     return bench.frequency_error(model, count, worst_of(bench, model, modes, count, settings), settings)
 
 
-def unbuilt(bench: Workbench, model: str, settings: Settings, count: int, mode: int) -> str:
+def unbuilt(bench: SolutionCache, model: str, settings: Settings, count: int, mode: int) -> str:
     """Why a model of so many parts is refused; empty where it is solved, or has not so many modes."""
     try:
         if MODELS.named(model).n_elastic(bench.beam, count, **dict(settings)) >= mode:

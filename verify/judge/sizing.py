@@ -16,10 +16,10 @@ from verify.exact.error_laws import (
     sine_fits,
     smallest_count,
 )
+from verify.judge.cache import Settings, SolutionCache
 from verify.judge.known import by_law, kept, largest_error, solved, unbuilt, worst_of
 from verify.judge.several import count_guess, demanding
 from verify.judge.variants import Rules, Variant, falls_within, shared_from, without_effect
-from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.patience import check_work
 from verify.timing import interleaved_medians
@@ -108,7 +108,7 @@ def check_reachable(beam: "Beam", model: str, settings: Settings) -> None:
 
 
 def enough_from(
-    bench: Workbench, model: str, mode: Modes, error: float, settings: Settings = (), before_s: float = 0.0
+    bench: SolutionCache, model: str, mode: Modes, error: float, settings: Settings = (), before_s: float = 0.0
 ) -> Enough:
     """From which size on the solved frequency error is within `error`; one part less is outside it.
 
@@ -159,7 +159,7 @@ def _several(mode: Modes) -> range:
     return mode if isinstance(mode, range) else range(mode, mode + 1)
 
 
-def _reached(bench: Workbench, model: str, modes: range, error: float, settings: Settings) -> Reached:
+def _reached(bench: SolutionCache, model: str, modes: range, error: float, settings: Settings) -> Reached:
     """Whether all modes are within `error` at a size."""
 
     def reached(count: int) -> bool:
@@ -173,7 +173,7 @@ def _reached(bench: Workbench, model: str, modes: range, error: float, settings:
     return reached
 
 
-def _beside_guess(bench: Workbench, model: str, mode: int, error: float, smallest: int) -> int:
+def _beside_guess(bench: SolutionCache, model: str, mode: int, error: float, smallest: int) -> int:
     """From where one mode is within `error`, next to the error law's answer."""
     reached = _reached(bench, model, _several(mode), error, ())
     return _around(reached, count_guess(model, bench.beam, mode, error), smallest, model, error)
@@ -312,7 +312,7 @@ def _unreached(model: str, error: float, count: int) -> InputError:
 
 
 def choose_of_all(
-    bench: Workbench, mode: Modes, error: float, rules: Rules | None = None
+    bench: SolutionCache, mode: Modes, error: float, rules: Rules | None = None
 ) -> tuple[list[Choice], dict[str, str]]:
     """(choices of every model of parts, why those are left out that have none). Raises InputError.
 
@@ -347,7 +347,7 @@ def _work_s(found: dict[Variant, Enough]) -> float:
     return sum(one.work_s for one in found.values())
 
 
-def choose(bench: Workbench, mode: Modes, error: float, variants: tuple[Variant, ...] = ()) -> list[Choice]:
+def choose(bench: SolutionCache, mode: Modes, error: float, variants: tuple[Variant, ...] = ()) -> list[Choice]:
     """For each variant the size from which on it keeps `error`, and its time, taken in turns. Raises InputError.
 
     The models of the package by their defaults, unless `variants` names others.
@@ -357,7 +357,7 @@ def choose(bench: Workbench, mode: Modes, error: float, variants: tuple[Variant,
     return _choices(bench, found, mode, error)
 
 
-def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error: float) -> list[Choice]:
+def _choices(bench: SolutionCache, found: dict[Variant, Enough], mode: Modes, error: float) -> list[Choice]:
     highest = _several(mode)[-1]
     jobs = [_solver(bench, one, enough.count, highest) for one, enough in found.items()]
     return [
@@ -382,7 +382,7 @@ def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error:
     ]
 
 
-def _lower(bench: Workbench, one: Variant, enough: Enough, error: float) -> tuple[int, ...]:
+def _lower(bench: SolutionCache, one: Variant, enough: Enough, error: float) -> tuple[int, ...]:
     """Modes below that are outside `error` at a size that is enough for a higher one: they were solved with it."""
     if enough.mode > _LOWER:
         return ()
@@ -390,6 +390,6 @@ def _lower(bench: Workbench, one: Variant, enough: Enough, error: float) -> tupl
     return tuple(n for n, off in found.items() if off is not None and abs(off) > error)
 
 
-def _solver(bench: Workbench, one: Variant, count: int, mode: int) -> Callable[[], object]:
+def _solver(bench: SolutionCache, one: Variant, count: int, mode: int) -> Callable[[], object]:
     settings = dict(one.settings)
     return lambda: MODELS.named(one.model).solve_modes(bench.beam, mode, count, **settings)

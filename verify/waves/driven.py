@@ -38,7 +38,7 @@ from verify.waves.measures import (
 from verify.waves.window import check_window
 
 if TYPE_CHECKING:
-    from verify.judge.workbench import Workbench
+    from verify.judge.cache import SolutionCache
 
 Window: TypeAlias = tuple[float, float]
 
@@ -60,7 +60,7 @@ SEARCH_SPAN = 0.015
 """Around the drive's frequency, relative."""
 
 
-def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
+def driven(case: DrivenCase, bench: "SolutionCache") -> HarmonicField:
     """The field of a case, its solves kept on the bench. Raises InputError."""
     model = MODELS.named(case.model)
 
@@ -68,7 +68,6 @@ def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
         key = (case.model, case.count, case.beam, frequency, tuple(forces), case.settings)
         if key not in bench.fields:
             bench.fields[key] = model.solve_harmonic(case.beam, forces, frequency, case.count, **dict(case.settings))
-            bench.n_fields += 1
         return bench.fields[key]
 
     case.check_devices()
@@ -80,7 +79,7 @@ def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     return field
 
 
-def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
+def _with_devices(case: DrivenCase, bench: "SolutionCache") -> HarmonicField:
     """The same with devices on the beam. Raises InputError."""
     from verify.waves.devices import field_with_devices
 
@@ -90,7 +89,6 @@ def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     model, settings = MODELS.named(case.model), dict(case.settings)
 
     def solve(beam: Beam, forces: Sequence[PointForce], frequency: float) -> HarmonicField:
-        bench.n_fields += 1
         return model.solve_harmonic(beam, forces, frequency, case.count, **settings)
 
     found = field_with_devices(solve, case.beam, case.forces, case.frequency_hz, case.devices)
@@ -98,13 +96,12 @@ def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     return found
 
 
-def swept(case: DrivenCase, frequencies: Array, bench: "Workbench") -> HarmonicSweep:
+def swept(case: DrivenCase, frequencies: Array, bench: "SolutionCache") -> HarmonicSweep:
     """The fields of a case under forces at many frequencies, kept on the bench. Raises InputError."""
     key = (case.model, case.count, case.beam, frequencies.tobytes(), case.forces, case.settings)
     if key not in bench.sweeps:
         solve = MODELS.named(case.model).sweep_harmonic
         bench.sweeps[key] = solve(case.beam, case.forces, frequencies, case.count, **dict(case.settings))
-        bench.n_fields += len(frequencies)
     return bench.sweeps[key]
 
 
@@ -197,7 +194,7 @@ def _lost(field: HarmonicField, x: Array, weights: Array) -> float:
     return lost
 
 
-def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: "Workbench") -> float:
+def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: "SolutionCache") -> float:
     """The frequency within `span` of the drive's at which the reflection is least.
 
     Raises InputError where the reflection still falls at the edge of the search or the wave stands everywhere.
@@ -211,7 +208,7 @@ def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: 
     return found.x
 
 
-def quietest_drive(case: DrivenCase, span: float, window: Window | None, bench: "Workbench") -> Least:
+def quietest_drive(case: DrivenCase, span: float, window: Window | None, bench: "SolutionCache") -> Least:
     """Where within `span` of the drive's frequency the reflection is least. Raises InputError where the wave stands."""
     centre = case.frequency_hz
     check_fields(case.beam, case.model, (case.count,), SEARCHED)
@@ -265,7 +262,7 @@ def wave_order(
     counts: Sequence[int],
     window: Window | None,
     of: Literal["standing_wave_ratio", "axis_ratio", "deflection"],
-    bench: "Workbench",
+    bench: "SolutionCache",
 ) -> float:
     """The observed order of a discrete model's figure towards the exact field's of its theory. Raises InputError."""
     places = window or middle_half(case.beam)

@@ -1,0 +1,72 @@
+"""Independent work in several processes: results in order, the same to the last digit."""
+
+import os
+import sys
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
+from verify.errors import InputError
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+VARIABLE = "VERIFY_JOBS"
+"""Environment variable with the number of worker processes; 1 where it is unset."""
+
+
+def n_jobs() -> int:
+    """Number of worker processes. Raises InputError where VERIFY_JOBS is no whole number above 0."""
+    text = os.environ.get(VARIABLE, "") or "1"
+    if not (text.isascii() and text.isdigit() and int(text)):
+        raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
+    return int(text)
+
+
+def map_processes(
+    function: Callable[[Item], Result],
+    items: Iterable[Item],
+    progress: Callable[[int], None] | None = None,
+    max_workers: int | None = None,
+) -> list[Result]:
+    """`[function(item) for item in items]`, shared among processes.
+
+    The first item is done in this process, so that what it compiles and caches is there for all workers.
+
+    Parameters
+    ----------
+    function : callable
+        Picklable where the platform cannot fork (a function at module level).
+    items : iterable
+        Picklable arguments.
+    progress : callable, optional
+        Called with the number of items done, after each.
+    max_workers : int, optional
+        Number of processes, VERIFY_JOBS unless set.
+
+    Raises
+    ------
+    Whatever `function` raises of the first item that fails; pending items are cancelled, as by KeyboardInterrupt.
+    """
+    todo = list(items)
+    tell = progress or (lambda done: None)
+    workers = min(max_workers or n_jobs(), len(todo) - 1)
+    first = len(todo) if workers < 2 else 1
+    results = []
+    for item in todo[:first]:
+        results.append(function(item))
+        tell(len(results))
+    if len(results) == len(todo):
+        return results
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
+    context = get_context("fork" if sys.platform == "linux" else "spawn")
+    with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        try:
+            for result in pool.map(function, todo[first:]):
+                results.append(result)
+                tell(len(results))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return results
