@@ -1,21 +1,19 @@
 """The exact beam over many frequencies or many beams in one call: arrays in, arrays out."""
 
 from collections.abc import Callable, Iterable
-from math import pi
 from typing import TypeAlias
 
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_whole, check_word, several
+from verify.checks import check_word
 from verify.errors import InputError
-from verify.exact.closed_forms import wavenumber_length
 from verify.exact.harmonic import check_off_resonance, resonant, solve_harmonic, uniform_shapes
-from verify.exact.modes import check_n_modes, exact_frequency_hz
+from verify.exact.modes import exact_frequency_hz
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField
 from verify.models.places import Forces, Numbers, as_forces, as_typed
-from verify.models.sweeps import FIELD, HarmonicSweep, check_held, of_each, one_by_one, swept_frequencies
+from verify.models.sweeps import FIELD, HarmonicSweep, one_by_one, swept_frequencies, swept_modes
 from verify.options import THEORIES
 
 _Swept: TypeAlias = Callable[[Array, int], ComplexArray]
@@ -80,24 +78,5 @@ def sweep_modes(beams: Iterable[Beam], n_modes: int, theory: str = EULER) -> Arr
     Uniform Euler-Bernoulli beams on the same supports share their roots. Raises InputError as `solve_modes` does,
     naming the beam by its index.
     """
-    beams = several("beams", beams, Beam)
-    check_whole("n_modes", n_modes, 1)
-    if not beams:
-        raise InputError("beams is empty: give at least one Beam")
-    check_held(len(beams), n_modes, "beams", "beams")
-    check_word("theory", theory, THEORIES)
-    slowest = max(beams, key=lambda beam: (not beam.uniform, len(beam.pieces)))
-    check_n_modes(slowest, n_modes, theory, 1 if theory == EULER and slowest.uniform else len(beams))
-    plain = np.array([theory == EULER and beam.uniform for beam in beams])
-    found = np.empty((len(beams), n_modes))
-    for supports in {beam.supports for beam in beams}:
-        which = [i for i, beam in enumerate(beams) if plain[i] and beam.supports == supports]
-        if which:
-            roots = np.array([wavenumber_length(supports, n) for n in range(1, n_modes + 1)])
-            lengths, constants = np.array([(beams[i].length, beams[i].wave_constant) for i in which]).T[:, :, None]
-            found[which] = (roots / lengths) ** 2 * constants / (2.0 * pi)
-    others = np.flatnonzero(~plain).tolist()
     numbers = range(1, n_modes + 1)
-    rows = of_each(others, beams, lambda beam: [exact_frequency_hz(beam, n, theory) for n in numbers])
-    found[others] = np.array(rows).reshape(len(others), n_modes)
-    return found
+    return swept_modes(beams, n_modes, lambda beam: np.array([exact_frequency_hz(beam, n, theory) for n in numbers]))
