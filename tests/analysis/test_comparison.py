@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 
 from verify.attached import PointMass
@@ -126,7 +126,7 @@ def test_an_order_of_any_figure_is_refused_where_its_error_changes_its_sign_or_f
     kind, loaded = QUANTITIES[quantity], load_scene(scene)
     asked = arguments_of(kind, {"model": "segment"} | arguments)
     with pytest.raises(InputError, match=message):
-        evaluate(kind, asked, loaded, Workbench(loaded.beam))
+        evaluate(kind, asked, loaded, SolutionCache(loaded.beam))
 
 
 def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():
@@ -139,7 +139,7 @@ def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():
 
 def test_a_shape_that_a_heavy_body_keeps_small_is_not_taken_for_rest(titanium_strip):
     heavy = replace(titanium_strip, mass=(PointMass(position=0.3 * titanium_strip.length, mass=1e12),))
-    assert Workbench(heavy).shape_error("fem", 10, 1) < 1e-3
+    assert SolutionCache(heavy).shape_error("fem", 10, 1) < 1e-3
 
 
 def test_all_nodes_of_a_high_mode_are_found_each_where_it_is():

@@ -2,7 +2,7 @@
 
 import pytest
 from msgspec.structs import replace
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 
 from verify.attached import PointMass
 from verify.errors import InputError
@@ -38,7 +38,7 @@ def test_the_rules_that_make_a_difference_are_those_of_what_the_beam_has():
 
 
 def test_a_choice_shows_69_links_of_the_literature_beside_19():
-    choices, left_out = choose_of_all(Workbench(CANTILEVER), 5, 1e-3)
+    choices, left_out = choose_of_all(SolutionCache(CANTILEVER), 5, 1e-3)
     found = {one.variant.label: one.count for one in choices}
     assert found["segment"] == 19
     assert found["segment wall=half"] == 69
@@ -47,7 +47,7 @@ def test_a_choice_shows_69_links_of_the_literature_beside_19():
 
 def test_under_tension_a_choice_shows_the_joint_that_needs_a_sixth_of_the_links():
     found = {
-        one.variant.label: one.count for one in choose_of_all(Workbench(load_scene("taut-strip").beam), 3, 1e-3)[0]
+        one.variant.label: one.count for one in choose_of_all(SolutionCache(load_scene("taut-strip").beam), 3, 1e-3)[0]
     }
     assert (found["segment"], found["segment joints=tensioned"]) == (56, 10)
 

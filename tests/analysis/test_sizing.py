@@ -2,7 +2,7 @@
 
 import pytest
 from msgspec.structs import replace
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
@@ -48,7 +48,7 @@ def smallest(beam, model):
     ],
 )
 def test_from_here_on_is_what_every_size_tried_says(titanium_strip, model, supports, mode, most):
-    bench = Workbench(replace(titanium_strip, supports=supports))
+    bench = SolutionCache(replace(titanium_strip, supports=supports))
     errors = errors_of(bench, model, mode, range(smallest(bench.beam, model), most))
     compared = 0
     for error in (0.3, 0.04, 1e-2, 1.1e-3, 3e-5, 3e-6, 1e-6):
@@ -62,7 +62,7 @@ def test_from_here_on_is_what_every_size_tried_says(titanium_strip, model, suppo
 
 def test_an_error_that_changes_its_sign_does_before_it_stays(titanium_strip):
     beam = replace(titanium_strip, supports=("clamped", "clamped"))
-    found = sizing.enough_from(Workbench(beam), "segment", 3, 1e-6)
+    found = sizing.enough_from(SolutionCache(beam), "segment", 3, 1e-6)
     assert (found.count, found.smaller) == (55, 33)
 
 
@@ -70,7 +70,7 @@ def test_an_error_that_changes_its_sign_does_before_it_stays(titanium_strip):
     ("error", "settings"), [(1e-3, ()), (9e-3, (("joints", "printed"),)), (2e-3, (("grading", 1.4),))]
 )
 def test_a_stepped_beam_goes_by_what_was_solved_and_says_so(error, settings):
-    bench = Workbench(load_scene("stepped-beam").beam)
+    bench = SolutionCache(load_scene("stepped-beam").beam)
     errors = errors_of(bench, "segment", 3, range(2, 81), settings)
     found = sizing.enough_from(bench, "segment", 3, error, settings)
     assert found.count <= 40
@@ -81,7 +81,7 @@ def test_a_stepped_beam_goes_by_what_was_solved_and_says_so(error, settings):
 
 def test_a_body_that_falls_anywhere_within_its_link_is_followed_to_the_last_size_that_fails():
     """The error goes up and down with N: 106 links do, 107 do not."""
-    bench, settings = Workbench(load_scene("instrument-arm").beam), (("attachment", "lever"),)
+    bench, settings = SolutionCache(load_scene("instrument-arm").beam), (("attachment", "lever"),)
     found = sizing.enough_from(bench, "segment", 3, 1e-3, settings)
     assert (found.count, found.smaller) == (108, 106)
     last = int(found.known_by.removeprefix("all N from 108 to ").split()[0])
@@ -93,7 +93,7 @@ def test_a_body_that_falls_anywhere_within_its_link_is_followed_to_the_last_size
 
 def test_all_of_several_modes_are_kept_and_the_one_that_asks_for_most_is_named():
     """With 2EI/l at the clamp mode 10 needs more links than mode 12."""
-    bench, settings = Workbench(load_scene("instrument-arm").beam), (("wall", "half"),)
+    bench, settings = SolutionCache(load_scene("instrument-arm").beam), (("wall", "half"),)
     found = sizing.enough_from(bench, "segment", range(1, 13), 1e-3, settings)
     alone = {mode: sizing.enough_from(bench, "segment", mode, 1e-3, settings).count for mode in (10, 12)}
     assert (found.count, found.mode) == (alone[10], 10)
@@ -115,7 +115,7 @@ def test_a_smaller_size_that_does_for_several_modes_is_told_with_the_largest_of_
         mass=(PointMass(position=0.6, mass=0.2),),
         spring=(PointSpring(position=0.41, stiffness=2e5),),
     )
-    bench = Workbench(tube)
+    bench = SolutionCache(tube)
     (chain,) = sizing.choose(bench, range(1, 5), 1e-3, (Variant("segment"),))
     assert (chain.count, chain.mode, chain.smaller) == (17, 4, 8)
     assert chain.smaller_error == max((bench.frequency_error("segment", 8, mode) for mode in range(1, 5)), key=abs)
@@ -124,7 +124,7 @@ def test_a_smaller_size_that_does_for_several_modes_is_told_with_the_largest_of_
 
 @pytest.mark.parametrize(("model", "error"), [("segment", 0.01), ("fem", 0.035), ("fem", 1e-4)])
 def test_all_of_several_modes_by_the_dispersion(titanium_strip, model, error):
-    bench = Workbench(titanium_strip)
+    bench = SolutionCache(titanium_strip)
     errors = [errors_of(bench, model, mode, range(9, 60)) for mode in (7, 8, 9)]
     expected = by_brute_force({n: max(each[n] for each in errors) for n in errors[0]}, error)
     found = sizing.enough_from(bench, model, range(7, 10), error)
@@ -142,7 +142,7 @@ def test_elements_near_their_cut_off_happen_to_do(titanium_strip, mode, error):
     assert error_laws.parts_from_here_on("fem", titanium_strip, mode, error) == enough
     assert sizing._dip("fem", titanium_strip, mode, error, enough) == (least if least < enough else None)
     if mode == 40 and error == 0.035:
-        found = sizing.enough_from(Workbench(titanium_strip), "fem", mode, error)
+        found = sizing.enough_from(SolutionCache(titanium_strip), "fem", mode, error)
         assert (found.count, found.smaller) == (44, 41)
 
 
@@ -167,10 +167,10 @@ def test_the_law_is_kept_from_there_on_and_not_before(titanium_strip, supports, 
 
 def test_a_size_beyond_reach_is_refused_and_a_large_one_goes_by_the_law(titanium_strip):
     half = replace(titanium_strip, supports=("clamped", "free"))
-    found = sizing.enough_from(Workbench(half), "segment", 12, 5e-11)
+    found = sizing.enough_from(SolutionCache(half), "segment", 12, 5e-11)
     assert found.count > 2000
     assert "by the error law" in found.known_by
     assert "not looked through" in found.known_by
-    assert "not looked through" in sizing.enough_from(Workbench(half), "segment", 101, 0.04).known_by
+    assert "not looked through" in sizing.enough_from(SolutionCache(half), "segment", 101, 0.04).known_by
     with pytest.raises(InputError, match="does not reach it up to count"):
         sizing._scanned(lambda count: False, 2, 3, "segment", 1e-9)

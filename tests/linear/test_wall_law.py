@@ -7,7 +7,7 @@ from math import cos, exp, pi, sin
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 
 from verify.beam import Beam
@@ -114,7 +114,7 @@ def test_the_leading_law_is_that_of_equal_parts_and_thin_beams_alone(model, supp
 def ratio_to_law(scene, model, **given):
     found = quantity("mode.law_ratio")
     arguments = arguments_of(found, {"model": model, "mode": 2, "count": 400, **given})
-    return evaluate(found, arguments, scene, Workbench(scene.beam))
+    return evaluate(found, arguments, scene, SolutionCache(scene.beam))
 
 
 def test_where_errors_of_clamped_chains_change_sign():

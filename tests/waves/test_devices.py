@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 
 from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, segment_model
 from verify.device import Device, of_impedance
@@ -202,10 +202,10 @@ def case(**given):
 
 def test_a_resonance_of_the_bare_beam_is_none_of_the_beam_with_its_device():
     hertz = analytic_modes.frequency_hz(STRIP, 9)
-    found = driven(case(frequency_hz=hertz, devices=ONE), Workbench(STRIP))
+    found = driven(case(frequency_hz=hertz, devices=ONE), SolutionCache(STRIP))
     assert off(found.deflection(X), matched(STRIP, FORCES, hertz, ONE, X)) < 1e-6
     assert powers(found, found.forces[:2]) == pytest.approx(
-        powers(driven(case(frequency_hz=hertz * (1 + 1e-7), devices=ONE), Workbench(STRIP)), FORCES), rel=1e-3
+        powers(driven(case(frequency_hz=hertz * (1 + 1e-7), devices=ONE), SolutionCache(STRIP)), FORCES), rel=1e-3
     )
 
 
@@ -215,7 +215,7 @@ def test_a_resonance_with_a_device_that_loses_nothing_is_refused():
         position=0.3, **({"stiffness": -1.0 / own} if own < 0 else {"mass": 1.0 / own / (3000 * np.pi) ** 2})
     )
     with pytest.raises(DevicesResonanceError, match=r"frequency_hz = 1500\.0 is an undamped resonance.*give a device"):
-        driven(case(devices=(spring,)), Workbench(STRIP))
+        driven(case(devices=(spring,)), SolutionCache(STRIP))
 
 
 @pytest.mark.parametrize(
@@ -267,7 +267,7 @@ def test_what_drives_nothing_or_gives_energy_is_refused():
     with pytest.raises(InputError, match="gives energy"):
         of_impedance(0.3, -1.0 + 2.0j, 700.0)
     with pytest.raises(InputError, match=r"drive\.kind = 'displacement': beside a device"):
-        driven(case(kind="displacement", devices=ONE), Workbench(STRIP))
+        driven(case(kind="displacement", devices=ONE), SolutionCache(STRIP))
 
 
 def test_a_drive_slower_than_any_square_of_it_leaves_the_static_field():

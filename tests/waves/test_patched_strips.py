@@ -1,7 +1,7 @@
 """Waves on a strip with patches under its actuators: measured where the strip is itself, refused where it is not."""
 
 import pytest
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 
 from verify.errors import WindowError
@@ -35,7 +35,7 @@ def scene(**tables):
 def figure(name, whole=None, **asked):
     loaded = whole or scene()
     found = quantity(name)
-    return evaluate(found, arguments_of(found, asked), loaded, Workbench(loaded.beam))
+    return evaluate(found, arguments_of(found, asked), loaded, SolutionCache(loaded.beam))
 
 
 def test_both_models_come_to_the_exact_standing_wave_ratio_of_a_patched_strip():

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 from verify.quantities.cases import driven_case
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.quantities.wave_arguments import Sensitivity
@@ -116,7 +116,7 @@ def test_a_wave_in_time_is_not_measured_across_a_force(window):
     scene, found = load_scene("paper-slider"), quantity("motion.reflection")
     given = arguments_of(found, {"model": "analytic", "start": "steady", "time": 0.0011, "window": list(window)})
     with pytest.raises(WindowError, match="leaves the span between two forces"):
-        evaluate(found, given, scene, Workbench(scene.beam))
+        evaluate(found, given, scene, SolutionCache(scene.beam))
 
 
 def test_the_ellipse_of_a_point_is_that_of_its_path():
@@ -208,7 +208,7 @@ def test_the_discrete_wavenumbers_are_the_inverse_of_the_discrete_dispersion():
 
 
 def test_the_ratio_and_the_flux_of_elements_do_not_drift_with_the_mesh():
-    bench = Workbench(BEAM)
+    bench = SolutionCache(BEAM)
     arguments = {"model": "fem", "count": 100_000}
     for name, exact in (("wave.standing_wave_ratio", 1.05635631395), ("wave.energy_flux", 0.0233318340824)):
         found = quantity(name)
@@ -217,7 +217,7 @@ def test_the_ratio_and_the_flux_of_elements_do_not_drift_with_the_mesh():
 
 @pytest.mark.parametrize(("model", "fewest", "counts"), [("segment", 26, (3, 10, 20, 25)), ("fem", 22, (1, 12, 21))])
 def test_a_mesh_that_cannot_carry_the_wave_is_refused_with_the_fewest_parts_that_can(model, fewest, counts):
-    bench = Workbench(BEAM)
+    bench = SolutionCache(BEAM)
     for name, more in (("wave.standing_wave_ratio", {}), ("wave.deflection", {"x": 0.3})):
         found = quantity(name)
         for count in counts:
@@ -251,9 +251,9 @@ def test_two_drives_in_phase_have_no_best_frequency():
     best = quantity("wave.best_frequency")
     for phase in (0.0, 180.0):
         with pytest.raises(InputError, match="the wave stands at every frequency"):
-            evaluate(best, arguments_of(best, {"phase_deg": phase}), PAPER, Workbench(BEAM))
+            evaluate(best, arguments_of(best, {"phase_deg": phase}), PAPER, SolutionCache(BEAM))
     standing = load_scene("paper", ("drive.force.1.phase_deg=0",))
-    row = motor_row(standing, Workbench(BEAM), "segment", 49)
+    row = motor_row(standing, SolutionCache(BEAM), "segment", 49)
     assert row.best is None
     assert "the wave stands" in row.note
     points, problems = points_of(standing, "segment", 49)
@@ -267,9 +267,9 @@ def test_a_force_on_a_support_makes_no_wave_to_measure(model, count, position):
     found = quantity("wave.standing_wave_ratio")
     given = {"model": model, "position": position} | ({"count": count} if count else {})
     with pytest.raises(ZeroFieldError, match="the field is zero in the window"):
-        evaluate(found, arguments_of(found, given), PAPER, Workbench(BEAM))
+        evaluate(found, arguments_of(found, given), PAPER, SolutionCache(BEAM))
     near = given | {"position": abs(position - 1e-6)}
-    assert evaluate(found, arguments_of(found, near), PAPER, Workbench(BEAM)) < 2.0
+    assert evaluate(found, arguments_of(found, near), PAPER, SolutionCache(BEAM)) < 2.0
 
 
 @pytest.mark.parametrize(
@@ -292,9 +292,9 @@ def test_windows_that_measure_nothing_are_refused(window, message):
 def test_what_relates_to_the_flux_of_a_standing_wave_is_refused(name):
     found = quantity(name)
     with pytest.raises(InputError, match="the wave stands"):
-        evaluate(found, arguments_of(found, {"phase_deg": 0.0}), PAPER, Workbench(BEAM))
+        evaluate(found, arguments_of(found, {"phase_deg": 0.0}), PAPER, SolutionCache(BEAM))
     axes = (Axis("phase_deg", (0.0, 60.0)),)
-    walked = design_map(name, {}, axes, PAPER, Workbench(BEAM))
+    walked = design_map(name, {}, axes, PAPER, SolutionCache(BEAM))
     assert np.isnan(walked.values).tolist() == [True, False]
     assert "1 of 2 points have no figure: the wave stands" in walked.reasons[0]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 
 from tests.reference import transfer
@@ -124,7 +124,7 @@ def test_a_surface_point_near_forces_and_ends_moves_as_its_section_turns(x):
     ratio = QUANTITIES["wave.axis_ratio"]
     for given, within in (({"model": "analytic"}, 1e-10), ({"model": "fem", "count": 100}, 1e-3)):
         asked = arguments_of(ratio, given | {"theory": "timoshenko", "x": x})
-        assert evaluate(ratio, asked, scene, Workbench(BAR)) == pytest.approx(exact, rel=within)
+        assert evaluate(ratio, asked, scene, SolutionCache(BAR)) == pytest.approx(exact, rel=within)
 
 
 @pytest.mark.parametrize("theory", ["rayleigh", "timoshenko"])
@@ -133,4 +133,4 @@ def test_a_chains_field_tends_to_the_exact_one_of_its_own_theory(theory):
     scene, of = load_scene("thick-bar"), QUANTITIES["wave.order"]
     given = {"model": "segment", "counts": [40, 80, 160], "of": "deflection", "window": [0.12, 0.21]}
     asked = arguments_of(of, given | {"theory": theory})
-    assert evaluate(of, asked, scene, Workbench(scene.beam)) == pytest.approx(2.0, abs=0.1)
+    assert evaluate(of, asked, scene, SolutionCache(scene.beam)) == pytest.approx(2.0, abs=0.1)
