@@ -2,10 +2,9 @@
 
 from verify.checks import check_number, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 
 
-class PointMass(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A rigid body fixed to the beam at a point. Raises InputError where a value is none, or all are zero."""
 
     position: float
@@ -24,7 +23,7 @@ class PointMass(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError(f"beam.mass at position = {self.position!r} weighs nothing: give mass or rotary_inertia")
 
 
-class PointSpring(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A spring from the beam to the ground at a point. Raises InputError where a value is none, or all are zero."""
 
     position: float

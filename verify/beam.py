@@ -9,7 +9,6 @@ import msgspec
 from verify.attached import PointMass, PointSpring
 from verify.checks import Relative, check_number, settle
 from verify.errors import InputError, near_name, written
-from verify.field_docs import Value
 from verify.options import SUPPORTS, Support
 from verify.section import Piece, Section, Sizes, check_decades, check_used, merged, piece_of, shear_coefficient
 
@@ -277,7 +276,7 @@ def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
         )
 
 
-class PointForce(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A transverse harmonic point force, amplitude cos(omega t + phase).
 
     Raises InputError where a value is not finite or the position is negative; whether the position lies on a

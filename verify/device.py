@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 
 ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
 TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")
@@ -23,7 +22,7 @@ _STILL = {"across": HELD, "turning": ("clamped", "guided")}
 """Supports on which nothing moves across, or turns."""
 
 
-class Device(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What an actuator or an absorber is to a beam in its steady state: an impedance to the ground, and a force.
 
     It belongs to the drive, not to the beam: harmonic fields know it; modes, motion in time and the nonlinear chain do

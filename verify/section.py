@@ -7,7 +7,6 @@ import msgspec
 
 from verify.checks import check_number, check_word, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.options import SHAPES, Shape
 
 SAME = 1e-12
@@ -31,7 +30,7 @@ _UNITS = {
 }
 
 
-class Sizes(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Sizes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What a section is made of: a shape with its sizes and material, or its figures plainly. SI."""
 
     shape: Shape | None = None
@@ -82,7 +81,7 @@ class Section(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self.check_sizes("beam.section")
 
 
-class Piece(Value, frozen=True, kw_only=True):
+class Piece(msgspec.Struct, frozen=True, kw_only=True):
     """A stretch of constant section, everything stated that is known of it. SI."""
 
     length: float

@@ -7,7 +7,6 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.checks import check_kind, check_number, check_whole, check_word, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 
 GRAVITY = 9.81
@@ -18,7 +17,7 @@ OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}
 _WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
 
 
-class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How a slider that may leave the surface touches it: through springs, or hard. Raises InputError."""
 
     stiffness: float | None = None
@@ -89,7 +88,7 @@ class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return (self.tangential_stiffness or 0.0) + (self.layer_tangential_stiffness or 0.0) * length
 
 
-class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A rigid foot of a slider that may leave the surface, with its own height and pitch. Raises InputError."""
 
     length: float = 0.0
@@ -136,7 +135,7 @@ class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             )
 
 
-class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A point mass that stays on the surface and is carried along by friction.
 
     Friction is the paper's Eq. (3), F = -mu N tanh(K (v - v_beam)), or Coulomb's law with true sticking. N is

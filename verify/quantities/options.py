@@ -29,10 +29,7 @@ FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
 DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
 UnitModel = Annotated[str, model_meta("which model", "unit_responses")]
 TimeModel = Annotated[str, model_meta("which model", "time_basis")]
-Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
 Frequency = Annotated[float, Meta(gt=0, description="Hz; default: the scene's drive")]
-Loss = Annotated[Relative, Meta(description="eta of E (1 + i eta); default: the beam's")]
-Imposed = Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
 Theory = Annotated[options.Theory, Meta(description="beam theory")]
 Reading = Annotated[
@@ -79,7 +76,7 @@ class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def chosen(self) -> "Settings":
         """Those other than their defaults."""
-        return _chosen(self)
+        return not_default(self)
 
     def settings(self, model: str, kind: str = "modal") -> "Settings":
         """`chosen`. Raises InputError for one that the model lacks."""
@@ -135,6 +132,7 @@ def given(values: Any, names: Sequence[str]) -> dict[str, Any]:
     return {name: value for name in names if (value := getattr(values, name)) is not None}
 
 
-def _chosen(group: msgspec.Struct) -> "Settings":
-    fields = msgspec.structs.fields(type(group))
+def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> "Settings":
+    """(name, value) of the fields of an option group that differ from their defaults, but for those of `without`."""
+    fields = [field for field in msgspec.structs.fields(type(group)) if field.name not in without]
     return tuple((f.name, getattr(group, f.name)) for f in fields if getattr(group, f.name) != f.default)
