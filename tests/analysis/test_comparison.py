@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.judge.cache import SolutionCache
-from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 
 from verify.attached import PointMass
 from verify.errors import InputError, NoBracketError, PairingError
 from verify.judge import compare
+from verify.judge.cache import SolutionCache
 from verify.models.modes import Modes
-from verify.scenes.scene import load_scene
+from verify.quantities.base import evaluate
+from verify.scene.load import load_scene
 
 X = np.linspace(0, 1, 41)
 SINES = np.array([np.sin(n * np.pi * X) for n in (1, 2, 3, 4)])
@@ -123,8 +123,8 @@ def test_an_order_of_any_figure_is_refused_where_its_error_changes_its_sign_or_f
     scene, quantity, arguments, message
 ):
     """Handed over without their signs the errors gave 2.8, -0.2 or whatever slope lay through them."""
-    kind, loaded = QUANTITIES[quantity], load_scene(scene)
-    asked = arguments_of(kind, {"model": "segment"} | arguments)
+    kind, loaded = quantity, load_scene(scene)
+    asked = {"model": "segment"} | arguments
     with pytest.raises(InputError, match=message):
         evaluate(kind, asked, loaded, SolutionCache(loaded.beam))
 

@@ -2,13 +2,13 @@
 
 import pytest
 from msgspec.structs import replace
-from verify.judge.cache import SolutionCache
 
 from verify.attached import PointMass
 from verify.errors import InputError
+from verify.judge.cache import SolutionCache
 from verify.judge.sizing import choose_of_all
 from verify.judge.variants import Rules, Variant, every_rule
-from verify.scenes.scene import load_scene
+from verify.scene.load import load_scene
 from verify.section import Section
 
 CANTILEVER = load_scene("steel-cantilever").beam

@@ -2,15 +2,15 @@
 
 import pytest
 from msgspec.structs import replace
-from verify.judge.cache import SolutionCache
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.exact import error_laws
 from verify.judge import sizing
+from verify.judge.cache import SolutionCache
 from verify.judge.variants import Variant
-from verify.scenes.scene import load_scene
+from verify.scene.load import load_scene
 
 
 def errors_of(bench, model, mode, sizes, settings=()):

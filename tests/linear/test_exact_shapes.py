@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from tests.beams import PAIRED, cut
 
+from tests.beams import PAIRED, cut
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from tests.reference.transfer import frequency_near
+from tests.reference.transfer import frequency_near, state
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.elements import linear

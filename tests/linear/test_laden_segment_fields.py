@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from tests.reference.transfer import state
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError

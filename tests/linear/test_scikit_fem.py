@@ -8,7 +8,7 @@ from verify.beam import Beam, PointForce
 from verify.elements import linear, mesh, pencil
 from verify.elements.in_time import time_basis
 from verify.elements.stock import stock_frequency_hz
-from verify.scenes.scene import load_scene
+from verify.scene.load import load_scene
 from verify.section import Section
 
 PAPER = load_scene("paper").beam

@@ -4,8 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from tests.beams import PAIRED
 
+from tests.beams import PAIRED
 from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.errors import InputError

@@ -6,8 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from tests.reference.transfer import has_frequency_within
 
+from tests.reference.transfer import has_frequency_within
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.exact import closed_forms

@@ -6,7 +6,7 @@ import pytest
 from msgspec.structs import replace
 from numpy.polynomial import Polynomial
 
-from tests.reference.transfer import frequency_near
+from tests.reference.transfer import frequency_near, state
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.elements import linear

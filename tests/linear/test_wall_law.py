@@ -7,15 +7,15 @@ from math import cos, exp, pi, sin
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.judge.cache import SolutionCache
-from verify.quantities.catalogue import arguments_of, evaluate, quantity
 
 from verify.beam import Beam
 from verify.elements.linear import solve_modes as element_modes
 from verify.errors import InputError
 from verify.exact import error_laws
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
-from verify.scenes.scene import Scene
+from verify.judge.cache import SolutionCache
+from verify.quantities.base import evaluate
+from verify.scene.model import Scene
 from verify.segments.linear import solve_modes as segment_modes
 
 STRIP = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850.0)
@@ -112,8 +112,8 @@ def test_the_leading_law_is_that_of_equal_parts_and_thin_beams_alone(model, supp
 
 
 def ratio_to_law(scene, model, **given):
-    found = quantity("mode.law_ratio")
-    arguments = arguments_of(found, {"model": model, "mode": 2, "count": 400, **given})
+    found = "mode.law_ratio"
+    arguments = {"model": model, "mode": 2, "count": 400, **given}
     return evaluate(found, arguments, scene, SolutionCache(scene.beam))
 
 

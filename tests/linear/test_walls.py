@@ -5,13 +5,13 @@ from itertools import combinations_with_replacement, product
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.judge.cache import SolutionCache
 
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
 from verify.judge import compare
+from verify.judge.cache import SolutionCache
 from verify.options import SUPPORTS, WALLS
 from verify.segments import linear as segment_model
 from verify.segments.walls import wall_factors

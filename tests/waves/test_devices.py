@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from verify.judge.cache import SolutionCache
 
 from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, segment_model
 from verify.device import Device, of_impedance
 from verify.errors import InputError
+from verify.judge.cache import SolutionCache
 from verify.models.fields import phasor
 from verify.waves.absorber import matched_device
 from verify.waves.case import DrivenCase

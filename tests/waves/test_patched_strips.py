@@ -1,12 +1,11 @@
 """Waves on a strip with patches under its actuators: measured where the strip is itself, refused where it is not."""
 
 import pytest
-from verify.judge.cache import SolutionCache
-from verify.quantities.catalogue import arguments_of, evaluate, quantity
 
 from verify.errors import WindowError
-from verify.scenes.checked import checked
-from verify.scenes.scene import scene_type
+from verify.judge.cache import SolutionCache
+from verify.quantities.base import evaluate
+from verify.scene.load import scene_from
 
 PATCH = {"bending_stiffness": 0.35, "mass_per_length": 0.11}
 SECTIONS = [{"length": 0.03}, {"length": 0.03, **PATCH}, {"length": 0.3}, {"length": 0.03, **PATCH}, {"length": 0.03}]
@@ -24,18 +23,16 @@ SCENE = {
         "spring": [{"position": 0.0, "stiffness": 3e5}, {"position": 0.42, "stiffness": 2e5}],
     },
     "drive": {"frequency_hz": 1700.0, "force": [{"position": 0.045}, {"position": 0.372, "phase_deg": 90.0}]},
-    "wave": {"count": 40, "counts": [40, 80, 160], "frequency_hz": [1600.0, 1800.0, 9]},
 }
 
 
 def scene(**tables):
-    return checked(SCENE | tables, scene_type())
+    return scene_from(SCENE | tables)
 
 
 def figure(name, whole=None, **asked):
     loaded = whole or scene()
-    found = quantity(name)
-    return evaluate(found, arguments_of(found, asked), loaded, SolutionCache(loaded.beam))
+    return evaluate(name, asked, loaded, SolutionCache(loaded.beam))
 
 
 def test_both_models_come_to_the_exact_standing_wave_ratio_of_a_patched_strip():

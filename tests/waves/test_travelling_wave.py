@@ -5,21 +5,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
-from verify.judge.cache import SolutionCache
-from verify.quantities.cases import driven_case
-from verify.quantities.catalogue import arguments_of, evaluate, quantity
-from verify.quantities.wave_arguments import Sensitivity
 
 from verify import load_scene
 from verify.beam import PointForce
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import error_laws
 from verify.exact import modes as analytic_modes
+from verify.judge.cache import SolutionCache
 from verify.models.fields import HarmonicField, wavenumber
-from verify.studies.wave.design_map import Axis, design_map
-from verify.studies.wave.figures import motor_row
+from verify.quantities.base import evaluate
 from verify.waves.measures import ellipse, fit_waves, fitted_wavenumber, measure, surface_motion
-from verify.waves.operating_point import operating_points
 from verify.waves.series import measure_series, phasors
 
 PAPER = load_scene("paper")
@@ -44,11 +39,6 @@ def two_waves(forward, backward, k=135.2):
         shapes=shapes,
         forces=(PointForce(position=0.01), PointForce(position=0.49)),
     )
-
-
-def points_of(scene, model, count):
-    """(operating points with a loss factor of 1e-3, reasons for those that are missing)."""
-    return operating_points(driven_case(Sensitivity(model=model, count=count, loss_factor=1e-3), scene))
 
 
 def driven(phase=90.0, d=0.0116, eta=0.0, frequency=4276.0):
@@ -113,8 +103,8 @@ def test_series_too_short_to_measure_are_refused():
 
 @pytest.mark.parametrize("window", [(0.005, 0.3), (0.2, 0.495)])
 def test_a_wave_in_time_is_not_measured_across_a_force(window):
-    scene, found = load_scene("paper-slider"), quantity("motion.reflection")
-    given = arguments_of(found, {"model": "analytic", "start": "steady", "time": 0.0011, "window": list(window)})
+    scene, found = load_scene("paper-slider"), "motion.reflection"
+    given = {"model": "analytic", "start": "steady", "time": 0.0011, "window": list(window)}
     with pytest.raises(WindowError, match="leaves the span between two forces"):
         evaluate(found, given, scene, SolutionCache(scene.beam))
 
@@ -211,19 +201,19 @@ def test_the_ratio_and_the_flux_of_elements_do_not_drift_with_the_mesh():
     bench = SolutionCache(BEAM)
     arguments = {"model": "fem", "count": 100_000}
     for name, exact in (("wave.standing_wave_ratio", 1.05635631395), ("wave.energy_flux", 0.0233318340824)):
-        found = quantity(name)
-        assert evaluate(found, arguments_of(found, arguments), PAPER, bench) == pytest.approx(exact, rel=2e-8)
+        found = name
+        assert evaluate(found, arguments, PAPER, bench) == pytest.approx(exact, rel=2e-8)
 
 
 @pytest.mark.parametrize(("model", "fewest", "counts"), [("segment", 26, (3, 10, 20, 25)), ("fem", 22, (1, 12, 21))])
 def test_a_mesh_that_cannot_carry_the_wave_is_refused_with_the_fewest_parts_that_can(model, fewest, counts):
     bench = SolutionCache(BEAM)
     for name, more in (("wave.standing_wave_ratio", {}), ("wave.deflection", {"x": 0.3})):
-        found = quantity(name)
+        found = name
         for count in counts:
             with pytest.raises(CutOffError, match=f"give count = {fewest} or more"):
-                evaluate(found, arguments_of(found, {"model": model, "count": count} | more), PAPER, bench)
-        assert np.isfinite(evaluate(found, arguments_of(found, {"model": model, "count": fewest} | more), PAPER, bench))
+                evaluate(found, {"model": model, "count": count} | more, PAPER, bench)
+        assert np.isfinite(evaluate(found, {"model": model, "count": fewest} | more, PAPER, bench))
     assert error_laws.cut_off_hz(model, BEAM, fewest - 1) <= 4276.0 < error_laws.cut_off_hz(model, BEAM, fewest)
     with pytest.raises(CutOffError, match="give count = "):
         error_laws.check_carried(model, BEAM, 7, 1e300)
@@ -248,28 +238,21 @@ def test_a_wavenumber_fitted_to_the_edge_of_its_search_is_refused(factor):
 
 
 def test_two_drives_in_phase_have_no_best_frequency():
-    best = quantity("wave.best_frequency")
+    best = "wave.best_frequency"
     for phase in (0.0, 180.0):
         with pytest.raises(InputError, match="the wave stands at every frequency"):
-            evaluate(best, arguments_of(best, {"phase_deg": phase}), PAPER, SolutionCache(BEAM))
-    standing = load_scene("paper", ("drive.force.1.phase_deg=0",))
-    row = motor_row(standing, SolutionCache(BEAM), "segment", 49)
-    assert row.best is None
-    assert "the wave stands" in row.note
-    points, problems = points_of(standing, "segment", 49)
-    assert ["crest speed with" in p.what for p in points] == [True]
-    assert "the wave stands" in str(problems[0])
+            evaluate(best, {"phase_deg": phase}, PAPER, SolutionCache(BEAM))
 
 
 @pytest.mark.parametrize("position", [0.0, 0.5])
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 49), ("fem", 49)])
 def test_a_force_on_a_support_makes_no_wave_to_measure(model, count, position):
-    found = quantity("wave.standing_wave_ratio")
+    found = "wave.standing_wave_ratio"
     given = {"model": model, "position": position} | ({"count": count} if count else {})
     with pytest.raises(ZeroFieldError, match="the field is zero in the window"):
-        evaluate(found, arguments_of(found, given), PAPER, SolutionCache(BEAM))
+        evaluate(found, given, PAPER, SolutionCache(BEAM))
     near = given | {"position": abs(position - 1e-6)}
-    assert evaluate(found, arguments_of(found, near), PAPER, SolutionCache(BEAM)) < 2.0
+    assert evaluate(found, near, PAPER, SolutionCache(BEAM)) < 2.0
 
 
 @pytest.mark.parametrize(
@@ -290,29 +273,6 @@ def test_windows_that_measure_nothing_are_refused(window, message):
 
 @pytest.mark.parametrize("name", ["wave.signed_area_spread", "wave.power_imbalance"])
 def test_what_relates_to_the_flux_of_a_standing_wave_is_refused(name):
-    found = quantity(name)
+    found = name
     with pytest.raises(InputError, match="the wave stands"):
-        evaluate(found, arguments_of(found, {"phase_deg": 0.0}), PAPER, SolutionCache(BEAM))
-    axes = (Axis("phase_deg", (0.0, 60.0)),)
-    walked = design_map(name, {}, axes, PAPER, SolutionCache(BEAM))
-    assert np.isnan(walked.values).tolist() == [True, False]
-    assert "1 of 2 points have no figure: the wave stands" in walked.reasons[0]
-
-
-@pytest.mark.parametrize(
-    ("model", "count", "best"), [("analytic", None, 4269.07), ("segment", 49, 4252.71), ("fem", 49, 4279.22)]
-)
-def test_the_best_frequency_is_where_kl_is_an_odd_number_of_quarter_turns(model, count, best):
-    quiet, fast = points_of(PAPER, model, count)[0]
-    assert quiet.frequency_hz == pytest.approx(best, abs=0.05)
-    assert quiet.reflection < 0.01
-    assert fast.reflection <= 0.1 + 1e-6
-    assert abs(fast.crest_speed) > abs(quiet.crest_speed)
-
-
-def test_the_papers_rule_lies_seven_hertz_above_the_best_frequency():
-    """4276 Hz answers both modes equally; the least reflection is where cos kL = 0, at 4269.07 Hz."""
-    quiet, _ = points_of(PAPER, "analytic", None)[0]
-    at_rule = measure(driven(eta=1e-3), WINDOW).reflection
-    assert 4276.0 - quiet.frequency_hz == pytest.approx(6.93, abs=0.02)
-    assert at_rule > 3 * quiet.reflection
+        evaluate(found, {"phase_deg": 0.0}, PAPER, SolutionCache(BEAM))
