@@ -79,21 +79,6 @@ def test_the_order_that_is_due_is_the_one_that_a_chain_has(beam, settings, due):
     assert abs(orders[-1] - due) <= abs(orders[0] - due) + 0.1
 
 
-@pytest.mark.parametrize(
-    ("beam", "settings", "low", "high"),
-    [
-        pytest.param(mass(STEPPED, 0.3), TIMOSHENKO, 1, 2, id="mass on a step under shear"),
-        pytest.param(body(PULLED, 0.2613), TENSIONED, 3, 4, id="body in tension"),
-        pytest.param(spring(PULLED, 0.2613, rotational=3e3), TENSIONED, 3, 4, id="couple in tension"),
-        pytest.param(mass(BAR, 0.2613), TIMOSHENKO | LEVER, 1, 2, id="mass by lever under shear"),
-    ],
-)
-def test_no_order_is_told_as_due_where_two_meet(beam, settings, low, high):
-    """The lower one in the end, the higher one while its term is the larger: neither is settled at these sizes."""
-    assert order_of(beam, **settings) is None
-    assert low - 0.35 < np.median(seen(beam, settings)) < high + 0.2
-
-
 def test_what_is_lower_for_another_reason_is_told_where_two_would_meet():
     assert order_of(body(STEPPED, 0.3), theory="timoshenko") == 1
     assert order_of(replace(body(STEPPED, 0.2), tension=4e5), joints="tensioned") == 2
