@@ -86,25 +86,6 @@ def test_fields_and_turns_of_the_section_are_turned_round(model, theory, support
     compared(one.shapes(inside, 2), other.shapes(LENGTH - inside[::-1], 2))
 
 
-@OF_MODEL
-def test_many_frequencies_and_forces_are_turned_round_at_once(model):
-    module, size = MODELS[model]
-    hertz, beam = [31.0, 210.0, 2900.0], laden()
-    one, other = (
-        module.unit_responses(each, places, hertz, x, *size)
-        for each, places, x in (
-            (beam, [0.2, 0.61], X),
-            (beam.mirrored(), [LENGTH - 0.2, LENGTH - 0.61], LENGTH - X[::-1]),
-        )
-    )
-    compared(one, other)
-    one, other = (
-        module.sweep_harmonic(each, forces, hertz, *size).deflection(x)
-        for each, forces, x in ((beam, FORCES, X), (beam.mirrored(), other_side(FORCES), LENGTH - X[::-1]))
-    )
-    compared(one, other)
-
-
 @settings(max_examples=60, deadline=None)
 @given(
     supports=st.tuples(*[st.sampled_from(SUPPORTS)] * 2),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verify.waves.best_phase import TRIED, phases_to_try, squared
+from verify.waves.best_phase import TRIED, phases_to_try
 
 CIRCLE = 4001
 CASES = 400
@@ -43,16 +43,6 @@ def test_no_phase_of_a_fine_circle_beats_the_ten_that_are_tried(limit, ends):
     assert found[allowed] == pytest.approx(every[allowed], rel=5e-3)
 
 
-def test_most_answers_lie_on_the_limit_itself_and_keep_it_to_rounding():
-    forward, backward = waves(5)
-    tried = phases_to_try(forward, backward, 0.1, (0.087, 3.05))
-    reflection, speed = figures(forward, backward, tried)
-    best = np.where(reflection <= 0.1 + 1e-13, speed, 0.0).argmax(axis=1)
-    chosen = reflection[np.arange(CASES), best][speed[np.arange(CASES), best] > 0.0]
-    on = abs(chosen - 0.1) < 1e-12
-    assert np.count_nonzero(on) >= 3
-
-
 @pytest.mark.parametrize("scale", [1e-60, 1.0, 1e60, 1e-190, 1e160])
 def test_amplitudes_of_any_size_have_the_same_best_phase(scale):
     forward, backward = waves(7, 1.0)
@@ -60,19 +50,3 @@ def test_amplitudes_of_any_size_have_the_same_best_phase(scale):
     assert np.sort(phases_to_try(scale * forward, scale * backward, 0.3, (0.1, 3.0))) == pytest.approx(
         np.sort(plain), abs=1e-7
     )
-
-
-def test_where_the_energy_does_not_change_with_phase_the_difference_alone_decides():
-    """|A+|^2 + |A-|^2 constant: the quartic loses its first and last coefficient, the best phase is that of A+ alone."""
-    forward, backward = np.array([[1.3 + 0.0j, 0.4 + 0.3j]]), np.array([[0.4 + 0.3j, -1.3 + 0.0j]])
-    backward = np.conj(backward)
-    total = squared(forward[:, 0], forward[:, 1]).less(-1.0, squared(backward[:, 0], backward[:, 1]))
-    assert abs(total.turn[0]) < 1e-15
-    ends = (0.05, 3.1)
-    found = fastest(forward, backward, 0.999, phases_to_try(forward, backward, 0.999, ends))
-    assert found >= fastest(forward, backward, 0.999, np.linspace(*ends, CIRCLE)) * (1.0 - 1e-15)
-
-
-def test_a_drive_that_moves_nothing_leaves_phases_that_are_numbers():
-    still = np.zeros((2, 2), dtype=complex)
-    assert np.isfinite(phases_to_try(still, still, 0.1, (0.1, 3.0))).all()

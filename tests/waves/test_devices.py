@@ -1,26 +1,19 @@
 """Devices on a driven beam: every model's field beside one matched span by span here, and what is refused."""
 
-import re
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from msgspec.structs import replace
-from scipy.optimize import brentq
 
-from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, load_scene, segment_model
+from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, segment_model
 from verify.device import Device, of_impedance
-from verify.errors import InputError, WindowError
-from verify.judge.workbench import Workbench
+from verify.errors import InputError
+from verify.judge.cache import SolutionCache
 from verify.models.fields import phasor
-from verify.run.plan import plan_scene
 from verify.waves.absorber import matched_device
 from verify.waves.case import DrivenCase
 from verify.waves.devices import DevicesResonanceError, field_with_devices, powers
-from verify.waves.driven import driven, own_wavenumber
-from verify.waves.imposed import driven_field
-from verify.waves.measures import measure
+from verify.waves.driven import driven
 
 SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
 STRIP = Beam(**SIZES)
@@ -184,19 +177,6 @@ def test_a_body_that_only_turns_is_felt_to_rounding_as_the_models_feel_one_of_th
     assert on_drive.beam is STRIP
 
 
-def test_a_body_of_the_drive_moves_the_exact_beam_as_one_of_the_beam_does():
-    on_drive = field_with_devices(exact, STRIP, FORCES, 311.0, [Device(position=0.31, mass=0.017, **BODY)])
-    assert off(on_drive.deflection(X), exact(carrying(mass=0.017), FORCES, 311.0).deflection(X)) < 1e-9
-
-
-def test_under_timoshenkos_theory_a_device_turns_with_the_section_as_a_body_does():
-    def thick(beam, forces, hertz):
-        return analytic_modes.solve_harmonic(beam, forces, hertz, theory="timoshenko")
-
-    on_drive = field_with_devices(thick, STRIP, FORCES, 9000.0, [Device(position=0.31, mass=0.017, **BODY)])
-    assert off(on_drive.deflection(X), thick(carrying(mass=0.017), FORCES, 9000.0).deflection(X)) < 1e-8
-
-
 def test_an_active_force_alone_takes_up_the_wave_as_the_matched_device_does():
     hertz, device = 2390.0, matched_device(STRIP, 2390.0, 0.81)
     passive = field_with_devices(exact, STRIP, FORCES[:1], hertz, [device])
@@ -222,42 +202,11 @@ def case(**given):
 
 def test_a_resonance_of_the_bare_beam_is_none_of_the_beam_with_its_device():
     hertz = analytic_modes.frequency_hz(STRIP, 9)
-    found = driven(case(frequency_hz=hertz, devices=ONE), Workbench(STRIP))
+    found = driven(case(frequency_hz=hertz, devices=ONE), SolutionCache(STRIP))
     assert off(found.deflection(X), matched(STRIP, FORCES, hertz, ONE, X)) < 1e-6
     assert powers(found, found.forces[:2]) == pytest.approx(
-        powers(driven(case(frequency_hz=hertz * (1 + 1e-7), devices=ONE), Workbench(STRIP)), FORCES), rel=1e-3
+        powers(driven(case(frequency_hz=hertz * (1 + 1e-7), devices=ONE), SolutionCache(STRIP)), FORCES), rel=1e-3
     )
-
-
-TURNING = ({"rotational_dashpot": 1e-5}, {"rotational_dashpot": 2e-3, "rotational": 0.5}, {"rotary_inertia": 1e-6})
-
-
-@pytest.mark.parametrize("beam", [STRIP, CANTILEVER], ids=["pinned", "cantilever"])
-@pytest.mark.parametrize("given", TURNING, ids=" ".join)
-def test_a_device_against_turning_is_right_where_the_bare_beam_resonates(beam, given):
-    devices = [Device(position=0.31, **given)]
-    for mode in (2, 7):
-        for part in (0.0, 1e-12, -3e-9, 1e-7):
-            hertz = analytic_modes.frequency_hz(beam, mode) * (1.0 + part)
-            found = field_with_devices(exact, beam, FORCES, hertz, devices).deflection(X)
-            assert off(found, matched(beam, FORCES, hertz, devices, X)) < 1e-8
-
-
-@pytest.mark.parametrize("beam", [STRIP, CANTILEVER], ids=["pinned", "cantilever"])
-def test_a_resonance_with_a_body_that_turns_and_loses_nothing_is_refused(beam):
-    devices = [Device(position=0.31, rotary_inertia=1e-6)]
-
-    def give(hertz):
-        return 1.0 / matched(beam, FORCES[1:], hertz, devices, [0.63])[0].real
-
-    bare = analytic_modes.frequency_hz(beam, 5)
-    resonance = brentq(give, bare * (1.0 - 2e-3), bare * (1.0 - 3e-5), xtol=1e-13, rtol=1e-15)
-    for part in (0.0, 2e-10):
-        with pytest.raises(DevicesResonanceError, match=r"beam with devices at \[0\.31\] m"):
-            field_with_devices(exact, beam, FORCES, resonance * (1.0 + part), devices)
-    beside = resonance * (1.0 + 3e-9)
-    found = field_with_devices(exact, beam, FORCES, beside, devices).deflection(X)
-    assert off(found, matched(beam, FORCES, beside, devices, X)) < 1e-5
 
 
 def test_a_resonance_with_a_device_that_loses_nothing_is_refused():
@@ -266,7 +215,7 @@ def test_a_resonance_with_a_device_that_loses_nothing_is_refused():
         position=0.3, **({"stiffness": -1.0 / own} if own < 0 else {"mass": 1.0 / own / (3000 * np.pi) ** 2})
     )
     with pytest.raises(DevicesResonanceError, match=r"frequency_hz = 1500\.0 is an undamped resonance.*give a device"):
-        driven(case(devices=(spring,)), Workbench(STRIP))
+        driven(case(devices=(spring,)), SolutionCache(STRIP))
 
 
 @pytest.mark.parametrize(
@@ -318,55 +267,7 @@ def test_what_drives_nothing_or_gives_energy_is_refused():
     with pytest.raises(InputError, match="gives energy"):
         of_impedance(0.3, -1.0 + 2.0j, 700.0)
     with pytest.raises(InputError, match=r"drive\.kind = 'displacement': beside a device"):
-        driven(case(kind="displacement", devices=ONE), Workbench(STRIP))
-
-
-TURNS = Device(position=0.31, rotational_dashpot=0.02)
-AROUND = [PointForce(position=0.07), PointForce(position=0.79, phase_deg=90.0)]
-
-
-@pytest.mark.parametrize("model", [exact, segments(60), elements(60)])
-@pytest.mark.parametrize("more", [[], [Device(position=0.81, dashpot=2.0)]])
-def test_a_window_over_a_device_that_only_turns_is_refused(model, more):
-    """Its couple parts the waves as a force does: 37 % were left over, and nothing was told."""
-    field = field_with_devices(model, STRIP, AROUND, 1700.0, [TURNS, *more])
-    with pytest.raises(WindowError, match=r"holds a device against turning at \[0\.31\] m: two waves alone live"):
-        measure(field, (0.2, 0.6))
-    assert measure(field, (0.14, 0.26), own_wavenumber(field)).waves.residual < 0.02
-    assert measure(field, (0.36, 0.7), own_wavenumber(field)).waves.residual < 0.01
-
-
-def test_a_plan_tells_of_a_device_that_only_turns_inside_the_window(tmp_path):
-    scene = tmp_path / "turns.toml"
-    scene.write_text(TURNING_SCENE)
-    problems = plan_scene(load_scene(str(scene))).problems
-    assert "holds a device against turning at [0.3] m" in str(problems)
-
-
-TURNING_SCENE = """name = "turns"
-[beam]
-length = 0.5
-width = 0.02
-thickness = 0.001
-youngs_modulus = 70e9
-density = 2700.0
-[drive]
-frequency_hz = 4276.0
-[[drive.force]]
-position = 0.05
-[[drive.force]]
-position = 0.45
-phase_deg = 90.0
-[[drive.device]]
-position = 0.3
-rotational_dashpot = 0.02
-[[gate]]
-id = "ratio"
-quantity = "wave.standing_wave_ratio"
-expect = 1.6876
-within = 0.1
-why = "A device inside the window."
-"""
+        driven(case(kind="displacement", devices=ONE), SolutionCache(STRIP))
 
 
 def test_a_drive_slower_than_any_square_of_it_leaves_the_static_field():
@@ -379,66 +280,3 @@ def test_a_drive_slower_than_any_square_of_it_leaves_the_static_field():
     assert at(1e-170) == pytest.approx(at(1e-5), rel=1e-9)
     with pytest.raises(InputError, match="frequency_hz = 1e-320: give a finite number of at least 1e-200"):
         at(1e-320)
-
-
-@pytest.mark.parametrize("solve", [exact, elements(30), segments(30)], ids=["exact", "elements", "segments"])
-def test_a_floating_beam_that_a_device_holds_is_refused_where_its_digits_are_lost(solve):
-    """Alone it moves EI / (rho A L^4 omega^2) as far: 2e-16 of that is a twentieth of all that it does when held."""
-    floating, held = replace(STRIP, supports=("pinned", "free")), 0.6
-    spring = 2.0 * STRIP.bending_stiffness / STRIP.length**3
-    device = Device(position=held, stiffness=spring)
-    with pytest.raises(InputError, match=r"the beam alone moves \de\+1[2-4] times as far .*raise the frequency"):
-        field_with_devices(solve, floating, FORCES, 1e-6, [device])
-    found = field_with_devices(solve, floating, FORCES, 1e-3, [device]).deflection(X)
-    sprung = replace(floating, spring=(PointSpring(position=held, stiffness=spring),))
-    assert found == pytest.approx(solve(sprung, FORCES, 1e-3).deflection(X), rel=2e-6)
-
-
-def told_frequency(refusal):
-    """Hertz that a refused drive is said to need, which are enough for what inertia alone holds."""
-    return float(re.search(r"to at least (\S+) Hz", str(refusal.value))[1])
-
-
-def test_what_a_floating_beam_on_a_device_is_told_to_do_instead_answers():
-    floating, spring = replace(STRIP, supports=("pinned", "free")), 2.0 * STRIP.bending_stiffness / STRIP.length**3
-    device = Device(position=0.6, stiffness=spring)
-    with pytest.raises(InputError) as refusal:
-        field_with_devices(exact, floating, FORCES, 1e-6, [device])
-    raised = field_with_devices(exact, floating, FORCES, told_frequency(refusal), [device]).deflection(X)
-    sprung = replace(floating, spring=(PointSpring(position=0.6, stiffness=spring),))
-    assert raised == pytest.approx(exact(sprung, FORCES, 1e-6).deflection(X), rel=2e-5)
-
-
-@pytest.mark.parametrize("solve", [exact, elements(30), segments(30)], ids=["exact", "elements", "segments"])
-def test_a_stiff_device_where_the_force_acts_is_answered_on_a_beam_that_does_not_float(solve):
-    """At all places a hundredth as far as behind one a hundredth as stiff: all but nothing, which nobody loses."""
-    held, force = replace(STRIP, supports=("clamped", "pinned")), PointForce(position=0.3, amplitude=1.7)
-    soft, stiff = (
-        field_with_devices(solve, held, force, 3000.0, [Device(position=0.3, stiffness=k)]).deflection(X)
-        for k in (1e16, 1e18)
-    )
-    assert 100.0 * stiff == pytest.approx(soft, rel=1e-3)
-    assert abs(soft).max() < 1e-14
-
-
-def test_whatever_rounding_leaves_of_a_floating_beam_that_a_stiff_device_stops_is_refused():
-    """All of its force goes into the device: what is left of 2e11 m is rounding. Driven fast enough it is answered."""
-    floating, force = replace(STRIP, supports=("pinned", "free")), PointForce(position=0.6, amplitude=1.7)
-    field_with_devices(exact, floating, [force], 0.3, [Device(position=0.6, stiffness=1e15)])
-    for stiffness in (1e10, 1e15, 1e20):
-        with pytest.raises(InputError, match=r"alone moves \de\+1\d times as far"):
-            field_with_devices(exact, floating, [force], 1e-6, [Device(position=0.6, stiffness=stiffness)])
-
-
-def test_a_floating_beam_bent_by_three_places_is_refused_where_its_digits_are_lost():
-    floating = replace(STRIP, supports=("free", "free"))
-    bent = [PointForce(position=x, amplitude=y) for x, y in ((0.02, 1e-3), (0.5, 3e-3), (0.8, 1e-3))]
-
-    def bends(beam, hertz):
-        return driven_field(lambda acts, f: exact(beam, acts, f), bent, hertz, "displacement").deflection(X)
-
-    with pytest.raises(InputError, match=r"alone moves .* as far as it does where the drive holds it") as refusal:
-        bends(floating, 1e-6)
-    k = STRIP.bending_stiffness / STRIP.length**3
-    sprung = replace(floating, spring=tuple(PointSpring(position=one.position, stiffness=k) for one in bent))
-    assert bends(floating, told_frequency(refusal)) == pytest.approx(bends(sprung, 1e-6), rel=1e-4)

@@ -3,22 +3,19 @@
 import sys
 from itertools import product
 
-import mpmath
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
-from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
-from verify.models.fields import phasor, wavenumber
+from verify.exact import modes as analytic_modes
 from verify.options import SUPPORTS
 from verify.segments import linear as segment_model
 from verify.segments.assembly import build_chain
-from verify.segments.loads import four_weights, joint_weights
+from verify.segments.loads import joint_weights
 from verify.waves.imposed import driven_field, held_units
 
 FORCES = (PointForce(position=0.083, amplitude=0.7), PointForce(position=0.611, amplitude=1.3, phase_deg=63.0))
@@ -32,29 +29,6 @@ def close(found, exact, bound):
 
 def error(found, exact):
     return np.linalg.norm(found.deflection(X) - exact.deflection(X)) / np.linalg.norm(exact.deflection(X))
-
-
-@pytest.mark.parametrize("eta", [0.0, 0.003, 0.2])
-@pytest.mark.parametrize("frequency", [3.0, 311.0, 40_000.0])
-def test_the_closed_form_and_the_spliced_exponentials_are_one_field(titanium_strip, eta, frequency):
-    beam = replace(titanium_strip, loss_factor=eta)
-    k = wavenumber(beam, frequency)
-    for derivative in range(4):
-        inside = X if derivative < 3 else X[X != 0.083]  # the shear force jumps at a force
-        one, other = (make(beam, FORCES, k)(inside, derivative) for make in (pinned_shapes, spliced_shapes))
-        close(one, other, 3e-12)
-
-
-@pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)
-def test_power_series_and_exponentials_are_one_field_where_they_meet(titanium_strip, supports):
-    """Just below |k| L = 1, where the exponentials have lost only two digits and the series none."""
-    beam = replace(titanium_strip, supports=supports, loss_factor=0.01)
-    k = 0.97 / 0.73 * (1 + 0.01j) ** -0.25
-    for derivative in range(4):
-        inside = X if derivative < 3 else X[X != 0.083]
-        close(
-            slow_shapes(beam, FORCES, k)(inside, derivative), spliced_shapes(beam, FORCES, k)(inside, derivative), 2e-12
-        )
 
 
 @pytest.mark.parametrize("frequency", [1e-300, 1e-12, 1e-6, 1e-4])
@@ -160,26 +134,6 @@ def test_a_force_anywhere_even_in_the_last_link_keeps_the_error_small(titanium_s
         assert fine < 0.03 * coarse
 
 
-def test_dropping_the_reflected_neighbour_of_a_pinned_end_would_cost_tens_of_per_cent(titanium_strip, monkeypatch):
-    from verify.segments import loads as point_loads
-
-    forces = (PointForce(position=0.01),)  # in the first of 40 links
-    exact = analytic_modes.solve_harmonic(titanium_strip, forces, 23.0)
-    assert error(segment_model.solve_harmonic(titanium_strip, forces, 23.0, 40), exact) < 1e-3
-    true = point_loads._reflected
-    monkeypatch.setattr(
-        point_loads, "_reflected", lambda chain, joint: (true(chain, joint)[0], 0.0 if joint < 0 else 1.0)
-    )
-    assert error(segment_model.solve_harmonic(titanium_strip, forces, 23.0, 40), exact) > 0.03
-
-
-def test_the_reciprocal_weights_are_lagrange_weights_with_a_twelfth_of_their_bend():
-    assert four_weights(1.0) == pytest.approx([1 / 12, 1 - 2 / 12, 1 / 12, 0])
-    for s in (0.3, 1.4, 2.9):
-        for power, expected in ((0, 1.0), (1, s), (2, s**2 + 2 / 12), (3, s**3 + 6 * s / 12)):
-            assert four_weights(s) @ np.arange(4.0) ** power == pytest.approx(expected, rel=1e-13)
-
-
 def test_the_lever_rule_shares_a_force_as_a_rigid_link_does(titanium_strip):
     weights = joint_weights(build_chain(titanium_strip, 10), 0.73 * 0.2375, "lever")
     assert weights[2:4] == pytest.approx([0.625, 0.375])
@@ -218,34 +172,6 @@ def test_raw_readings_of_49_links_are_wrong_by_their_known_amounts(paper_beam):
     assert ratio("raw", joint) - 1 == pytest.approx(-0.024, abs=0.01)
     field = segment_model.solve_harmonic(paper_beam, forces, frequency, 49)
     assert ellipse(surface_motion(paper_beam, field.slope(0.25)), field.deflection(0.25))[0][0] < 0
-
-
-def test_elements_reach_the_closed_form_and_have_no_floor_that_grows(paper_beam):
-    forces = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
-    x = np.linspace(0, 0.5, 41)
-    exact = analytic_modes.solve_harmonic(paper_beam, forces, 4276.0).deflection(x)
-    close(fem_beam.solve_harmonic(paper_beam, forces, 4276.0, 4000).deflection(x), exact, 2e-9)
-    close(fem_beam.solve_harmonic(paper_beam, forces, 4276.0, 10_000).deflection(x), exact, 1e-10)
-
-
-def test_complex_deflection_at_mid_span_in_extended_precision(paper_beam):
-    """The closed form of the reference sheet once more, at 40 digits."""
-    with mpmath.workdps(40):
-        length, ei = mpmath.mpf("0.5"), mpmath.mpf(paper_beam.bending_stiffness) * (1 + mpmath.mpf("0.001") * 1j)
-        k = (mpmath.mpf(paper_beam.mass_per_length) * (2 * mpmath.pi * 4276) ** 2 / ei) ** mpmath.mpf("0.25")
-
-        def green(xi, x):
-            total = 0
-            for q, factor in ((1j * k, -1j), (k, -1)):
-                a, b = min(x, xi), max(x, xi)
-                total += factor * mpmath.sinh(q * a) * mpmath.sinh(q * (length - b)) / mpmath.sinh(q * length) * 2
-            return total / (4 * ei * k**3)
-
-        exact = green(mpmath.mpf(0.0116), mpmath.mpf("0.25")) + 1j * green(mpmath.mpf(0.4884), mpmath.mpf("0.25"))
-    beam = replace(paper_beam, loss_factor=0.001)
-    forces = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
-    found = analytic_modes.solve_harmonic(beam, forces, 4276.0).deflection(0.25)[0]
-    assert found == pytest.approx(complex(exact), rel=1e-12)
 
 
 @pytest.mark.parametrize("model", SOLVERS)
@@ -319,36 +245,6 @@ def held(model, beam, frequency, kind="displacement"):
     return driven_field(lambda forces, f: solve(beam, forces, f, *given), FORCES, frequency, kind)
 
 
-@pytest.mark.parametrize("model", SOLVERS)
-@pytest.mark.parametrize("length", [0.037, 9.1])
-def test_the_mode_of_a_resonance_is_named_whatever_the_length_of_the_beam(titanium_strip, model, length):
-    beam, solve = replace(titanium_strip, length=length, supports=("clamped", "free")), SOLVERS[model]
-    frequency = float(sys.modules[solve.__module__].solve_modes(beam, 19, 41).frequencies_hz[18])
-    with pytest.raises(ResonanceError, match=rf"resonance of mode 19 of the {model} model"):
-        solve(beam, [PointForce(position=0.3 * length)], frequency, 41)
-
-
-@pytest.mark.parametrize("model", ["analytic", *SOLVERS])
-def test_a_resonance_under_forces_is_none_of_the_beam_held_at_its_actuators(titanium_strip, model):
-    """There the held field is as smooth as beside it: the mean of both sides, to the curvature over 1e-6."""
-    module = {"segment": segment_model, "fem": fem_beam}.get(model)
-    f = (
-        float(module.solve_modes(titanium_strip, 9, 48).frequencies_hz[8])
-        if module
-        else closed_forms.frequency_hz(titanium_strip, 9)
-    )
-    with pytest.raises(ResonanceError, match="mode 9"):
-        held(model, titanium_strip, f, "force")
-    here = held(model, titanium_strip, f)
-    beside = [held(model, titanium_strip, f * (1 + s * 1e-6)) for s in (1, -1)]
-    close(here.deflection(X), 0.5 * sum(field.deflection(X) for field in beside), 1e-8)
-    forces, *others = (np.array([phasor(force) for force in field.forces]) for field in (here, *beside))
-    close(forces, 0.5 * sum(others), 1e-6)  # what holds it there
-    assert here.deflection([force.position for force in FORCES]) == pytest.approx(
-        [0.7, 1.3 * np.exp(1j * np.deg2rad(63.0))], rel=1e-8
-    )
-
-
 @pytest.mark.parametrize("model", ["analytic", *SOLVERS])
 def test_a_resonance_of_the_held_beam_is_refused(titanium_strip, model):
     """Found from outside: where the determinant of the receptance changes sign."""
@@ -383,33 +279,6 @@ def test_a_resonance_of_the_held_beam_is_refused(titanium_strip, model):
     assert np.isnan(several[0]).all()
     single = held(model, titanium_strip, 333.0).deflection(X)
     close(0.7 * several[1, 0] + 1.3 * np.exp(1j * np.deg2rad(63.0)) * several[1, 1], single, 1e-8)
-
-
-@pytest.mark.parametrize("model", ["analytic", *SOLVERS])
-def test_a_map_of_displacements_passes_a_resonance_under_forces(titanium_strip, model):
-    """Unit displacements at a frequency where unit forces have no answer: the mean of both sides."""
-    module = {"analytic": analytic_modes, "segment": segment_model, "fem": fem_beam}[model]
-    given, places = () if model == "analytic" else (24,), np.array([0.083, 0.611])
-    f = float(module.solve_modes(titanium_strip, 9, *given).frequencies_hz[8])
-
-    def units(acting, frequencies, x):
-        return module.unit_responses(titanium_strip, acting, frequencies, x, *given)
-
-    assert np.isnan(units(places, np.array([f]), X)).all()
-    here, *sides = held_units(units, places, titanium_strip, f * np.array([1.0, 1.0 + 1e-6, 1.0 - 1e-6]), X)
-    close(here, 0.5 * (sides[0] + sides[1]), 1e-7)
-
-
-def test_one_displacement_alone_is_held_too_and_refused_on_a_support(titanium_strip):
-    def solve(forces, f):
-        return analytic_modes.solve_harmonic(titanium_strip, forces, f)
-
-    one = (PointForce(position=0.3, amplitude=2.5e-6, phase_deg=41.0),)
-    assert driven_field(solve, one, 377.0, "displacement").deflection(0.3)[0] == pytest.approx(
-        2.5e-6 * np.exp(1j * np.deg2rad(41.0))
-    )
-    with pytest.raises(InputError, match="held end"):
-        driven_field(solve, (PointForce(position=0.73),), 377.0, "displacement")
 
 
 @pytest.mark.parametrize("model", SOLVERS)
@@ -451,21 +320,3 @@ def test_damping_that_a_model_cannot_represent_is_refused(titanium_strip):
     clamped = replace(titanium_strip, supports=("clamped", "free"))
     with pytest.raises(InputError, match="couple the modes"):
         segment_model.solve_harmonic(clamped, FORCES, 100.0, 20, modal_damping=0.01, joint_dashpot=0.1)
-
-
-def test_rigid_links_read_at_both_ends_of_the_beam_turn_as_the_end_links_do(titanium_strip):
-    beam = replace(titanium_strip, supports=("free", "pinned"), loss_factor=0.013)
-    nodes = np.linspace(0.0, 0.73, 14)
-    links, raw = (
-        segment_model.solve_harmonic(beam, FORCES, 411.0, 13, load="lever", reading=reading)
-        for reading in ("links", "raw")
-    )
-    joints = raw.deflection(nodes)
-    turns = np.diff(joints) / (0.73 / 13)
-    close(links.slope([0.0, 0.73]), turns[[0, -1]], 1e-12)
-    close(
-        links.slope([nodes[5], 0.41 * nodes[5] + 0.59 * nodes[6]]),
-        np.array([0.5 * (turns[4] + turns[5]), turns[5]]),
-        1e-12,
-    )
-    close(links.deflection(nodes), joints, 1e-12)

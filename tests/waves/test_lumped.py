@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify import Beam, PointForce, PointMass, analytic_modes, segment_model, travelling_wave
-from verify.errors import InputError, StandingError
-from verify.waves.found import TwoWaves, reflections, standing_wave_ratios
+from verify import Beam, PointForce, PointMass, analytic_modes, travelling_wave
+from verify.errors import InputError
 from verify.waves.lumped import TwoModes, local_swr, local_waves
 
 SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
@@ -21,22 +20,6 @@ def test_neighbours_of_a_pinned_beam_have_the_ratio_of_a_tangent(lower, part):
     found = TwoModes(beam=STRIP, modes=(lower, lower + 1)).local_swr(part * STRIP.length)[0]
     half = 0.5 * np.pi * part
     assert found == pytest.approx(max(np.tan(half), 1.0 / np.tan(half)), rel=1e-7)
-
-
-@given(
-    modes=st.tuples(st.integers(1, 40), st.integers(1, 40)).filter(lambda pair: pair[0] != pair[1]),
-    ratio=st.floats(0.1, 9.0),
-    phase=st.floats(-180.0, 180.0),
-    part=st.floats(0.02, 0.98),
-)
-def test_any_two_modes_of_a_pinned_beam_are_two_sines(modes, ratio, phase, part):
-    """Sin(k x) is e^{+ikx} less e^{-ikx} over 2i: amplitudes of either wave add up mode by mode."""
-    x = part * STRIP.length
-    k = np.pi / STRIP.length * np.array(modes)
-    weights = np.array([1.0, ratio * np.exp(1j * np.deg2rad(phase))])
-    sizes = sorted(abs(weights @ np.exp(sign * 1j * k * x)) for sign in (-1, 1))
-    found = reflections(*TwoModes(beam=STRIP, modes=modes, ratio=ratio, phase_deg=phase).local_waves(x))[0]
-    assert found == pytest.approx(sizes[0] / sizes[1], abs=1e-9)
 
 
 def test_it_is_right_at_mid_span_of_the_papers_beam_and_wrong_at_a_quarter():
@@ -78,12 +61,6 @@ def test_local_waves_of_a_field_are_those_that_are_fitted_in_a_window():
     assert (plus, minus) == (pytest.approx(fitted.forward, rel=1e-6), pytest.approx(fitted.backward, rel=1e-6))
 
 
-def test_the_picture_deflects_as_its_modes_do():
-    picture, x = TwoModes(beam=STRIP, modes=(3, 5), ratio=2.0, phase_deg=90.0), [0.1, 0.37]
-    shapes = [analytic_modes.mode_shape(STRIP, mode, x) for mode in (3, 5)]
-    assert picture.deflection(x) == pytest.approx(shapes[0] + 2j * shapes[1], rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -97,25 +74,3 @@ def test_the_picture_deflects_as_its_modes_do():
 def test_what_is_no_picture_is_refused(given, said):
     with pytest.raises(InputError, match=said):
         TwoModes(**({"beam": STRIP} | given))
-
-
-def test_local_waves_are_read_from_the_exact_field_alone():
-    with pytest.raises(InputError, match="model = 'segment': local waves are read from three derivatives"):
-        local_waves(segment_model.solve_harmonic(STRIP, [PointForce(position=0.1)], 900.0, n_segments=30), 0.3)
-    with pytest.raises(InputError, match="lies off the beam"):
-        TwoModes(beam=STRIP).local_swr(0.9)
-
-
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(("short", "ratio"), [(0.0, np.inf), (4e-13, np.inf), (3e-12, 2.0 / 3e-12), (0.75, 5.0 / 3.0)])
-def test_waves_that_are_alike_to_rounding_stand(short, ratio):
-    """Read of a window, along a beam and over a map by one rule: a ratio of 1e13 would be rounding's."""
-    ahead, back = (1.0 - short) * np.exp(0.4j), 1j + 0.0
-    assert standing_wave_ratios(reflections(ahead, back)) == pytest.approx(ratio, rel=1e-3)
-    waves = TwoWaves(wavenumber=31.0 + 0j, forward=ahead, backward=back, residual=0.0)
-    assert waves.standing_wave_ratio == pytest.approx(ratio, rel=1e-3)
-    if ratio == np.inf:
-        with pytest.raises(StandingError, match="carries no power"):
-            waves.check_travelling()
-    else:
-        waves.check_travelling()

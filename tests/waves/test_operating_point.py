@@ -7,15 +7,10 @@ from msgspec.structs import replace
 from verify.beam import PointForce
 from verify.errors import ResonanceError
 from verify.models.catalogue import MODELS
-from verify.quantities.cases import driven_case
-from verify.quantities.catalogue import QUANTITIES
-from verify.quantities.wave_arguments import Fastest
-from verify.scenes.scene import load_scene
 from verify.waves import measures as travelling_wave
-from verify.waves import operating_point
 from verify.waves.case import DrivenCase
 from verify.waves.driven import own_wavenumber
-from verify.waves.operating_point import PHASES_DEG, Landscape, driven_point, fastest_point
+from verify.waves.operating_point import Landscape, driven_point, fastest_point
 
 WINDOW = (0.1825, 0.5475)
 """The middle half of 0.73 m."""
@@ -118,19 +113,6 @@ def test_the_fastest_point_says_whether_it_is_one_or_where_the_search_ends(titan
         assert found.what == "crest speed with a reflection up to 0.1, grows off the search, at its edge"
 
 
-@pytest.mark.parametrize("frequency", [4276.0, 4291.0])
-def test_the_fastest_crests_are_told_with_the_search_that_bounds_them(frequency):
-    """As the figure is largest at the edge of its search, where a report calls nothing best, its words say so."""
-    scene = load_scene("paper-wave", (f"drive.frequency_hz={frequency}",))
-    found = fastest_point(driven_case(Fastest(), scene), 0.1)
-    edge, phases = found.frequency_hz / frequency - 1.0, "phases of {:g} and {:g} degrees".format(*PHASES_DEG)
-    assert found.note
-    told = QUANTITIES["wave.fastest_crests"].summary
-    assert f"within {100.0 * edge:.3g} % of the drive's frequency" in told
-    assert phases in told
-    assert "at the edge of these where it grows beyond" in told
-
-
 @pytest.mark.parametrize("model", ["analytic", "fem", "segment"])
 def test_a_point_that_resonates_or_whose_neighbour_does_says_so(titanium_strip, model):
     """A change is read half a hertz to both sides."""
@@ -152,21 +134,3 @@ def test_a_lead_and_that_lead_less_a_turn_are_one_drive(titanium_strip, lead):
     case = DrivenCase(beam=lossy, model="analytic", count=None, forces=forces, frequency_hz=900.0)
     assert driven_point(case).phase_deg == -90.0
     assert fastest_point(case, 0.9).phase_deg < 0.0
-
-
-@pytest.mark.parametrize(
-    ("lead", "told"),
-    [
-        (75.5, 75.5),
-        (180.0, 180.0),
-        (180.5, -179.5),
-        (-180.0, 180.0),
-        (-180.5, 179.5),
-        (270.0, -90.0),
-        (901.25, -178.75),
-    ],
-)
-def test_a_lead_lies_above_minus_half_a_turn_and_up_to_half_a_turn(titanium_strip, lead, told):
-    forces = PointForce(position=0.041, phase_deg=11.0), PointForce(position=0.673, phase_deg=11.0 + lead)
-    case = DrivenCase(beam=titanium_strip, model="analytic", count=None, forces=forces, frequency_hz=900.0)
-    assert operating_point._between(case) == pytest.approx(told, abs=1e-9)

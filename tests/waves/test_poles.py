@@ -1,16 +1,14 @@
 """Devices and displacements where the bare beam resonates: every model beside its own equations in 40 digits."""
 
-import re
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from msgspec.structs import replace
 
-from verify import Beam, PointForce, PointSpring, analytic_modes, fem_beam, segment_model
+from verify import Beam, PointForce, analytic_modes, fem_beam, segment_model
 from verify.device import Device
 from verify.errors import InputError, ResonanceError
 from verify.models.fields import HarmonicField
@@ -246,83 +244,3 @@ def test_a_node_of_the_resonance_is_refused_for_devices_and_displacements(model)
             driven_field(lambda acting, f: solve(STRIP, acting, f), nothing, hertz, "displacement")
     with pytest.raises(ResonanceError, match=f"mode 7 of the {model} model"):
         field_with_devices(solve, STRIP, [], hertz, [Device(position=0.03, amplitude=1.0)])
-
-
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("part", [4e-10, -3e-10])
-def test_the_frequency_at_which_a_held_beam_resonates_is_told(model, part):
-    """At a node of a mode, where holding changes nothing and a force excites all, and at a place of no mode's node."""
-    place, system = 3 * STRIP.length / 14, MODELS[model][0]
-    around = 1.001 * resonance(model, 1), 0.999 * resonance(model, 2)
-    between = mp.findroot(lambda f: system(f).answer(mpf(place), mpf(place)), around, solver="anderson", tol=1e-40)
-    solve, node = partial(solving(model), STRIP), 2 * STRIP.length / 7
-    for held, hertz in ((node, resonance(model, 7)), (place, float(between))):
-        with pytest.raises(HeldResonanceError) as told:
-            driven_field(solve, [PointForce(position=held)], hertz * (1.0 + part), "displacement")
-        away, at = re.search(r"lies (\S+) \(relative\).* at (\S+) Hz: give", str(told.value)).groups()
-        assert float(away) == pytest.approx(abs(part), rel=0.06)
-        assert float(at) == pytest.approx(hertz, rel=2e-11)
-
-
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("softer", [1e-4, 1e12])
-def test_a_held_resonance_is_refused_of_rubber_as_of_diamond(model, softer):
-    """A thousand metres to the newton, or a nanometre: frequencies go by the root, and nothing else changes."""
-    beam, place, system = replace(STRIP, youngs_modulus=200e9 / softer), 3 * STRIP.length / 14, MODELS[model][0]
-    around = 1.001 * resonance(model, 1), 0.999 * resonance(model, 2)
-    between = mp.findroot(lambda f: system(f).answer(mpf(place), mpf(place)), around, solver="anderson", tol=1e-40)
-    hertz, drive = float(between / mp.sqrt(softer)), [PointForce(position=place)]
-    with pytest.raises(HeldResonanceError, match="from an undamped resonance of the beam held at its actuators"):
-        driven_field(partial(solving(model), beam), drive, hertz, "displacement")
-    beside = driven_field(partial(solving(model), beam), drive, hertz * 1.01, "displacement")
-    assert beside.deflection(place) == pytest.approx(1.0, rel=1e-6)
-
-
-def test_a_resonance_that_a_small_mass_moves_is_refused_where_it_lies():
-    """Dunkerley backwards: 1 = omega^2 m alpha there, and nowhere else."""
-    mass, place = 1e-8, 0.1
-    weight = np.sin(MODE * np.pi * place / STRIP.length) ** 2 / (STRIP.mass_per_length * STRIP.length)
-    free = mpf(resonance("analytic"))
-
-    def left(part):
-        system = Exact(free * (1 + part))
-        return 1 / system.answer(mpf(place), mpf(place)) - system.omega**2 * mpf(mass)
-
-    part = mp.findroot(left, (-0.9 * mass * weight, -1.1 * mass * weight), tol=1e-30)
-    whole = float(free * (1 + part))
-    assert part < -1e-9
-    with pytest.raises(DevicesResonanceError):
-        field_with_devices(
-            solving("analytic"), STRIP, [PointForce(position=0.05)], whole, [Device(position=place, mass=mass)]
-        )
-    for side in (-3e-9, 3e-9, float(-part)):
-        hertz = whole * (1.0 + side)
-        field = field_with_devices(
-            solving("analytic"), STRIP, [PointForce(position=0.05)], hertz, [Device(position=place, mass=mass)]
-        )
-        system, at = Exact(hertz), mpf(place)
-        pull = system.omega**2 * mpf(mass)
-        share = pull * system.answer(at, mpf(0.05)) / (1 - pull * system.answer(at, at))
-        wanted = [
-            complex(system.answer(mpf(float(x)), mpf(0.05)) + share * system.answer(mpf(float(x)), at)) for x in JOINTS
-        ]
-        assert off(field.deflection(JOINTS), np.array(wanted)) < 5e-7
-
-
-def test_two_resonances_at_one_frequency_are_refused_as_the_bare_beams():
-    """Halves that a wall parts resonate alike: a device on one takes nothing off the other."""
-    wall = PointSpring(position=0.25, stiffness=1e14, rotational=1e12)
-    halves = Beam(length=0.5, width=0.012, thickness=0.0015, youngs_modulus=200e9, density=7850.0, spring=(wall,))
-    hertz = float(analytic_modes.solve_modes(halves, 5).frequencies_hz[4])
-    with pytest.raises(ResonanceError, match=r"of mode \d of the analytic model"):
-        field_with_devices(
-            solving("analytic"), halves, [PointForce(position=0.05)], hertz, [Device(position=0.1, dashpot=1.0)]
-        )
-
-
-def test_a_rigid_device_beside_a_soft_one_is_no_resonance():
-    rigid, soft = Device(position=0.1, stiffness=1e15), Device(position=0.17, stiffness=1.0)
-    force, solve = [PointForce(position=0.0099)], solving("analytic")
-    both = field_with_devices(solve, STRIP, force, 3008.0, [rigid, soft]).deflection(JOINTS)
-    alone = field_with_devices(solve, STRIP, force, 3008.0, [rigid]).deflection(JOINTS)
-    assert off(both, alone) < 1e-4

@@ -1,0 +1,233 @@
+"""Beams with masses, springs, axial force and foundation against the textbook's equation of each."""
+
+from itertools import product
+
+import mpmath
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from tests.reference.transfer import has_frequency_within
+from verify.attached import PointMass, PointSpring
+from verify.beam import Beam
+from verify.exact import closed_forms
+from verify.exact.buckling import buckling_load
+from verify.exact.modes import exact_frequency_hz, mode_shape, modes_below
+from verify.options import SUPPORTS
+from verify.section import Section
+
+PAIRS = list(product(SUPPORTS, SUPPORTS))
+BAR = Beam(length=0.61, width=0.023, thickness=0.0047, youngs_modulus=113e9, density=4470.0)
+DIGITS = 1e-13
+"""Relative. Seen: 7e-16 where nothing is ill-conditioned."""
+
+
+def wavenumber_length(beam, hertz):
+    return float(np.sqrt(2 * np.pi * hertz / beam.wave_constant) * beam.length)
+
+
+def hertz_of(beam, y):
+    return float(y) ** 2 * beam.wave_constant / (2 * np.pi * beam.length**2)
+
+
+def solves(equation, beam, mode, theory="euler-bernoulli", rel=DIGITS):
+    """The figure of a mode is a root of an equation in beta L, in extended precision."""
+    found = exact_frequency_hz(beam, mode, theory)
+    with mpmath.workdps(60):
+        start = mpmath.mpf(wavenumber_length(beam, found))
+        root = mpmath.findroot(equation, (start * (1 - mpmath.mpf("1e-8")), start), tol=1e-50, verify=False)
+        assert hertz_of(beam, root) == pytest.approx(found, rel=rel)
+    return wavenumber_length(beam, found)
+
+
+@pytest.mark.parametrize("mode", [1, 2, 3, 7, 19])
+def test_a_cantilever_with_a_tip_mass_that_turns(mode):
+    """1 + c ch + M y (c sh - s ch) - J y^3 (s ch + c sh) + M J y^4 (1 - c ch) = 0 (Laura, J. Sound Vib. 37, 1974)."""
+    m, j = 0.31, 0.0017
+    whole = BAR.mass_per_length * BAR.length
+    tip = PointMass(position=BAR.length, mass=m * whole, rotary_inertia=j * whole * BAR.length**2)
+    beam = replace(BAR, supports=("clamped", "free"), mass=(tip,))
+
+    def equation(y):
+        c, s, ch, sh = mpmath.cos(y), mpmath.sin(y), mpmath.cosh(y), mpmath.sinh(y)
+        turning = -j * y**3 * (s * ch + c * sh) + m * j * y**4 * (1 - c * ch)
+        return 1 + c * ch + m * y * (c * sh - s * ch) + turning
+
+    solves(equation, beam, mode)
+    assert exact_frequency_hz(beam, mode) < exact_frequency_hz(replace(beam, mass=()), mode)
+
+
+@pytest.mark.parametrize("mode", [1, 2, 3, 6, 14])
+def test_a_pinned_beam_with_a_spring_off_its_middle(mode):
+    """1 + k G(a, a) = 0, Green's function by sines and hyperbolic sines."""
+    part, size = 0.37, 830.0
+    stiffness = size * BAR.bending_stiffness / BAR.length**3
+    beam = replace(BAR, spring=(PointSpring(position=part * BAR.length, stiffness=stiffness),))
+    at, size = (mpmath.mpf(v) for v in (beam.spring[0].position / BAR.length, size))
+
+    def equation(y):
+        waves = mpmath.sin(y * at) * mpmath.sin(y * (1 - at)) / mpmath.sin(y)
+        decays = mpmath.sinh(y * at) * mpmath.sinh(y * (1 - at)) / mpmath.sinh(y)
+        return (1 + size * (waves - decays) / (2 * y**3)) * mpmath.sin(y)
+
+    solves(equation, beam, mode)
+
+
+@pytest.mark.parametrize("mode", [1, 2, 3, 4, 9])
+def test_a_free_beam_on_equal_end_springs(mode):
+    """Tan z + tanh z = 2 k / (EI beta^3) of even modes, coth z - cot z of odd ones, z = beta L / 2; rigid ones count."""
+    size = 3.7
+    spring = [
+        PointSpring(position=at, stiffness=size * BAR.bending_stiffness / BAR.length**3) for at in (0.0, BAR.length)
+    ]
+    beam = replace(BAR, supports=("free", "free"), spring=tuple(spring))
+    assert beam.rigid_motions == 0
+
+    def even(y):
+        return mpmath.tan(y / 2) + mpmath.tanh(y / 2) - 2 * size / y**3
+
+    def odd(y):
+        return mpmath.coth(y / 2) - mpmath.cot(y / 2) - 2 * size / y**3
+
+    solves(even if mode % 2 else odd, beam, mode)
+    bare = replace(beam, spring=())
+    if mode < 3:
+        rigid = np.sqrt(2 * beam.spring[0].stiffness / (BAR.mass_per_length * BAR.length) * (1, 3)[mode - 1])
+        assert exact_frequency_hz(beam, mode) == pytest.approx(rigid / (2 * np.pi), rel=0.03)
+    else:
+        assert exact_frequency_hz(beam, mode) > exact_frequency_hz(bare, mode - 2)
+
+
+@pytest.mark.parametrize("supports", PAIRS, ids="-".join)
+def test_a_foundation_shifts_every_square_by_its_own(supports):
+    """omega^2 = omega_0^2 + k_f / (rho A), rigid motions included: the first two of a free beam coincide."""
+    bare = replace(BAR, supports=supports)
+    beam = replace(bare, foundation=2.3e5)
+    own = beam.foundation / beam.mass_per_length / (2 * np.pi) ** 2
+    for mode in (1, 2, 3, 8):
+        elastic = mode - bare.rigid_motions
+        square = own + (closed_forms.frequency_hz(bare, elastic) ** 2 if elastic > 0 else 0.0)
+        assert exact_frequency_hz(beam, mode) == pytest.approx(np.sqrt(square), rel=DIGITS)
+
+
+@pytest.mark.parametrize("mode", [1, 2, 5, 21])
+@pytest.mark.parametrize("pull", [-0.999, -0.6, 0.01, 7.0, 1e3, 1e5])
+def test_a_pinned_beam_under_axial_force(pull, mode):
+    """omega^2 = (EI b^4 + T b^2) / rho A. At 0.999 of the buckling load 1000 eps of the force are in mode 1."""
+    force = pull * np.pi**2 * BAR.bending_stiffness / BAR.length**2
+    beam = replace(BAR, tension=force)
+    b2 = (mode * np.pi / BAR.length) ** 2
+    omega = np.sqrt((BAR.bending_stiffness * b2 + force) * b2 / BAR.mass_per_length)
+    loss = 1e3 if pull == -0.999 and mode == 1 else 1.0
+    assert exact_frequency_hz(beam, mode) == pytest.approx(omega / (2 * np.pi), rel=DIGITS * loss)
+
+
+@pytest.mark.parametrize("mode", [1, 2, 3, 11])
+@pytest.mark.parametrize("pull", [-3.9, 5.0, 2e3])
+def test_a_clamped_beam_under_axial_force(pull, mode):
+    """2 a g (1 - cosh a cos g) + (a^2 - g^2) sinh a sin g = 0, a^2 - g^2 = T L^2 / EI (Bokaian, J. Sound Vib. 142, 1990)."""
+    t = pull * np.pi**2
+    force = t * BAR.bending_stiffness / BAR.length**2
+    beam = replace(BAR, supports=("clamped", "clamped"), tension=force)
+
+    def equation(y):
+        half = mpmath.mpf(beam.tension) * BAR.length**2 / BAR.bending_stiffness / 2
+        root = mpmath.sqrt(half**2 + y**4)
+        a, g = mpmath.sqrt(root + half), mpmath.sqrt(root - half)
+        waves = (a**2 - g**2) * mpmath.tanh(a) * mpmath.sin(g)
+        return 2 * a * g * (1 / mpmath.cosh(a) - mpmath.cos(g)) + waves
+
+    solves(equation, beam, mode)
+
+
+def test_a_beam_pulled_very_hard_is_a_string_with_stiff_ends():
+    """omega_n = n pi c / L (1 + 2 e + (4 + n^2 pi^2 / 2) e^2), e^2 = EI / (T L^2) (Morse, Vibration and Sound, 1948)."""
+    e = 1e-3
+    force = BAR.bending_stiffness / (e * BAR.length) ** 2
+    beam = replace(BAR, supports=("clamped", "clamped"), tension=force)
+    for n in (1, 2, 3):
+        string = n / (2 * BAR.length) * np.sqrt(force / BAR.mass_per_length)
+        expected = string * (1 + 2 * e + (4 + n**2 * np.pi**2 / 2) * e**2)
+        assert exact_frequency_hz(beam, n) == pytest.approx(expected, rel=3e-7)
+
+
+STEPPED = replace(
+    BAR,
+    thickness=0.031,
+    supports=("clamped", "free"),
+    section=(
+        Section(length=0.2),
+        Section(length=0.17, thickness=0.017, density=2700.0),
+        Section(length=0.24, youngs_modulus=70e9),
+    ),
+    mass=(
+        PointMass(position=0.29, mass=0.3, rotary_inertia=2e-4),
+        PointMass(position=0.61, mass=0.11),
+        PointMass(position=0.2, mass=0.02, rotary_inertia=1e-5),
+    ),
+    spring=(PointSpring(position=0.11, stiffness=2e6, rotational=700.0), PointSpring(position=0.37, rotational=2e3)),
+    foundation=3.1e6,
+)
+
+
+def test_stiff_springs_at_a_free_end_become_the_support():
+    """As 1 / k, for all ways in which an end can be held."""
+    held = {"pinned": (1.0, 0.0), "clamped": (1.0, 1.0), "guided": (0.0, 1.0)}
+    sizes = BAR.bending_stiffness / BAR.length**3, BAR.bending_stiffness / BAR.length
+    for support, (along, around) in held.items():
+        exact = exact_frequency_hz(replace(BAR, supports=(support, "free")), 3)
+        errors = []
+        for k in (1e6, 1e8):
+            spring = PointSpring(position=0.0, stiffness=k * along * sizes[0], rotational=k * around * sizes[1])
+            beam = replace(BAR, supports=("free", "free"), spring=(spring,))
+            free = beam.rigid_motions - replace(BAR, supports=(support, "free")).rigid_motions
+            errors.append(1 - exact_frequency_hz(beam, 3 - free) / exact)
+        assert errors[0] > 0
+        assert errors[0] / errors[1] == pytest.approx(100.0, rel=0.01)
+
+
+def test_a_mass_at_a_point_is_a_heavy_short_section_in_the_limit():
+    heavy = PointMass(position=0.25, mass=0.2)
+    exact = exact_frequency_hz(replace(BAR, supports=("clamped", "pinned"), mass=(heavy,)), 2)
+    errors = []
+    for width in (1e-3, 5e-4):
+        dense = BAR.density + heavy.mass / (width * BAR.width * BAR.thickness)
+        parts = (
+            Section(length=0.25 - width / 2),
+            Section(length=width, density=dense),
+            Section(length=BAR.length - 0.25 - width / 2),
+        )
+        beam = replace(BAR, supports=("clamped", "pinned"), section=parts)
+        errors.append(exact_frequency_hz(beam, 2) / exact - 1)
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
+
+
+def test_the_frequency_of_a_compressed_beam_vanishes_as_it_buckles():
+    """omega^2 goes as 1 - P / P_c: by a mean value, linear to first order in what is left of the load."""
+    beam = replace(BAR, supports=("clamped", "pinned"))
+    load = buckling_load(beam)
+    squares = [exact_frequency_hz(replace(beam, tension=-load * (1 - part)), 1) ** 2 for part in (1e-3, 1e-4)]
+    assert squares[0] / squares[1] == pytest.approx(10.0, rel=1e-3)
+    nearly = replace(beam, tension=-0.999 * load)
+    assert has_frequency_within(nearly, "euler-bernoulli", exact_frequency_hz(nearly, 1), 2e-13)
+
+
+def test_a_count_rises_by_one_at_every_frequency():
+    beam = replace(STEPPED, supports=("clamped", "free"))
+    for theory in ("euler-bernoulli", "rayleigh", "timoshenko"):
+        for mode in range(1, 30):
+            y = wavenumber_length(beam, exact_frequency_hz(beam, mode, theory))
+            assert modes_below(beam, y * (1 - 1e-12), theory) == mode - 1
+            assert modes_below(beam, y * (1 + 1e-12), theory) == mode
+
+
+def test_two_rigid_motions_of_one_frequency_have_two_shapes():
+    beam = replace(BAR, supports=("free", "free"), foundation=2.3e5)
+    x = np.linspace(0.0, BAR.length, 25)
+    plane = np.array([mode_shape(beam, mode, x) for mode in (1, 2)])
+    assert abs(np.diff(plane, 2)).max() < 1e-13 * abs(plane).max()
+    points, weights = np.polynomial.legendre.leggauss(3)
+    at = BAR.length * (points + 1) / 2
+    shapes = np.array([mode_shape(beam, mode, at) for mode in (1, 2)])
+    mass = shapes * (weights * BAR.mass_per_length * BAR.length / 2) @ shapes.T
+    assert mass == pytest.approx(np.eye(2), abs=1e-12)
