@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from verify.units import unit_over
 
@@ -107,9 +107,8 @@ class Table:
         for block in blocks:
             grid = RichTable(title=self.title or None, title_justify="left", box=None, pad_edge=False)
             for i in block:
-                grid.add_column(
-                    headings[i], justify="left" if words[i] else "right", no_wrap=not words[i], overflow="fold"
-                )
+                side: Literal["left", "right"] = "left" if words[i] else "right"
+                grid.add_column(headings[i], justify=side, min_width=least[i] - 2, overflow="fold")
             for row in rows:
                 grid.add_row(*(row[i] for i in block))
             console.print(grid)
