@@ -106,9 +106,11 @@ class Table:
             blocks[-1].append(i)
         for block in blocks:
             grid = RichTable(title=self.title or None, title_justify="left", box=None, pad_edge=False)
+            tight = sum(max(len(headings[i]), widths[i]) + 2 for i in block) > console.width + 2
             for i in block:
                 side: Literal["left", "right"] = "left" if words[i] else "right"
-                grid.add_column(headings[i], justify=side, min_width=least[i] - 2, overflow="fold")
+                width = least[i] - 2 if tight and not words[i] else None  # rich shrinks numbers before text
+                grid.add_column(headings[i], justify=side, width=width, overflow="fold")
             for row in rows:
                 grid.add_row(*(row[i] for i in block))
             console.print(grid)
