@@ -140,7 +140,7 @@ def _forces(
     scene: Scene, what: str, amplitude: float | None = None, soft_start: float | None = None
 ) -> "tuple[Sequence[PointForce], float]":
     """(forces, Hz) of a chain from rest. Raises InputError without forces, or for a [motion] of another kind."""
-    from verify.motion.starting import soft_start as default_soft_start
+    from verify.motion.request import soft_start as default_soft_start
 
     if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
         raise InputError(f"drive is missing: {what} takes a [drive] of kind force")

@@ -82,7 +82,7 @@ def changed_slider(slider: Slider, given: dict[str, Any]) -> Slider:
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
-    from verify.motion.starting import soft_start
+    from verify.motion.request import soft_start
 
     motion, soft = scene.motion, by.soft_start_periods
     time = by.time if by.time is not None or motion is None else motion.duration
@@ -136,8 +136,8 @@ def slider_run(
     **more: Any,
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
-    from verify.motion.judged_step import KNOWN
     from verify.motion.request import STEPS_PER_PERIOD
+    from verify.motion.step_control import KNOWN
 
     arguments = motion_arguments(scene, by)
     if reversed_phases:
@@ -285,8 +285,7 @@ def coupling_size(
 ) -> float:
     """Reaction of the slider on the steady beam relative to the wave: size of the two-way coupling."""
     from verify.beam import PointForce
-    from verify.motion.contact import coupling_of, surface_speed
-    from verify.motion.turning import couple, turned_by
+    from verify.motion.contact import couple, coupling_of, surface_speed, turned_by
 
     opt.check_count(model, count)
     opt.check_forces(scene, "a slider's beam")

@@ -49,9 +49,11 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raise InputError for an unknown quantity, scene key or argument, and for an empty list."""
         _combinations(self.over)
         wanted = _quantities(self.quantities)
+        others = {name: one for name, one in scene.studies.items() if name != "sweep"}
+        bare = replace(scene, studies=others, gate=())  # a copy with this sweep would check itself
         for key in _keys(self.over):
             if "." in key:
-                _with_value(scene, key.split("."), key)
+                _with_value(bare, key.split("."), key)
         known = {argument.name for one in wanted for argument in one.arguments}
         for name in [*self.arguments, *(key for key in _keys(self.over) if "." not in key)]:
             if name not in known:
