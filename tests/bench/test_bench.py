@@ -106,7 +106,7 @@ def test_walls_are_methods_on_a_clamped_beam():
     orders = {row.method: row.order for row in measure(question, limit=0.5) if row.size == 100}
     assert 1.95 < orders["segments, welded wall"] < 2.05
     assert 2.9 < orders["segments, third-order wall"] < 3.1
-    assert 3.9 < orders["segments"] < 4.1
+    assert 3.9 < orders["elements"] < 4.1
     assert exact_frequency_hz(beam, 2) == pytest.approx(20.47, rel=0.01)
 
 

@@ -111,13 +111,13 @@ def check(
     models: Mapping[str, str] | None = None,
     **more: Any,
 ) -> Callable[[Error], Error]:
-    """Register an error function, whose docstring is the title; `more` are fields of `Check`.
+    """Register an error function, whose docstring is the title unless given; `more` are fields of `Check`.
 
     With `models` (name: word of the id) one check for each, of `error(model, value)` and a baseline likewise.
     """
 
     def register(error: Error) -> Error:
-        title = (error.__doc__ or "").splitlines()[0].rstrip(".")
+        title = more.pop("title", (error.__doc__ or "").partition("\n")[0].rstrip("."))
         for model, word in (models or {"": ""}).items():
             name, of, own = f"{id}-{word}".rstrip("-"), error, dict(more)
             if model:

@@ -264,11 +264,12 @@ for _id, _kind, _mode, _unit, _beyond in (
     ("tip-mass-mode-2", "mass", 2, "m / (rho A L)", ()),
     ("tip-spring", "spring", 2, "k L^3 / EI", FAR),
 ):
-    _lapack = lapack(lambda ratio, kind=_kind: with_tip(kind, ratio)[1], _mode)  # type: ignore[misc]
+    _more = {"baseline": lapack(lambda ratio, kind=_kind: with_tip(kind, ratio)[1], _mode), "beyond": _beyond}  # type: ignore[misc]
+    _title = f"Mode {_mode} of a cantilever of elements with a tip {_kind}"
 
-    @check(_id, _unit, DECADES, 1e-12, models={"fem": ""}, beyond=_beyond, baseline=_lapack)
+    @check(_id, _unit, DECADES, 1e-12, models={"fem": ""}, title=_title, **_more)
     def tip(model: str, ratio: float, kind: str = _kind, mode: int = _mode) -> float:
-        """Modes of a cantilever of elements with a tip mass (mode 1 or 2) or a tip spring (mode 2)."""
+        """Against the model's own matrices."""
         return own_error(model, *with_tip(kind, ratio), mode)
 
 
