@@ -21,12 +21,10 @@ What there is (`help` of each says its fields, shapes and units; everything is S
 The command line is `verify --help`.
 """
 
-TYPE_CHECKING = (
-    False  # `typing` takes longer than all of this, and an interrupt while it is read finds nobody to answer
-)
-if TYPE_CHECKING:
-    from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
+if TYPE_CHECKING:
     from verify import analytic_modes, fem_beam, segment_model, travelling_wave
     from verify.attached import PointMass, PointSpring
     from verify.beam import Beam, PointForce
@@ -41,8 +39,8 @@ if TYPE_CHECKING:
     from verify.motion.simulate import simulate
     from verify.motor.result import MotorRun
     from verify.motor.run import run_motor, run_motors
-    from verify.run.runner import run_scene
-    from verify.scenes.scene import load_scene
+    from verify.scene.load import load_scene
+    from verify.scene.run import run_scene
     from verify.section import Section
     from verify.slider import Contact, Foot, Slider
     from verify.waves.found import WaveMeasures
@@ -81,47 +79,37 @@ __all__ = [
 ]
 __version__ = "0.1.0"
 
-_HOME = {
-    "Beam": "verify.beam",
-    "Bent": "verify.chain.bending",
-    "Contact": "verify.slider",
-    "Device": "verify.device",
-    "Foot": "verify.slider",
-    "FreeVibration": "verify.motion.free_vibration",
-    "HarmonicField": "verify.models.fields",
-    "HarmonicSweep": "verify.models.sweeps",
-    "InputError": "verify.errors",
-    "Modes": "verify.models.modes",
-    "Motion": "verify.motion.result",
-    "MotorRun": "verify.motor.result",
-    "PointForce": "verify.beam",
-    "PointMass": "verify.attached",
-    "PointSpring": "verify.attached",
-    "Section": "verify.section",
-    "Slider": "verify.slider",
-    "WaveMeasures": "verify.waves.found",
-    "bend": "verify.chain.bending",
-    "free_vibration": "verify.motion.free_vibration",
-    "load_scene": "verify.scenes.scene",
-    "run_motor": "verify.motor.run",
-    "run_motors": "verify.motor.run",
-    "run_scene": "verify.run.runner",
+_HOMES = {
+    "verify": ("analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"),
+    "verify.attached": ("PointMass", "PointSpring"),
+    "verify.beam": ("Beam", "PointForce"),
+    "verify.chain.bending": ("Bent", "bend"),
+    "verify.device": ("Device",),
+    "verify.errors": ("InputError",),
+    "verify.models.fields": ("HarmonicField",),
+    "verify.models.modes": ("Modes",),
+    "verify.models.sweeps": ("HarmonicSweep",),
+    "verify.motion.free_vibration": ("FreeVibration", "free_vibration"),
+    "verify.motion.result": ("Motion",),
+    "verify.motor.result": ("MotorRun",),
+    "verify.motor.run": ("run_motor", "run_motors"),
+    "verify.scene.load": ("load_scene",),
+    "verify.scene.run": ("run_scene",),
+    "verify.section": ("Section",),
+    "verify.slider": ("Contact", "Foot", "Slider"),
+    "verify.waves.found": ("WaveMeasures",),
 }
-_FACES = {"analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"}
-"""Modules below this one; `simulate` is also the verb, since it can be called."""
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 
-def __getattr__(name: str) -> "Any":
-    """Import a public name from its home when it is first asked for, so that `import verify` costs nothing."""
-    from importlib import import_module
-
-    if name in _FACES:
-        return import_module(f"verify.{name}")
+def __getattr__(name: str) -> Any:
+    """Import a public name at its first use; `simulate` is a module that can be called."""
     if name not in _HOME:
         raise AttributeError(f"module 'verify' has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    home = _HOME[name]
+    return import_module(f"verify.{name}") if home == "verify" else getattr(import_module(home), name)
 
 
 def __dir__() -> list[str]:
-    """What there is, imported or not."""
+    """All public names, imported or not."""
     return sorted(__all__)

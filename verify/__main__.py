@@ -1,20 +1,16 @@
-"""`verify` and `python -m verify`: an interrupt is answered from the first import on."""
+"""`verify` and `python -m verify`."""
 
 import sys
 
-TYPE_CHECKING = False  # as in the package
-if TYPE_CHECKING:
-    from typing import NoReturn
 
-
-def main() -> "NoReturn":
-    """Run the command line; end quietly where it is interrupted before it is ready to answer."""
+def main() -> None:
+    """Run the command line. An interrupt during the imports ends like a later one."""
     try:
         from verify.cli import main as run
 
         run()
     except KeyboardInterrupt:
-        sys.stderr.write("verify: interrupted; nothing half-written is left\n")
+        sys.stderr.write("verify: interrupted\n")
         sys.exit(130)
 
 

@@ -2,17 +2,17 @@
 
 from verify.exact.buckling import buckling_load
 from verify.exact.closed_forms import frequency_hz as closed_form
-from verify.exact.harmonic import solve_harmonic, unit_responses
+from verify.exact.harmonic import solve_harmonic, sweep_harmonic, unit_responses
 from verify.exact.in_time import time_basis
 from verify.exact.modes import (
     exact_frequency_hz,
     mode_shape,
     mode_shapes,
-    modes_below,
     solve_modes,
     stepped_frequency_hz,
+    sweep_modes,
 )
-from verify.exact.sweeps import sweep_harmonic, sweep_modes
+from verify.exact.roots import modes_below
 from verify.models.places import as_typed
 
 __all__ = [

@@ -1,19 +1,20 @@
-"""What stands on a beam at a place: point masses and springs. Data, no numerics."""
+"""Point masses and point springs on a beam. Values, no numerics."""
+
+import msgspec
 
 from verify.checks import check_number, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 
 
-class PointMass(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A rigid body fixed to the beam at a point. Raises InputError where a value is none, or all are zero."""
+class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A rigid body fixed to the beam at a point. Raises InputError for an invalid value, or where all are zero."""
 
     position: float
-    """x of its fixing, metres from the left end."""
+    """x of its fixing, m from the left end."""
     mass: float = 0.0
-    """Kilograms."""
+    """kg."""
     rotary_inertia: float = 0.0
-    """About the point where it is fixed, kg m^2; it turns as the beam does there."""
+    """About the fixing, kg m^2; it rotates with the slope of the beam."""
 
     def __post_init__(self) -> None:
         settle(self)
@@ -24,15 +25,15 @@ class PointMass(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError(f"beam.mass at position = {self.position!r} weighs nothing: give mass or rotary_inertia")
 
 
-class PointSpring(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A spring from the beam to the ground at a point. Raises InputError where a value is none, or all are zero."""
+class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A spring from the beam to the ground at a point. Raises InputError for an invalid value, or all zero."""
 
     position: float
-    """x, metres from the left end."""
+    """x, m from the left end."""
     stiffness: float = 0.0
-    """Against deflection, N/m."""
+    """Stiffness against deflection, N/m."""
     rotational: float = 0.0
-    """Against turning, N m/rad."""
+    """Stiffness against rotation, N m/rad."""
 
     def __post_init__(self) -> None:
         settle(self)

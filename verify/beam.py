@@ -1,4 +1,4 @@
-"""What a beam is: geometry, material, supports, what stands on it and the forces on it. Data, no numerics."""
+"""The beam: geometry, material, supports, attached masses and springs, point forces. Values, no numerics."""
 
 from functools import lru_cache
 from math import pi, sqrt
@@ -9,49 +9,48 @@ import msgspec
 from verify.attached import PointMass, PointSpring
 from verify.checks import Relative, check_number, settle
 from verify.errors import InputError, near_name, written
-from verify.field_docs import Value
 from verify.options import SUPPORTS, Support
 from verify.section import Piece, Section, Sizes, check_decades, check_used, merged, piece_of, shear_coefficient
 
 SHORTEST_SECTION = 1e-6
-"""Of the beam's length."""
+"""Relative to the beam's length."""
 CONTRAST = 1e15
-"""Of EI / l^3 between two sections: beyond it the softer one is lost in the rounding of the stiffer one."""
+"""Ratio of EI / l^3 between two sections beyond which the softer one is lost in rounding."""
 MOST_WAVES = 1e6
-"""Along a beam, from end to end: more take too many points, and their phase loses its digits."""
+"""Wavelengths along a beam: more take too many points, and their phase loses its digits."""
 KEPT = 4096
-"""Beams whose pieces are kept, about a kilobyte each: they take as long to make as all the rest of one in a sweep."""
+"""Beams whose pieces are cached, about a kilobyte each."""
 _HOLDS = {"pinned": (True, False), "clamped": (True, True), "guided": (False, True), "free": (False, False)}
 """Whether a support holds deflection and slope."""
 
 
 class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A straight beam, uniform or stepped, vibrating across its thickness, with what stands on it.
+    """A straight beam, uniform or stepped, vibrating across its thickness, with attached masses and springs.
 
-    Its section is a shape with its sizes, E and rho, or plainly `bending_stiffness` and `mass_per_length`; those two
-    are known of every beam. All values are SI. Raises InputError where a size is not a finite positive number, where
-    what makes a section is missing or contradicts itself, a support is unknown, or something stands off the beam.
+    The section is given by shape, sizes, E and rho, or by `bending_stiffness` and `mass_per_length`, which are defined
+    for every beam. SI units. Raises InputError for a size that is not finite and positive, an incomplete or
+    contradictory section, an unknown support, and an attachment off the beam.
     """
 
     length: float
-    """L, metres."""
+    """L, m."""
     supports: tuple[Support, Support] = ("pinned", "pinned")
     """Left (x = 0) and right (x = L) end: pinned, clamped, free or guided."""
     poissons_ratio: float = 0.33
-    """nu; used by Timoshenko's theory and a plate's alone."""
+    """nu, for Timoshenko theory and plate theory only."""
     loss_factor: Relative = 0.0
-    """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2, times
-    the share of bending and shear in the mode's stiffness where springs, ground or an axial force resist as well."""
+    """eta of the harmonic field, E (1 + i eta). At a resonance it equals a modal damping ratio eta/2, times the share
+    of bending and shear in the mode's stiffness where springs, a foundation or an axial force contribute."""
     section: tuple[Section, ...] = ()
-    """Pieces from left to right where the beam is stepped; their lengths add up to `length`."""
+    """Sections of a stepped beam from left to right; their lengths add up to `length`."""
     mass: tuple[PointMass, ...] = ()
-    """Rigid bodies fixed to it."""
+    """Attached rigid bodies."""
     spring: tuple[PointSpring, ...] = ()
-    """Springs from it to the ground."""
+    """Springs to the ground."""
     tension: float = 0.0
-    """Axial force, newton, along the undeformed beam; negative is compression."""
+    """Axial force, N, along the undeformed beam; negative is compression."""
     foundation: float = 0.0
-    """Stiffness of the ground below, N/m^2 (N/m of deflection on every metre)."""
+    """Stiffness of a Winkler foundation, N/m^2 (N/m per metre of beam)."""
 
     def __post_init__(self) -> None:
         settle(self, "beam", section=Section, mass=PointMass, spring=PointSpring)
@@ -64,7 +63,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self._check_supports()
         check_decades(self, self.length, "beam")
         self._check_sections()
-        if not self.section:  # which take from it what they leave out
+        if not self.section:  # sections inherit what they leave out
             check_used(self, "beam")
         self._check_attached()
 
@@ -99,7 +98,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
             )
 
     def _check_attached(self) -> None:
-        """Raise InputError for what stands off the beam, and for what a support holds so that it does nothing."""
+        """Raise InputError for an attachment off the beam, and for one without effect at a support."""
         acts = [
             (f"beam.mass[{i}]", m.position, ("mass", "rotary_inertia"), (m.mass, m.rotary_inertia))
             for i, m in enumerate(self.mass)
@@ -117,13 +116,13 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 for field, value, held in zip(fields, values, _HOLDS[support], strict=True):
                     if value and held and position == at:
                         raise InputError(
-                            f"{where}.{field} = {value!r} stands at a {support} end, which holds it so that it would "
-                            "do nothing: leave it out, or choose another support"
+                            f"{where}.{field} = {value!r} would do nothing at a {support} end: leave it out, "
+                            "or choose another support"
                         )
 
     @property
     def own(self) -> Piece:
-        """The beam's own section over all its length, where no piece says otherwise."""
+        """The beam's own section over its whole length."""
         return _own(self)
 
     @property
@@ -133,17 +132,17 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property  # type: ignore[misc]
     def bending_stiffness(self) -> float:
-        """EI, N m^2, where no section says otherwise: as it is given, or as the shape makes it."""
+        """EI of the beam's own section, N m^2: as given, or from the shape."""
         return self.own.bending_stiffness
 
     @property  # type: ignore[misc]
     def mass_per_length(self) -> float:
-        """Rho A, kg/m, likewise."""
+        """Rho A of the beam's own section, kg/m."""
         return self.own.mass_per_length
 
     @property  # type: ignore[misc]
     def shear_coefficient(self) -> float:
-        """Kappa of Timoshenko's theory, likewise."""
+        """Kappa of Timoshenko theory of the beam's own section."""
         return shear_coefficient(self, self.poissons_ratio)
 
     @property
@@ -154,7 +153,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def added(self) -> tuple[str, ...]:
-        """What there is beside one section between two supports, by the names of the fields."""
+        """Names of the fields that a uniform beam between two supports does not have."""
         there = {
             "section": self.stepped,
             "mass": self.mass,
@@ -166,23 +165,23 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def uniform(self) -> bool:
-        """Whether it has one section and nothing on it: what closed forms are of."""
+        """Whether it has one section and no attachments, as closed forms assume."""
         return not self.added
 
     @property
     def lossless(self) -> tuple[str, ...]:
-        """What resists beside its own bending and shear, and has no loss, by the names of the fields."""
+        """Names of the fields with stiffness and no loss factor: springs, tension, foundation."""
         return tuple(name for name in self.added if name in ("spring", "tension", "foundation"))
 
     def check_added(self, who: str, takes: tuple[str, ...] = (), instead: str = "ask for something else") -> None:
-        """Raise InputError for what `who` does not take: whatever is added beside `takes`."""
+        """Raise InputError for added fields that `who` does not model, those in `takes` excepted."""
         for name in self.added:
             if name not in takes:
                 raise InputError(f"beam.{name}: {who} takes none, leave it out or {instead}")
 
     @property
     def rigid_lines(self) -> tuple[tuple[float, float], ...]:
-        """The rigid motions w = a + b x that nothing resists, as (a, b) with x in metres: none, one or two."""
+        """Rigid motions w = a + b x without stiffness, as (a, b) with x in m: none, one or two."""
         ends = zip((0.0, self.length), self.supports, strict=True)
         places = {at for at, support in ends if _HOLDS[support][0]}
         places |= {spring.position for spring in self.spring if spring.stiffness}
@@ -196,11 +195,11 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def rigid_motions(self) -> int:
-        """How many rigid motions supports and springs leave: 0, 1 or 2."""
+        """Number of rigid motions: 0, 1 or 2."""
         return len(self.rigid_lines)
 
     def mirrored(self) -> "Beam":
-        """The same beam seen from the other side."""
+        """The mirror image of the beam."""
         left, right = self.supports
 
         def turned(one: Any) -> Any:
@@ -216,7 +215,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def surface_distance(self) -> float:
-        """From the neutral line to the surface of the beam's own section, metres. Raises InputError where not known."""
+        """From the neutral line to the surface of the beam's own section, m. Raises InputError where unknown."""
         distance = self.own.extreme_fibre
         if distance is None:
             raise InputError(
@@ -227,12 +226,12 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def area(self) -> float:
-        """A, square metres, where no section says otherwise. Raises InputError where it is not known."""
+        """A of the beam's own section, m^2. Raises InputError where unknown."""
         return self._of_shape(self.own.area)
 
     @property
     def second_moment(self) -> float:
-        """I, metres to the fourth, likewise."""
+        """I of the beam's own section, m^4. Raises InputError where unknown."""
         return self._of_shape(self.own.second_moment)
 
     def _of_shape(self, value: float | None) -> float:
@@ -242,7 +241,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def wave_constant(self) -> float:
-        """Sqrt(EI / (rho A)), m^2/s: omega = beta^2 times this, where no section says otherwise."""
+        """sqrt(EI / (rho A)) of the beam's own section, m^2/s: omega = beta^2 times this."""
         made = (self.youngs_modulus, self.density, self.thickness)
         if None not in made and self.shape in (None, "rectangle"):
             modulus, density, thickness = made
@@ -267,29 +266,29 @@ def _pieces(beam: Beam) -> tuple[Piece, ...]:
 
 
 def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
-    """Raise InputError unless a frequency is positive and its waves on the beam are long enough to be followed."""
+    """Raise InputError unless a frequency is positive and its wavelength is not too short for the beam."""
     check_number(field, frequency_hz, "hertz", above=0)
     waves = sqrt(frequency_hz) / sqrt(2.0 * pi * beam.wave_constant) * beam.length
     if waves > MOST_WAVES:
         raise InputError(
-            f"{field} = {frequency_hz!r} Hz bends this beam in {waves:.1e} waves from end to end, more than "
+            f"{field} = {frequency_hz!r} Hz has {waves:.1e} wavelengths along this beam, more than "
             f"{MOST_WAVES:g}: lower it or check the beam's units"
         )
 
 
-class PointForce(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A transverse harmonic point force, amplitude cos(omega t + phase).
 
-    Raises InputError where a value is not finite or the position is negative; whether the position lies on a
-    beam is checked where force and beam meet.
+    Raises InputError where a value is not finite or the position is negative; a position off the beam is refused by
+    the functions that take both.
     """
 
     position: float
-    """x, metres from the left end."""
+    """x, m from the left end."""
     amplitude: float = 1.0
-    """Newton."""
+    """N."""
     phase_deg: float = 0.0
-    """Degrees, leading (e^{+i omega t})."""
+    """Phase, degrees (e^{+i omega t})."""
 
     def __post_init__(self) -> None:
         settle(self)

@@ -1,4 +1,4 @@
-"""What a single number has to be, whichever value it belongs to: one sentence naming field, value and remedy."""
+"""Checks of single values, each with one sentence: field, value, remedy."""
 
 from functools import cache
 from math import inf
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 
 LARGEST = float_info.max
 MOST_PARTS = 10**100
-"""Its cube, by which work is estimated, is a number too."""
+"""Its cube, by which memory is estimated, is finite."""
 MOST_DASHPOT = 1e100
-"""N m s: what it is multiplied by makes a number of it too."""
+"""N m s; products with it are finite."""
 RELATIVE = "relative"
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
-"""A number without a unit, which a command line takes in per cent as well: 0.001 or 0.1%."""
+"""A dimensionless number, which a command line accepts in per cent as well: 0.001 or 0.1%."""
 Kind = TypeVar("Kind")
-_SETTLED = (float, int, str, tuple, type(None))
+_NATIVE = (float, int, str, tuple, type(None))
 
 
 def plain(value: Any, field: str = "a value") -> Any:
-    """A scalar of numpy's as Python's own number, whose arithmetic neither rounds to 32 bits nor overflows.
+    """A numpy scalar as Python's own number, whose arithmetic is in double precision; whole numbers by `__index__`.
 
-    What Python takes for a whole number, by `__index__` alone, likewise. Raises InputError for numbers under a mask.
+    Raises InputError for masked values.
     """
     if hasattr(value, "dtype"):
         if hasattr(value, "mask"):
@@ -44,22 +44,19 @@ def plain(value: Any, field: str = "a value") -> Any:
 
 
 def check_unmasked(field: str, value: object, unit: str = "") -> None:
-    """Raise InputError for numbers under a numpy mask, in lists too.
-
-    `numpy.ma` is not loaded for it: who holds a masked array has done so.
-    """
-    if (core := modules.get("numpy.ma.core")) is not None and _hides(value, core.MaskedArray):
-        wanted = f"leave them out or unmask them{unit and f' ({unit})'}"
-        raise InputError(f"{field} = {shown(value)} has numbers under a mask: {wanted}")
+    """Raise InputError for masked numpy values, in lists too. Does not import `numpy.ma`."""
+    if (core := modules.get("numpy.ma.core")) is not None and _masked(value, core.MaskedArray):
+        remedy = f"leave them out or unmask them{unit and f' ({unit})'}"
+        raise InputError(f"{field} = {shown(value)} has numbers under a mask: {remedy}")
 
 
-def _hides(value: object, masked: Any) -> bool:
-    """Whether something, or what lists and tuples in it hold, is of the type `masked` with a mask that hides some."""
+def _masked(value: object, masked: Any) -> bool:
+    """Whether an array, or one in nested lists and tuples, has a mask that hides something."""
     left, seen = [value], set()
     while left:
         one: Any = left.pop()
         if isinstance(one, masked):
-            if any(one.mask.tobytes()):  # of fields too
+            if any(one.mask.tobytes()):  # of structured types too
                 return True
         elif isinstance(one, list | tuple) and id(one) not in seen:
             seen.add(id(one))
@@ -68,13 +65,13 @@ def _hides(value: object, masked: Any) -> bool:
 
 
 def check_sizes(field: str, sizes: "Sequence[float]") -> None:
-    """Raise InputError for sizes through which no order is observed: three or more, no two alike."""
+    """Raise InputError unless there are three or more different sizes, which an observed order needs."""
     if len(sizes) < 3 or len(set(sizes)) != len(sizes):
         raise InputError(f"{field} = {list(sizes)}: an observed order needs three or more different sizes")
 
 
 def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
-    """One of a kind, or many of them, as a tuple. Raises InputError, naming the field, for anything else."""
+    """One value of a type, or many, as a tuple. Raises InputError for anything else."""
     one = isinstance(given, kind) or not hasattr(given, "__iter__") or getattr(given, "shape", None) == ()
     found = (given,) if one else tuple(given)
     for each in found:
@@ -84,49 +81,41 @@ def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
 
 
 def check_word(field: str, given: object, known: "Sequence[str]") -> None:
-    """Raise InputError, with the nearest that is, unless what was given is one of the words that are known."""
+    """Raise InputError with the nearest known word unless `given` is one of them."""
     if not isinstance(given, str) or given not in known:
         word = given if isinstance(given, str) else ""
         raise InputError(f"{field} = {shown(given)} is not known: {near_name(word, tuple(known))}")
 
 
 def check_kind(field: str, given: Any, *kinds: type) -> None:
-    """Raise InputError, naming the field, unless what was given is a value of one of these kinds."""
+    """Raise InputError unless `given` is an instance of one of these types."""
     if not isinstance(given, kinds):
         raise InputError(f"{field} = {shown(given)}: give a {' or a '.join(kind.__name__ for kind in kinds)}")
 
 
 def settle(value: "msgspec.Struct", where: str = "", **kinds: type) -> None:
-    """What a user typed made what a frozen value holds: Python's numbers for numpy's, tuples for lists and rows.
+    """Convert the fields of a frozen value in place: numpy's numbers to Python's, lists and rows to tuples.
 
-    `kinds` are fields of many values, `where` is what a message calls their owner. Raises InputError.
+    `kinds` are fields with many values of a type, `where` is their owner's name in messages. Raises InputError.
     """
     for field, slot in _slots(type(value)):
         given = kept = slot.__get__(value)
         if field in kinds:
             kept = given if type(given) is tuple and not given else several(f"{where}.{field}", given, kinds[field])
-        elif type(given) not in _SETTLED:
-            kept = _settled(given, f"{where}.{field}" if where else field)
+        elif type(given) not in _NATIVE:
+            name = f"{where}.{field}" if where else field
+            if isinstance(given, list) or (hasattr(given, "dtype") and len(getattr(given, "shape", ())) == 1):
+                check_unmasked(name, given)
+                kept = tuple(map(plain, given))
+            else:
+                kept = plain(given, name)
         if kept is not given:
             slot.__set__(value, kept)
 
 
-def _settled(given: Any, name: str) -> Any:
-    """Python's numbers for numpy's, alone or in a row. Raises InputError for what is under a mask."""
-    if not _in_a_row(given):
-        return plain(given, name)
-    check_unmasked(name, given)
-    return tuple(map(plain, given))
-
-
-def _in_a_row(given: Any) -> bool:
-    """Whether something is a list, or an array of one dimension."""
-    return isinstance(given, list) or (hasattr(given, "dtype") and len(getattr(given, "shape", ())) == 1)
-
-
 @cache
 def _slots(kind: type) -> tuple[tuple[str, Any], ...]:
-    """Where a frozen value keeps its fields: a property of the same name answers with what follows from them."""
+    """Storage of a struct's fields, which properties of the same name may hide."""
     found: dict[str, Any] = {}
     for one in kind.__mro__:
         found |= {name: slot for name, slot in vars(one).items() if isinstance(slot, MemberDescriptorType)}
@@ -154,7 +143,7 @@ def check_number(
 
 
 def whole_number(value: object) -> int | None:
-    """A whole number as Python's own; None for what is none, as true and false are not."""
+    """A whole number as an int; None for anything else, true and false among it."""
     try:
         return None if isinstance(value, bool) else index(value)  # type: ignore[arg-type]
     except TypeError:

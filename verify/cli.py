@@ -1,218 +1,106 @@
-"""The command line. Every command imports what it needs when it runs, and nothing before."""
+"""The command line: a group whose commands are imported when they are called."""
 
-import atexit
 import os
 import sys
-from contextlib import suppress
-from errno import EBADF, EDQUOT, EFBIG, EIO, ENOSPC
+from errno import EIO, ENOSPC
 from importlib import import_module
 from io import StringIO, TextIOWrapper
-from typing import Any, NoReturn, TextIO
+from typing import Any, NoReturn
 
 import click
 
 from verify import __version__
-from verify.ending import TERMINATED, end_tidily
-from verify.errors import InputError, one_line
-from verify.patience import own_limit
+from verify.errors import InputError, printable
 
-BAD_INPUT, INTERRUPTED, NO_READER = 2, 130, 141
-NO_ROOM = (ENOSPC, EDQUOT, EFBIG, EIO, EBADF)
-"""What a stream says that takes no more."""
-
-
-class ReaderGoneError(Exception):
-    """Whoever read standard output has left."""
+BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
+COMMANDS = (
+    *("run", "plan", "scenes", "quantities", "measure", "table", "choose", "sweep"),
+    *("compare", "bench", "stress", "export", "diff", "schema"),
+)
+"""Names of the commands and of their modules in `verify.commands`."""
 
 
-COMMANDS = {
-    "run": "run",
-    "table": "table",
-    "bench": "bench",
-    "measure": "measure",
-    "choose": "choose",
-    "compare": "compare",
-    "compare-shapes": "compare_shapes:compare_shapes",
-    "export": "export",
-    "picture": "picture",
-    "quantities": "quantities:list_quantities",
-    "plan": "plan",
-    "report": "report",
-    "diff": "diff",
-    "stress": "stress",
-    "catalogue": "catalogue",
-    "scenes": "scenes",
-    "init": "scenes:init",
-    "show": "scenes:show",
-    "keys": "keys",
-    "schema": "keys:schema",
-    "warm-up": "warm_up:warm_up",
-}
-"""Where each command is: a module of `commands`, and its name there where that is another."""
+class BrokenPipe(Exception):  # noqa: N818
+    """Standard output is closed. Click turns BrokenPipeError into exit status 1, which stands for a failed gate."""
 
 
 class Commands(click.Group):
-    """The commands, each imported when it is asked for.
-
-    A broken pipe is told apart from a failed gate, which click ends with the same status.
-    """
+    """The commands, each imported on first use."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """By the alphabet, as click has them."""
-        return sorted(COMMANDS)
+        """Names in the order of a session."""
+        return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """One of them, None where there is none."""
+        """The command of a name; None where there is none."""
         if cmd_name not in COMMANDS:
             return None
-        module, _, name = COMMANDS[cmd_name].partition(":")
-        found: click.Command = getattr(import_module(f"verify.commands.{module}"), name or module)
-        return found
+        command: click.Command = getattr(import_module(f"verify.commands.{cmd_name}"), cmd_name)
+        return command
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command that was asked for. Raises InputError for a patience that is none, before that."""
-        own_limit()
+        """Run the command."""
         try:
             return super().invoke(ctx)
         except BrokenPipeError:
-            raise ReaderGoneError from None
+            raise BrokenPipe from None
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="verify")
 def cli() -> None:
-    """Say how far a finite-segment model of a vibrating beam can be trusted, and what that costs in run time.
+    """Verify finite-segment models of vibrating beams: how far they can be trusted, and what that costs in run time.
 
-    SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
-    Exit status: 0 all well, 1 a gate failed or a plan cannot run, 2 bad input, 130 interrupted, 141 nobody reads on,
-    143 terminated. What would take more than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment
-    gives more seconds. Readings are shared among all cores; VERIFY_JOBS gives another number of processes.
+    SCENE is the name of a packaged scene (`verify scenes`) or the path of a TOML file (`verify scenes init`).
+    Exit status: 0 success, 1 a gate or check failed, 2 bad input, 130 interrupted, 141 broken pipe.
+    VERIFY_JOBS in the environment sets the number of processes, all cores unless set.
     """
 
 
-def status_of(argv: list[str] | None = None) -> int:
+def status_of(argv: list[str] | None = None) -> int:  # noqa: PLR0911
     """Run a command line and return its exit status; messages go to the error stream."""
     try:
-        result = cli.main(args=argv, prog_name="verify", standalone_mode=False)
+        cli.main(args=argv, prog_name="verify", standalone_mode=False)
         sys.stdout.flush()
-        _tell_of_unusable()
-        _tell_of_compiling()
-    except (BrokenPipeError, ReaderGoneError):
-        _hush(sys.stdout)
-        return NO_READER
     except InputError as error:
         _complain(*error.sentences)
         return BAD_INPUT
     except click.ClickException as error:
-        return _shown(error)
+        text = StringIO()
+        error.show(text)
+        click.echo("\n".join(map(printable, text.getvalue().splitlines())), err=True)
+        return error.exit_code
     except (click.Abort, KeyboardInterrupt):
-        _complain("interrupted; nothing half-written is left")
+        _complain("interrupted")
         return INTERRUPTED
+    except (BrokenPipe, BrokenPipeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
+        return BROKEN_PIPE
     except OSError as error:
-        if error.errno not in NO_ROOM or error.filename is not None:
+        if error.errno not in (ENOSPC, EIO) or error.filename is not None:
             raise
-        _hush(sys.stdout)
-        _complain(f"what is printed cannot be written ({error.strerror}): make room, or send it elsewhere")
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _complain(f"standard output = {error.strerror}: free disk space, or write elsewhere")
         return BAD_INPUT
     except SystemExit as stop:
-        result = stop.code if isinstance(stop.code, int) else BAD_INPUT
-        if result == TERMINATED:
-            _complain("terminated; nothing half-written is left")
-        _tell_of_unusable()
-        _tell_of_compiling()
-    return result if isinstance(result, int) else 0
+        return stop.code if isinstance(stop.code, int) else BAD_INPUT
+    return 0
 
 
 def _complain(*sentences: str) -> None:
-    """Sentences on the error stream, unless it takes no more."""
-    try:
-        for sentence in sentences:
-            click.echo(f"verify: {sentence}", err=True)
-    except OSError:
-        _hush(sys.stderr)
-
-
-def _shown(error: click.ClickException) -> int:
-    """What click says of a command line, with nothing in it that a terminal would obey."""
-    said = StringIO()
-    error.show(said)
-    try:
-        click.echo("\n".join(map(one_line, said.getvalue().splitlines())), err=True)
-    except OSError:
-        _hush(sys.stderr)
-    return error.exit_code
-
-
-def _tell_of_unusable() -> None:
-    """A sentence for each entry point of other packages that a command looked at and had to leave out."""
-    if "verify.registry" in sys.modules:
-        from verify.registry import unusable
-
-        _complain(*(f"left out: {why}" for why in unusable()))
-
-
-def _cores() -> str:
-    """How many processes share independent work (`cores`), unless the environment says."""
-    return str(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
-
-
-def _tell_of_compiling() -> None:
-    """A sentence where kernels had to be compiled and no folder keeps them."""
-    if "verify.models.compiling" in sys.modules:
-        from verify.models.compiling import told
-
-        _complain(*told())
-
-
-def _hush(stream: TextIO) -> None:
-    """Whoever read a stream has gone: leave the interpreter nothing to say about it at its end."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    for sentence in sentences:
+        click.echo(f"verify: {sentence}", err=True)
 
 
 def main() -> NoReturn:
-    """Entry point of the command `verify`, behind `__main__`.
+    """Entry point of the command `verify`.
 
-    The matrices here are small or sparse: BLAS threads only get in each other's way, so one is the default. What a
-    terminal cannot show is escaped, and what scipy imports for others is not read (`asleep`). A stream that was closed
-    leads nowhere: else the next file that is opened would get its number, and what is printed. Who is told to end
-    tidies up first.
+    The matrices here are small or banded: threads of BLAS slow them down, so one is the default.
     """
-    from verify.asleep import put_to_sleep
-
-    put_to_sleep()
-    os.environ.setdefault("VERIFY_JOBS", _cores())
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
-    for name in ("stdin", "stdout", "stderr"):
-        if getattr(sys, name) is None:
-            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), "r" if name == "stdin" else "w"))
-    end_tidily()
+    os.environ.setdefault("VERIFY_JOBS", str(os.cpu_count() or 1))
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    _end(status_of())
-
-
-def _end(status: int) -> NoReturn:
-    """End at once, after whatever asked to be done at the end.
-
-    To take an interpreter down object by object takes a tenth of a second, two where kernels were compiled, and changes
-    nothing. Whoever traces or profiles the run gets the long way, to write down what was seen.
-    """
-    if _is_watched():
-        sys.exit(status)
-    atexit._run_exitfuncs()
-    for stream in (sys.stdout, sys.stderr):
-        try:
-            stream.flush()
-        except (OSError, ValueError):
-            _hush(stream)
-    os._exit(status)
-
-
-def _is_watched() -> bool:
-    """Whether a tracer, a profiler or, from Python 3.12 on, a monitor looks at this process."""
-    monitoring = getattr(sys, "monitoring", None)
-    tools = () if monitoring is None else map(monitoring.get_tool, range(6))
-    return bool(sys.gettrace() or sys.getprofile() or any(tools))
+    sys.exit(status_of())

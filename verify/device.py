@@ -1,11 +1,12 @@
-"""A device on a driven beam: spring, mass and dashpot against deflection and turning, and a force of its own. Data."""
+"""A device on a driven beam: an impedance against deflection and rotation, and a force of its own. Values."""
 
 from collections.abc import Sequence
+
+import msgspec
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 
 ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
 TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")
@@ -18,36 +19,36 @@ _UNITS = {
     "rotational_dashpot": "N m s/rad",
 }
 HELD = ("pinned", "clamped")
-"""Supports on which nothing moves across."""
+"""Supports without deflection."""
 _STILL = {"across": HELD, "turning": ("clamped", "guided")}
-"""Supports on which nothing moves across, or turns."""
+"""Supports without deflection, or without rotation."""
 
 
-class Device(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What an actuator or an absorber is to a beam in its steady state: an impedance to the ground, and a force.
+class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An actuator or absorber on a beam in its steady state: an impedance to the ground, and a force.
 
-    It belongs to the drive, not to the beam: harmonic fields know it; modes, motion in time and the nonlinear chain do
-    not. Raises InputError where a value is negative or none, or all are zero.
+    Part of the drive, not of the beam: harmonic fields model it; modes, motion in time and the nonlinear chain do not.
+    Raises InputError where a value is negative or invalid, or all are zero.
     """
 
     position: float
-    """x, metres from the left end."""
+    """x, m from the left end."""
     stiffness: float = 0.0
-    """Of its spring against deflection, N/m."""
+    """Stiffness against deflection, N/m."""
     mass: float = 0.0
-    """Kilograms, that move across with the beam."""
+    """Mass that moves with the deflection, kg."""
     dashpot: float = 0.0
-    """Against the speed across, N s/m."""
+    """Damping against deflection, N s/m."""
     rotational: float = 0.0
-    """Of its spring against turning, N m/rad."""
+    """Stiffness against rotation, N m/rad."""
     rotary_inertia: float = 0.0
-    """Kg m^2, that turn with the beam."""
+    """Rotary inertia, kg m^2."""
     rotational_dashpot: float = 0.0
-    """Against the speed of turning, N m s/rad."""
+    """Damping against rotation, N m s/rad."""
     amplitude: float = 0.0
-    """Of the force that it exerts across where the beam stands still there, newton."""
+    """Blocked force of an actuator, N."""
     phase_deg: float = 0.0
-    """Of that force, degrees, leading (e^{+i omega t})."""
+    """Phase of that force, degrees (e^{+i omega t})."""
 
     def __post_init__(self) -> None:
         settle(self)
@@ -63,12 +64,12 @@ class Device(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def across(self) -> bool:
-        """Whether it acts across the beam."""
+        """Whether it acts on the deflection."""
         return any(getattr(self, name) for name in ACROSS)
 
     @property
     def turning(self) -> bool:
-        """Whether it resists turning."""
+        """Whether it acts on the rotation."""
         return any(getattr(self, name) for name in TURNING)
 
     def impedance(self, omega: float) -> complex:
@@ -76,11 +77,11 @@ class Device(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return complex(self.dashpot, omega * self.mass - self.stiffness / omega)
 
     def turning_impedance(self, omega: float) -> complex:
-        """Couple over speed of turning, likewise, N m s."""
+        """Couple over angular velocity, N m s."""
         return complex(self.rotational_dashpot, omega * self.rotary_inertia - self.rotational / omega)
 
     def check_on(self, beam: Beam) -> None:
-        """Raise InputError where it lies off a beam, or on a support that keeps it from doing anything."""
+        """Raise InputError off the beam, and on a support where it has no effect."""
         if self.position > beam.length:
             raise InputError(
                 f"device.position = {self.position!r} lies off the beam: give a position between 0 and "
@@ -98,7 +99,7 @@ class Device(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def check_moved(forces: Sequence[PointForce], beam: Beam) -> None:
-    """Raise InputError for a driving force that a support takes up whole."""
+    """Raise InputError for a driving force on a support without deflection."""
     for end, support in zip((0.0, beam.length), beam.supports, strict=True):
         for force in forces:
             if abs(force.position - end) <= 1e-9 * beam.length and support in HELD:
@@ -109,9 +110,9 @@ def check_moved(forces: Sequence[PointForce], beam: Beam) -> None:
 
 
 def of_impedance(position: float, impedance: complex, omega: float, *, turning: bool = False) -> Device:
-    """The device of dashpot and spring, or of dashpot and mass, that has an impedance at a frequency.
+    """The device of dashpot and spring, or of dashpot and mass, with a given impedance at one frequency.
 
-    Raises InputError for an impedance that gives energy, which no such device does.
+    Raises InputError for an active impedance.
     """
     if impedance.real < 0.0:
         raise InputError(

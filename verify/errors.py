@@ -1,19 +1,19 @@
-"""The one family of errors that a user can cause: one sentence naming field, value and remedy."""
+"""Errors that a user can cause: one sentence each, with field, value and remedy."""
 
 from reprlib import Repr
 
 SENTENCE = 1600
-"""Characters of the longest message: what was given in it may be of any length."""
-NAMES = 24
-"""Of what is known, that a sentence lists."""
+"""Longest message, characters."""
+NAMES = 12
+"""Known names that a message lists."""
 VALUE = 120
-"""Characters of the longest value shown in one."""
+"""Longest value in a message, characters."""
 
 
 class InputError(ValueError):
-    """Bad input. The message is one sentence that names the field, its value and what to do.
+    """Bad input. The message is one sentence that names the field, its value and the remedy.
 
-    Its middle is left out where it is long, and what no terminal should be sent is escaped.
+    A long message is shortened in its middle; what a terminal should not receive is escaped.
     """
 
     def __init__(self, message: str) -> None:
@@ -21,12 +21,12 @@ class InputError(ValueError):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """One for each thing that is wrong."""
+        """One for each error."""
         return (str(self),)
 
 
 class WrongSceneError(InputError):
-    """Several things are wrong with a scene, each a sentence of its own."""
+    """Several errors in a scene."""
 
     def __init__(self, sentences: "list[str]") -> None:
         super().__init__("; ".join(sentences))
@@ -34,42 +34,42 @@ class WrongSceneError(InputError):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """One for each."""
+        """One for each error."""
         return self._sentences
 
 
-def raise_all(sentences: "list[str]", most: int) -> None:
-    """Raise InputError for one sentence, WrongSceneError for several, the first `most` of them; nothing for none."""
+def raise_all(sentences: "list[str]", most: int = 1_000_000) -> None:
+    """Raise InputError for one sentence, WrongSceneError for several (the first `most`); nothing for none."""
     sentences = list(dict.fromkeys(sentences))
     if len(sentences) > 1:
-        left = [f"and {len(sentences) - most} more"] if len(sentences) > most else []
-        raise WrongSceneError([*sentences[:most], *left])
+        more = [f"and {len(sentences) - most} more"] if len(sentences) > most else []
+        raise WrongSceneError([*sentences[:most], *more])
     if sentences:
         raise InputError(sentences[0])
 
 
 class NoTomlError(InputError):
-    """What was named as a scene is no TOML file, so that something else may have been meant."""
+    """A file that is no TOML where a scene is expected."""
 
 
 class PairingError(InputError):
-    """No computed mode has the shape of the exact mode asked for."""
+    """No computed mode has the shape of the exact mode."""
 
 
 class NoBracketError(InputError):
-    """A two-sided bound was asked for where theory or rounding gives none."""
+    """Neither theory nor rounding allows a two-sided bound."""
 
 
 class NoFigureError(InputError):
-    """One point of a sweep has no figure, though its neighbours may: a map has a gap there."""
+    """One point of a sweep has no value, though its neighbours may: a gap in a map."""
 
 
 class ResonanceError(NoFigureError):
-    """An undamped model is driven at one of its own frequencies."""
+    """An undamped model is driven at one of its natural frequencies."""
 
 
 class CutOffError(NoFigureError):
-    """A mesh is too coarse to carry a wave of this frequency."""
+    """The mesh is too coarse for a wave of this frequency."""
 
 
 class ZeroFieldError(NoFigureError):
@@ -77,15 +77,15 @@ class ZeroFieldError(NoFigureError):
 
 
 class StandingError(NoFigureError):
-    """A standing wave carries nothing, so that nothing can be related to what it carries."""
+    """A standing wave has no energy flux to relate anything to."""
 
 
 class WindowError(NoFigureError):
-    """A window in which the waves cannot be told apart."""
+    """The two waves cannot be separated in this window."""
 
 
 def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
-    """The end of a sentence about an unknown word: the nearest known one, or all of them, of many the first."""
+    """The remedy for an unknown word: the nearest known one, else the known ones, or the first of many."""
     from difflib import get_close_matches
 
     plain = {name.casefold(): name for name in known}
@@ -97,34 +97,34 @@ def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
 
 
 def one_line(text: str) -> str:
-    """A text of at most SENTENCE printable characters; beginning and end, where field and remedy stand, are kept."""
+    """A text of at most SENTENCE printable characters, shortened in its middle."""
     return shortened(printable(shortened(text, SENTENCE)), SENTENCE)
 
 
 def printable(text: str) -> str:
-    """A text with what no terminal should be sent escaped: controls, among them those that turn the reading round."""
+    """A text with control characters and reversed writing direction escaped."""
     return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 class _Short(Repr):
-    """`repr` of the first parts of what is long or deep."""
+    """`repr` of the first parts of a long or deep value."""
 
     def __init__(self) -> None:
         super().__init__()
         self.maxlevel, self.maxstring, self.maxother = 3, VALUE // 2, VALUE // 2
 
     def repr_int(self, x: int, level: int) -> str:
-        """A whole number, beyond 100 bits by its length: Python does not print thousands of digits."""
+        """A whole number, beyond 100 bits its length: Python prints at most 4300 digits."""
         return repr(x) if x.bit_length() <= 100 else f"a whole number of {x.bit_length()} bits"
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it: `repr`, of its first and last parts where it is long."""
+    """A value in a message: its `repr`, shortened."""
     return shortened(_Short().repr(value), VALUE)
 
 
 def written(number: float) -> str:
-    """A number as a person writes it: 30, where a sum left 30.000000000000004."""
+    """A number without rounding residues: 30 for 30.000000000000004."""
     return f"{number:.12g}"
 
 

@@ -7,10 +7,11 @@ from verify.elements.linear import (
     n_elastic,
     solve_harmonic,
     solve_modes,
+    sweep_harmonic,
+    sweep_modes,
     unit_responses,
     unknowns,
 )
-from verify.elements.sweeps import sweep_harmonic, sweep_modes
 
 __all__ = [
     "buckling_load",

@@ -1,4 +1,4 @@
-"""A section of a beam by its shape, or plainly by its stiffness and mass: sizes in, the figures of a piece out."""
+"""Cross-sections, by shape and sizes or by stiffness and mass, and the properties that follow."""
 
 from collections.abc import Callable
 from math import log10, pi
@@ -7,13 +7,12 @@ import msgspec
 
 from verify.checks import check_number, check_word, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.options import SHAPES, Shape
 
 SAME = 1e-12
-"""Relative: a stiffness given beside sizes that make the same one is no contradiction."""
+"""Relative difference up to which a stiffness does not contradict the sizes beside it."""
 FIGURE_DECADES = 100
-"""Powers of ten within which a beam's derived figures lie, so that their squares and cubes are numbers too."""
+"""Powers of ten within which derived properties lie, so that their squares and cubes are finite."""
 
 _UNITS = {
     "width": "metres",
@@ -31,38 +30,38 @@ _UNITS = {
 }
 
 
-class Sizes(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a section is made of: a shape with its sizes and material, or its figures plainly. SI."""
+class Sizes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A cross-section: shape, sizes and material, or its properties directly. SI."""
 
     shape: Shape | None = None
-    """rectangle, round or tube; a rectangle unless given."""
+    """rectangle (default), round or tube."""
     width: float | None = None
-    """Of a rectangle, metres."""
+    """Width of a rectangle, m."""
     thickness: float | None = None
-    """h of a rectangle, its height in the direction of vibration, metres."""
+    """h of a rectangle, in the direction of vibration, m."""
     diameter: float | None = None
-    """Of a round section or a tube, outside, metres."""
+    """Outer diameter of a round section or a tube, m."""
     wall_thickness: float | None = None
-    """Of a tube, metres."""
+    """Wall thickness of a tube, m."""
     youngs_modulus: float | None = None
-    """E, pascals."""
+    """E, Pa."""
     density: float | None = None
     """rho, kg/m^3."""
     bending_stiffness: float | None = None
-    """EI, N m^2, in place of sizes and modulus."""
+    """EI, N m^2, in place of sizes and E."""
     mass_per_length: float | None = None
-    """Rho A, kg/m, in place of sizes and density."""
+    """rho A, kg/m, in place of sizes and rho."""
     extreme_fibre: float | None = None
-    """How far the surface lies from the neutral line, metres; of a shape it is known."""
+    """Distance of the surface from the neutral line, m; by default from the shape."""
     shear_stiffness: float | None = None
-    """kappa G A, newton, used by Timoshenko's theory alone; of a shape it is known."""
+    """kappa G A, N, for Timoshenko theory; by default from the shape."""
     shear_coefficient: float | None = None
-    """kappa, used by Timoshenko's theory alone; 5/6 of a rectangle, Cowper's of a round section unless given."""
+    """kappa, for Timoshenko theory; default 5/6 for a rectangle, Cowper (1966) for round sections."""
     rotary_inertia: float | None = None
-    """Rho I per length, kg m, used by Rayleigh's and Timoshenko's theories alone; of a shape it is known."""
+    """rho I, kg m, for Rayleigh and Timoshenko theory; by default from the shape."""
 
     def check_sizes(self, where: str) -> None:
-        """Raise InputError for a size that is none, and one that belongs to another shape."""
+        """Raise InputError for a size that is not finite and positive."""
         for field, unit in _UNITS.items():
             if (value := _given(self, field)) is not None:
                 check_number(f"{where}.{field}", value, unit, above=0)
@@ -71,10 +70,10 @@ class Sizes(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Section(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A piece of a stepped beam. What it leaves out is as in the beam it belongs to. SI."""
+    """A section of a stepped beam; what it leaves out is inherited from the beam. SI."""
 
     length: float
-    """Metres."""
+    """m."""
 
     def __post_init__(self) -> None:
         settle(self)
@@ -82,8 +81,8 @@ class Section(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self.check_sizes("beam.section")
 
 
-class Piece(Value, frozen=True, kw_only=True):
-    """A stretch of constant section, everything stated that is known of it. SI."""
+class Piece(msgspec.Struct, frozen=True, kw_only=True):
+    """A stretch of constant section with all its properties. SI."""
 
     length: float
     """Metres."""
@@ -92,21 +91,21 @@ class Piece(Value, frozen=True, kw_only=True):
     mass_per_length: float
     """Rho A, kg/m."""
     youngs_modulus: float | None = None
-    """Pascals; None where the stiffness is given plainly, as are the next two."""
+    """E, Pa; None where the stiffness is given directly, as are the next two."""
     second_moment: float | None = None
-    """I, metres to the fourth."""
+    """I, m^4."""
     area: float | None = None
-    """A, square metres."""
+    """A, m^2."""
     extreme_fibre: float | None = None
-    """From the neutral line to the surface, metres."""
+    """From the neutral line to the surface, m."""
     shear_stiffness: float | None = None
-    """kappa G A, newton."""
+    """kappa G A, N."""
     rotary_inertia: float | None = None
-    """Rho I, kg m."""
+    """rho I, kg m."""
 
     @property
     def axial_stiffness(self) -> float:
-        """EA, newton. Raises InputError where it is not known."""
+        """EA, N. Raises InputError where unknown."""
         if self.youngs_modulus is None or self.area is None:
             raise InputError(
                 "beam.bending_stiffness: a section given by its stiffness has no axial one, give its shape, sizes and "
@@ -116,20 +115,20 @@ class Piece(Value, frozen=True, kw_only=True):
 
 
 class _Form(msgspec.Struct, frozen=True):
-    """What the sizes of a shape make."""
+    """Formulas of a shape."""
 
     sizes: tuple[str, ...]
     area: Callable[[Sizes], float]
     second_moment: Callable[[Sizes], float]
     fibre: Callable[[Sizes], float]
     shear_coefficient: Callable[[Sizes, float], float]
-    """By Poisson's ratio."""
+    """As a function of Poisson's ratio."""
     powers: tuple[int, ...]
-    """Of the sizes in the second moment, about, for its power of ten."""
+    """Powers of the sizes in the second moment, for its order of magnitude."""
 
 
 def _given(sizes: Sizes, field: str) -> float | None:
-    """A field as it was given, though a beam answers with what follows from it."""
+    """A field as given; on a beam a property of the same name returns the derived value."""
     value: float | None = getattr(Sizes, field).__get__(sizes)
     return value
 
@@ -186,15 +185,14 @@ _FORMS = {
     ),
 }
 _MADE_OF = ("width", "thickness", "diameter", "wall_thickness", "youngs_modulus", "density")
-"""Of which a section's figures are made."""
+"""Fields from which a section's properties follow."""
 
 
 def piece_of(section: Sizes, length: float, where: str, poissons_ratio: float, base: Piece | None = None) -> Piece:
-    """The figures of a section, `length` in metres, by its shape or as they are given.
+    """Properties of a section, from its shape or as given; `length` in m.
 
-    `base` is the piece of the beam that a section belongs to, whose figures stand where it gives none and has no
-    shape to make them of. Raises InputError where something is missing, does not fit the shape, or is given twice
-    and not alike.
+    `base` is the beam's own piece, from which a section inherits what it neither gives nor derives. Raises InputError
+    where something is missing, does not fit the shape, or contradicts itself.
     """
     form = _FORMS[section.shape or "rectangle"]
     _check_fits(section, form, where)
@@ -220,13 +218,13 @@ def piece_of(section: Sizes, length: float, where: str, poissons_ratio: float, b
 
 
 def shear_coefficient(section: Sizes, poissons_ratio: float) -> float:
-    """Kappa as it is given, or as the shape has it."""
+    """Kappa as given, or of the shape."""
     given = _given(section, "shear_coefficient")
     return _FORMS[section.shape or "rectangle"].shear_coefficient(section, poissons_ratio) if given is None else given
 
 
 def _known(field: str, section: Sizes, made: float | None, base: Piece | None) -> float | None:
-    """A figure that may stay unknown: as given, else as sizes make it, else as the beam has it."""
+    """A property that may be unknown: as given, else from the sizes, else the beam's."""
     given = _given(section, field)
     if given is None and made is None and base is not None:
         given = getattr(base, field)
@@ -234,7 +232,7 @@ def _known(field: str, section: Sizes, made: float | None, base: Piece | None) -
 
 
 def _stated(section: Sizes, field: str, made: float | None, where: str, base: Piece | None) -> float:
-    """A figure that has to be known. Raises InputError where it is not, and where it is given twice and not alike."""
+    """A required property. Raises InputError where it is unknown or contradicts the sizes."""
     given = _given(section, field)
     if given is not None and made is not None and abs(given - made) > SAME * made:
         raise InputError(
@@ -250,7 +248,7 @@ def _stated(section: Sizes, field: str, made: float | None, where: str, base: Pi
 
 
 def _missing(section: Sizes, figure: str, where: str) -> InputError:
-    """What to give so that a figure is known."""
+    """The error that names the missing field."""
     shape = section.shape or "rectangle"
     fields = (*_FORMS[shape].sizes, "youngs_modulus" if figure == "bending_stiffness" else "density")
     first = next((field for field in fields if _given(section, field) is None), figure)
@@ -261,9 +259,9 @@ def _missing(section: Sizes, figure: str, where: str) -> InputError:
 
 
 def merged(section: Section, whole: Sizes) -> Sizes:
-    """A section with what it leaves out of shape, sizes and material as in its beam.
+    """A section with shape, sizes and material that it leaves out inherited from its beam.
 
-    Where it gives a stiffness or a mass plainly, the beam's modulus or density is not put beside it.
+    Where it gives stiffness or mass directly, the beam's modulus or density is not inherited.
     """
     shape = section.shape or whole.shape
     same = (section.shape or "rectangle") == (whole.shape or "rectangle") or section.shape is None
@@ -280,7 +278,7 @@ def _times(one: float | None, other: float | None) -> float | None:
 
 
 def _check_fits(section: Sizes, form: _Form, where: str) -> None:
-    """Raise InputError for a size that the shape does not have, and a tube without a bore."""
+    """Raise InputError for a size of another shape, and for a tube without a bore."""
     shape = section.shape or "rectangle"
     for size in ("width", "thickness", "diameter", "wall_thickness"):
         if getattr(section, size) is not None and size not in form.sizes:
@@ -294,7 +292,7 @@ def _check_fits(section: Sizes, form: _Form, where: str) -> None:
 
 
 def check_used(section: Sizes, where: str) -> None:
-    """Raise InputError for what a section given by its figures has of a shape, which would make nothing."""
+    """Raise InputError for shape fields without effect in a section given by stiffness and mass."""
     form = _FORMS[section.shape or "rectangle"]
     shaped = all(_given(section, size) is not None for size in form.sizes)
     for field in () if shaped else ("shape", *_MADE_OF, "shear_coefficient"):
@@ -312,7 +310,7 @@ def check_used(section: Sizes, where: str) -> None:
 
 
 def check_decades(section: Sizes, piece_length: float, where: str) -> None:
-    """Raise InputError where a size, or a figure made of several, leaves what floating point carries."""
+    """Raise InputError where a size or a derived property leaves the range of floating point."""
     form = _FORMS[section.shape or "rectangle"]
     logs = {field: log10(value) for field in _UNITS if (value := _given(section, field)) is not None}
     decades = dict(logs) | {"length": log10(piece_length)}
@@ -332,6 +330,6 @@ def check_decades(section: Sizes, piece_length: float, where: str) -> None:
     for figure, power in decades.items():
         if abs(power) > FIGURE_DECADES:
             raise InputError(
-                f"{where}: {figure} is about 1e{power:+.0f} (SI), and beyond 1e+-{FIGURE_DECADES} figures made of "
-                "it leave floating point: check their units"
+                f"{where}: {figure} is about 1e{power:+.0f} (SI), and beyond 1e+-{FIGURE_DECADES} derived "
+                "properties overflow: check their units"
             )

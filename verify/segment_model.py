@@ -3,8 +3,16 @@
 from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, THEORIES, WALLS
 from verify.segments.buckling import buckling_load
 from verify.segments.in_time import time_basis
-from verify.segments.linear import check, n_elastic, solve_harmonic, solve_modes, unit_responses, unknowns
-from verify.segments.sweeps import sweep_harmonic, sweep_modes
+from verify.segments.linear import (
+    check,
+    n_elastic,
+    solve_harmonic,
+    solve_modes,
+    sweep_harmonic,
+    sweep_modes,
+    unit_responses,
+    unknowns,
+)
 
 __all__ = [
     "ATTACHMENTS",

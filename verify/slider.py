@@ -1,38 +1,38 @@
-"""The slider as a scene or a script states it. Data, no numerics."""
+"""The slider: friction, contact and feet. Values, no numerics."""
 
 from typing import Any, get_args
 
+import msgspec
 from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.checks import check_kind, check_number, check_whole, check_word, settle
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 
 GRAVITY = 9.81
 STEEPNESS = 1e4
-"""K of Eq. (3), s/m, unless given."""
+"""Default of K in Eq. (3), s/m."""
 OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}
-"""Fields that only one law of friction has."""
+"""Fields that belong to one friction law only."""
 _WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
 
 
-class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How a slider that may leave the surface touches it: through springs, or hard. Raises InputError."""
+class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Unilateral contact of a slider that may lose contact: compliant, or hard with restitution. Raises InputError."""
 
     stiffness: float | None = None
-    """N/m of each foot, all its points together; with `layer_stiffness` none, a hard contact."""
+    """Normal stiffness of each foot, all its points together, N/m; without this and `layer_stiffness` hard contact."""
     damping: float = 0.0
-    """N s/m, likewise. A dashpot never pulls."""
+    """Normal damping of each foot, N s/m; the contact force is never tensile."""
     tangential_stiffness: float | None = None
-    """N/m along the surface, likewise; none: it does not give way along the surface."""
+    """Tangential stiffness of each foot, N/m; rigid if not given."""
     layer_stiffness: float | None = None
-    """N/m for each metre of a foot, of a layer between foot and beam: in place of `stiffness`."""
+    """Normal stiffness of a layer per metre of foot, N/m^2, in place of `stiffness`."""
     layer_tangential_stiffness: float | None = None
-    """The same along the surface."""
+    """Tangential stiffness of a layer per metre of foot, N/m^2."""
     restitution: float = 0.0
-    """Speed after a hard landing over speed before, 0 to 1."""
+    """Coefficient of restitution of hard contact, 0 to 1."""
 
     def __post_init__(self) -> None:
         settle(self)
@@ -50,7 +50,7 @@ class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self._check_kinds()
 
     def _check_kinds(self) -> None:
-        """Raise InputError for what no one contact can be."""
+        """Raise InputError for contradictory fields."""
         if self.restitution > 1.0:
             raise InputError(
                 f"slider.contact.restitution = {self.restitution!r}: nothing leaves faster than it came, give 0 to 1"
@@ -77,37 +77,37 @@ class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def hard(self) -> bool:
-        """Whether nothing gives way."""
+        """Whether the contact is rigid."""
         return self.stiffness is None and self.layer_stiffness is None
 
     def across(self, length: float) -> float:
-        """Stiffness of a foot of this length, N/m."""
+        """Normal stiffness of a foot of this length, N/m."""
         return (self.stiffness or 0.0) + (self.layer_stiffness or 0.0) * length
 
     def along(self, length: float) -> float:
-        """The same along the surface; 0 where it does not give way."""
+        """Tangential stiffness of a foot of this length, N/m; 0 where rigid."""
         return (self.tangential_stiffness or 0.0) + (self.layer_tangential_stiffness or 0.0) * length
 
 
-class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A rigid foot of a slider that may leave the surface, with its own height and pitch. Raises InputError."""
+class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A rigid foot of a slider that may lose contact, with height and pitch of its own. Raises InputError."""
 
     length: float = 0.0
-    """Along the beam, metres."""
+    """Length along the beam, m."""
     points: int = 1
-    """At which it touches, in the middles of as many equal cells of its length, with equal shares of the stiffness."""
+    """Number of contact points, at the middles of equal cells of the length, with equal shares of the stiffness."""
     offset: float = 0.0
-    """Of its middle from the slider's position, metres."""
+    """Position of its middle relative to the slider, m."""
     mass: float | None = None
-    """That moves across the beam, kg; its share of the slider's unless given."""
+    """Mass that moves across the beam, kg; default the slider's mass over the number of feet."""
     inertia: float | None = None
-    """About its middle, kg m^2; mass length^2 / 12 unless given."""
+    """Rotary inertia about its middle, kg m^2; default mass length^2 / 12."""
     pitches: bool = True
-    """Whether it turns; a foot of one point never does."""
+    """Whether it rotates; a foot of one point does not."""
     face: Face = "upper"
-    """Of the beam, on which the preload presses it; its weight pulls it off the lower one."""
+    """Face of the beam on which it is preloaded; on the lower one its weight acts against the preload."""
     mirrored: bool = False
-    """Whether the mirror image of the beam presses on it from above, as a slider between two beams has it."""
+    """Whether it is between the beam and the mirror image of the beam above it."""
 
     def __post_init__(self) -> None:
         settle(self)
@@ -136,11 +136,11 @@ class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             )
 
 
-class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A point mass that stays on the surface and is carried along by friction.
+class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A point mass on the surface, driven by friction.
 
-    Friction is the paper's Eq. (3), F = -mu N tanh(K (v - v_beam)), or Coulomb's law with true sticking. N is
-    m g + preload. `v` is the slider's speed along the tangent. Raises InputError.
+    Friction by the paper's Eq. (3), F = -mu N tanh(K (v - v_beam)), or by Coulomb's law with stiction; N = m g +
+    preload, v is the slider's speed along the tangent. Raises InputError.
     """
 
     mass: float
@@ -148,39 +148,38 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     mu: float
     """Coefficient of (kinetic) friction."""
     slope: float | None = None
-    """K of Eq. (3), s/m, of law = 'tanh' alone; 1e4 unless given."""
+    """K of Eq. (3), s/m, for law = 'tanh'; default 1e4."""
     law: Law = "tanh"
-    """Friction: tanh is Eq. (3), which never sticks; coulomb sticks."""
+    """Friction law: tanh is Eq. (3), which never sticks; coulomb has stiction."""
     mu_static: float | None = None
-    """Of Coulomb's law at rest; as `mu` unless given."""
+    """Coefficient of static friction, for law = 'coulomb'; default `mu`."""
     position: float | None = None
-    """Where it starts, metres from the left end; mid-span unless given."""
+    """Initial position, m from the left end; default mid-span."""
     speed: float = 0.0
-    """Along +x at the start, m/s."""
+    """Initial speed along +x, m/s."""
     preload: float = 0.0
-    """Newton pressing it on, beside its weight."""
+    """Normal force in addition to the weight, N."""
     gravity: float = GRAVITY
     """m/s^2."""
     coupling: CouplingChoice = "auto"
-    """Whether the beam feels the slider; auto decides by size."""
+    """One-way or two-way coupling; auto decides by the size of the coupling."""
     line: Line = "spline"
-    """Contact line on a chain: the paper's C2 spline, or the links' own straight edges."""
+    """Contact line on a chain: the paper's C2 spline, or the links' straight edges."""
     kinematics: Kinematics = "tangential"
-    """tangential: m dv/dt = F and dx/dt = v, as in the paper. following: the path of a point that follows the
-    surface exactly, with dx/dt = v - w' dw/dt and the inertia of the turning tangent."""
+    """tangential: m dv/dt = F and dx/dt = v, as in the paper. following: a point that follows the surface exactly, with
+    dx/dt = v - w' dw/dt and the inertia of the rotating tangent."""
     normal: NormalChoice = "held"
-    """What a slider coupled two-way presses the beam with. held: m g + preload and its inertia across the beam, m times
-    the acceleration of the surface under it, convective terms included: a moving mass. massless: nothing, the paper's
-    simplification. Friction has N = m g + preload either way."""
+    """Normal force of a two-way coupled slider on the beam. held: m g + preload and the inertia across the beam, a
+    moving mass with convective terms. massless: none, as in the paper. Friction has N = m g + preload in both."""
 
     contact: Contact | None = None
-    """How it touches where it may leave the surface; unless given it never does."""
+    """Unilateral contact; without it the slider never loses contact."""
     foot: tuple[Foot, ...] = ()
-    """Where it may leave the surface: what it stands on, all with one speed; one point unless given."""
+    """Feet of a slider with [slider.contact], all with one speed; default one point."""
     pull: float = 0.0
-    """Newton along +x on it, where it may leave the surface: a load that brakes is negative."""
+    """External force along +x on a slider with [slider.contact], N; a braking load is negative."""
     preload_stiffness: float = 0.0
-    """N/m of the spring that presses each foot on, where it may leave the surface."""
+    """Stiffness of the spring that preloads each foot of a slider with [slider.contact], N/m."""
 
     def __post_init__(self) -> None:
         settle(self, "slider", foot=Foot)
@@ -213,21 +212,21 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError("slider.gravity = 0.0 without slider.preload presses on nothing: give one of the two")
 
     def _check_feet(self) -> None:
-        """Raise InputError for feet and loads of a slider that never leaves the surface, and what they do not take."""
+        """Raise InputError for feet and loads without contact, and for what a slider with contact does not model."""
         check_number("slider.pull", self.pull, "newton along x")
         check_number("slider.preload_stiffness", self.preload_stiffness, "N/m", at_least=0)
         if self.contact is None:
             for name in ("foot", "pull", "preload_stiffness"):
                 if getattr(self, name):
                     raise InputError(
-                        f"slider.{name} is of a slider that may leave the surface: give slider.contact too"
+                        f"slider.{name} belongs to a slider that may lose contact: give slider.contact too"
                     )
             return
         for name, fixed in (("mu_static", None), ("line", "spline"), ("kinematics", "tangential"), ("normal", "held")):
             if getattr(self, name) != fixed:
                 raise InputError(
-                    f"slider.{name} = {getattr(self, name)!r} is of a slider that never leaves: leave it out, or "
-                    "slider.contact"
+                    f"slider.{name} = {getattr(self, name)!r} belongs to a slider that never loses contact: leave it "
+                    "out, or slider.contact"
                 )
         layered = [
             name
@@ -246,37 +245,37 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError("slider.foot: a hard contact is of one point, give slider.contact.stiffness or one point")
 
     def check_stays(self) -> None:
-        """Raise InputError for one that may leave the surface, where nothing is made for that."""
+        """Raise InputError for a slider that may lose contact."""
         if self.contact is not None:
             raise InputError(
-                "slider.contact is of a slider that may leave the surface, which run_motor and [motor] run: leave it "
-                "out for one that always stays on"
+                "slider.contact belongs to a slider that may lose contact, for run_motor and [motor]: leave it out for "
+                "one that never does"
             )
 
     @property
     def feet(self) -> tuple[Foot, ...]:
-        """What it stands on: one point unless said otherwise."""
+        """Its feet; one point by default."""
         return self.foot or (Foot(),)
 
     @property
     def steepness(self) -> float | None:
-        """K of Eq. (3), s/m: `slope`, or what it is unless given; None of Coulomb's law."""
+        """K of Eq. (3), s/m; None for Coulomb's law."""
         return None if self.law == "coulomb" else STEEPNESS if self.slope is None else self.slope
 
     @property
     def normal_force(self) -> float:
-        """N, newton: what presses all its feet on, each on its own face, without what a `preload_stiffness` adds."""
+        """N, N: sum over its feet, without the force of `preload_stiffness`."""
         return sum(self.pressing(foot) for foot in self.feet)
 
     @property
     def load(self) -> float:
-        """Newton on one beam: of a foot between two beams each bears half."""
+        """Normal force on one beam, N: half of a foot between two beams."""
         return sum(self.pressing(foot) * (0.5 if foot.mirrored else 1.0) for foot in self.feet)
 
     def pressing(self, foot: Foot) -> float:
-        """What presses one of its feet on at rest, newton: preload and weight, which lifts it off the lower face.
+        """Normal force on one foot at rest, N: preload plus weight, on the lower face less the weight.
 
-        Between two beams the preload comes from either: both together, or the weight alone where that is more.
+        Between two beams the preload acts from both: twice the preload, or the weight where that is more.
         """
         weight, preload = self.mass * self.gravity / len(self.feet), self.preload / len(self.feet)
         if foot.mirrored:
@@ -285,16 +284,16 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def effective_gravity(self) -> float:
-        """m/s^2: what presses a foot on a beam, over what moves with it across; of the foot where that is least."""
+        """Normal force of a foot over its moving mass, m/s^2, the least over all feet."""
         each = ((0.5 if foot.mirrored else 1.0) * self.pressing(foot) / self.moved_by(foot) for foot in self.feet)
         return min(each)
 
     def moved_by(self, foot: Foot) -> float:
-        """What of it moves with one of its feet across the beam, kg."""
+        """Mass that moves with one of its feet across the beam, kg."""
         return self.mass / len(self.feet) if foot.mass is None else foot.mass
 
     def start_on(self, beam: Beam) -> float:
-        """Where it starts, metres. Raises InputError off the beam."""
+        """Initial position, m. Raises InputError off the beam."""
         x = 0.5 * beam.length if self.position is None else self.position
         if not 0.0 <= x <= beam.length:
             raise InputError(
@@ -304,7 +303,7 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def changed(slider: Slider, **given: Any) -> Slider:
-    """A slider with other values; another law leaves what only the first has behind. Raises InputError."""
+    """A slider with other values; another law drops the parameter of the first. Raises InputError."""
     if given.get("law", slider.law) != slider.law:
         given = {OF_ONE_LAW[slider.law]: None} | given
     return replace(slider, **given)

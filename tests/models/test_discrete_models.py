@@ -10,13 +10,13 @@ import pytest
 from msgspec.structs import replace
 from scipy.sparse import csc_array
 
+from verify import analytic_modes
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.elements import pencil
 from verify.elements.mesh import basis_between, mass_matrix, stiffness_matrix
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws
-from verify.exact import modes as analytic_modes
 from verify.models import eigen
 from verify.models.pencil import factorised
 from verify.segments import linear as segment_model

@@ -5,6 +5,7 @@ from time import perf_counter
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from verify.judge.workbench import Workbench
 
 from verify import (
     Beam,
@@ -18,7 +19,6 @@ from verify import (
     segment_model,
 )
 from verify.errors import ResonanceError
-from verify.judge.workbench import Workbench
 from verify.models import driven_pencil
 from verify.models.catalogue import MODELS
 from verify.models.fields import phasor

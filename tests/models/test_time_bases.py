@@ -13,7 +13,7 @@ from verify.elements import in_time as fem_motion
 from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements, point_loads
 from verify.errors import InputError
-from verify.exact import modes as analytic_modes
+from verify import analytic_modes
 from verify.exact.in_time import MOST
 from verify.models.catalogue import MODELS
 from verify.models.fields import phasor

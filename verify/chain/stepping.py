@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import inf
 from time import perf_counter
 from typing import Any, Literal, get_args
 
@@ -13,7 +12,6 @@ from verify.chain.dynamics import PIVOT_LOSS, accelerated, flatten, held_rows, k
 from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
-from verify.chain.work import fixed_steps, per_evaluation, refuse_work
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array
@@ -76,7 +74,6 @@ def simulate(
     dependent: Sequence[int] | None = None,
     ledger: bool = True,
     limit: float | None = None,
-    most: float = inf,
     progress: Callable[[float], None] = lambda part: None,
 ) -> ChainMotion:
     """The motion from `start`, kept at `times` (ascending, from start.time on).
@@ -85,9 +82,8 @@ def simulate(
     Prince's pair of orders 5 and 4, its error per step held to `tolerance` of the largest motion so far. Both are of
     order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
     `limit` is the stability limit where it is known already, which spares finding it.
-    `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. `progress` hears
-    how much of the time is done; a run that will take more than `most` accelerations of links (`chain.work`) is
-    refused as soon as its pace is known. Raises InputError.
+    `dependent` (1..N) chooses the angles that the closure determines. An interrupt returns what is kept. `progress` is
+    called with the fraction of time done. Raises InputError.
     """
     began = perf_counter()
     _check_method(method, step, tolerance)
@@ -95,12 +91,9 @@ def simulate(
     begin, moved = project(system, start, dependent)
     if method == "rk4" and step is not None:
         refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
-    if step is not None:
-        seconds = float(samples[-1] - start.time)
-        refuse_work(4.0 * fixed_steps(seconds, step) * per_evaluation(system.n_links), most, seconds)
     run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
     ready = perf_counter()
-    stopped = run.march(most, progress)
+    stopped = run.march(progress)
     return run.motion(method, (ready - began, perf_counter() - ready), stopped, how_started(moved, start))
 
 
@@ -171,18 +164,18 @@ class _Run:
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
 
-    def march(self, most: float, progress: Callable[[float], None]) -> str:
-        """Step until every sample is kept; why it stopped. Raises InputError where that would be too much work."""
+    def march(self, progress: Callable[[float], None]) -> str:
+        """Step until every sample is kept; why it stopped."""
         from verify.chain import kernels
 
         budget = max(_BUDGET // self.system.n_links, 16)
-        pace = _Pace(self, most)
+        begun, end = float(self.m.clock[0]), float(self.m.samples[-1])
         try:
             while True:
                 status = kernels.march(self.flat, self.m, budget, self.work)
                 if status != records.RUNNING:
                     return self.ended(status)
-                progress(pace.part())
+                progress((float(self.m.clock[0]) - begun) / (end - begun))
                 if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
                     self.keep_pivots()
         except KeyboardInterrupt:
@@ -229,24 +222,6 @@ class _Run:
                 furthest=float(self.m.scale[5]),
             ),
         )
-
-
-class _Pace:
-    """What a run will cost by what it has cost so far."""
-
-    def __init__(self, run: _Run, most: float) -> None:
-        self.run, self.most = run, most
-        self.begun, self.end = float(run.m.clock[0]), float(run.m.samples[-1])
-        self.before = self.begun, 0.0
-
-    def part(self) -> float:
-        """How much of the time is done. Raises InputError where the rest would be too much work."""
-        time, work = float(self.run.m.clock[0]), float(self.run.m.counts[2]) * per_evaluation(self.run.system.n_links)
-        (then, spent), self.before = self.before, (time, work)
-        gone, last = time - self.begun, time - then
-        rest = min(work / gone if gone > 0.0 else inf, (work - spent) / last if last > 0.0 else inf)
-        refuse_work(work + rest * (self.end - time), self.most, self.end - self.begun)
-        return gone / (self.end - self.begun)
 
 
 def _largest(apply: Callable[[Array], Array], n: int) -> float:

@@ -8,7 +8,6 @@ immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
 from time import perf_counter
 from typing import Any
 
@@ -17,7 +16,6 @@ import numpy as np
 from verify.chain import records
 from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
-from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
 from verify.models.arrays import Array
@@ -100,21 +98,17 @@ def simulate_elastic(
     step: float | None = None,
     immovable: bool = False,
     deflected: Array | None = None,
-    most: float = inf,
 ) -> ElasticMotion:
     """The motion from rest, straight or from joint deflections `deflected` (N + 1,), kept at even `times` from 0.
 
     `axial_stiffness` is EA in newton, of all links or of each (N,); `step` is at most `elastic_step_limit`, half of
     it unless given, shortened to divide the spacing of the times; `immovable` holds the tip along x too. Raises
-    InputError, also for more work than `most` accelerations of links (`chain.work`), and for what stretching links do
-    not know here: actuators, a turning base, an axial spring, links without inertia along x.
+    InputError, also for actuators, a turning base, an axial spring and links without inertia along x.
     """
     began = perf_counter()
     samples = _checked(system, axial_stiffness, times)
     step = _step(elastic_step_limit(system, axial_stiffness), step)
     spacing = float(samples[1])
-    work = fixed_steps(spacing, step) * (len(samples) - 1.0) * system.n_links * PER_STRETCHING_STEP
-    refuse_work(work, most, float(samples[-1]))
     flat = _flattened(system, axial_stiffness, immovable)
     u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
     u[:, 1] = 0.0 if deflected is None else deflected

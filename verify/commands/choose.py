@@ -1,52 +1,83 @@
-"""From how many parts on an accuracy is kept."""
+"""`verify choose`: the smallest sufficient number of segments and elements."""
+
+from typing import Any
 
 import click
 
-from verify.commands.shared import (
-    DEFAULT,
-    json_alone,
-    load,
-    overridden,
-    print_json,
-    ruled,
-    scene_first,
-)
+from verify.commands.shared import format_options, overrides_option, scene_argument, show
+from verify.errors import InputError
 
 
 @click.command()
-@click.argument("words", nargs=-1, metavar="[SCENE]")
-@click.option("--mode", required=True, metavar="N", help="Mode number from 1, or all of several: 1-12.")
-@click.option("--error", required=True, metavar="E", help="Largest frequency error: 1% or 0.01.")
-@click.option("--scene", help=f"Whose beam, where it is not named first. Default: {DEFAULT}.")
-@overridden
-@ruled
-@json_alone
+@scene_argument
+@click.argument("rules", nargs=-1, metavar="[RULE=VALUE]...")
+@click.option("--mode", required=True, metavar="N", help="Mode number from 1, or all of a range: 1-12.")
+@click.option("--error", required=True, metavar="E", help="Largest relative frequency error: 1% or 0.01.")
+@overrides_option
+@format_options
 def choose(
-    words: tuple[str, ...],
-    mode: str,
-    error: str,
-    scene: str | None,
-    overrides: tuple[str, ...],
-    as_json: bool,
-    rules: dict[str, str],
+    scene: str, rules: tuple[str, ...], mode: str, error: str, overrides: tuple[str, ...], **formats: bool
 ) -> None:
-    """From how many segments or elements on an accuracy is kept, as far as it was solved, and what they cost.
+    """Smallest number of segments and elements for a given accuracy, and the solve time.
 
+    RULE=VALUE sets up the models: wall=half,gregory joints=printed theory=timoshenko grading=2 attachment=lever.
     Example: `verify choose steel-cantilever --mode 5 --error 0.1%`
     """
-    from verify.judge.workbench import Workbench
-    from verify.report.plain import accuracy, choice_as_plain, mode_numbers
-
-    wanted, number = accuracy(error), mode_numbers(mode)
-    beam = load(scene_first(words, scene, 0)[0], overrides).beam
+    from verify.judge.cache import SolutionCache
     from verify.judge.sizing import choose_of_all
-    from verify.run.tables import rules_of
+    from verify.report.result import Column, Result, Table
+    from verify.scene.load import load_scene
 
-    bench, asked = Workbench(beam), rules_of(rules)
-    choices, left_out = choose_of_all(bench, number, wanted, asked)
-    if as_json:
-        print_json(choice_as_plain(bench, number, wanted, choices, left_out))
-    else:
-        from verify.report.terminal import print_choices
+    modes, largest, chosen = _modes(mode), _error(error), _rules(rules)
+    choices, skipped = choose_of_all(SolutionCache(load_scene(scene, overrides).beam), modes, largest, chosen)
+    rows = [
+        (
+            *(one.variant.title, one.count, one.mode, one.unknowns, one.error, one.expected_error, one.run_time_s),
+            *(one.smaller, ", ".join(map(str, one.lower))),
+        )
+        for one in choices
+    ]
+    columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
+    columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
+    columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
+    notes = [f"{one.variant.title}: {one.known_by}" for one in choices]
+    result = Result(
+        f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
+        [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
+        warnings=[f"{name} is skipped: {why}" for name, why in skipped.items()],
+    )
+    show(result, **formats)
 
-        print_choices(bench, number, wanted, choices, left_out)
+
+def _modes(text: str) -> int | range:
+    from verify.scene.convert import typed
+
+    modes = typed(text, tuple[int, ...], "mode")
+    if not all(isinstance(mode, int) and mode > 0 for mode in modes):
+        raise InputError(f"mode = {text!r}: give a mode number from 1, or a range as 1-12")
+    if modes != list(range(modes[0], modes[-1] + 1)):
+        raise InputError(f"mode = {text!r}: give one mode, or all of a range as 1-12")
+    return modes[0] if len(modes) == 1 else range(modes[0], modes[-1] + 1)
+
+
+def _error(text: str) -> float:
+    """A relative error. A plain number of 0.1 or more is refused: most who write it mean per cent."""
+    number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
+    try:
+        value = float(number) / (100.0 if percent else 1.0)
+    except ValueError:
+        value = 0.0
+    if not 1e-12 <= value < (1.0 if percent else 0.1):
+        raise InputError(f"error = {text!r}: give a relative error from 1e-12, below 0.1 or with a per cent sign: 1%")
+    return value
+
+
+def _rules(words: tuple[str, ...]) -> Any:
+    from verify.judge.variants import Rules
+    from verify.scene.convert import convert, literal
+
+    pairs = [word.partition("=") for word in words]
+    for key, equals, _ in pairs:
+        if not equals:
+            raise InputError(f"rule = {key!r}: write it as RULE=VALUE, wall=half")
+    return convert({key: literal(text, key) for key, _, text in pairs}, Rules)

@@ -1,111 +1,102 @@
-"""The command `verify compare`: somebody's own model under the same gates."""
+"""`verify compare`: the discretisation behind natural frequencies or mode shapes of another program."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.shared import (
-    GATE_FAILED,
-    as_line,
-    json_alone,
-    load_first,
-    overridden,
-    print_json,
-    scene_first,
-    whole_number,
-)
+from verify.commands.shared import GATE_FAILED, format_options, overrides_option, scene_argument, show
 
-if TYPE_CHECKING:
-    from verify.identify.told import Compared
-    from verify.scenes.scene import Scene
+TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
+"""Suffixes of lists of frequencies; other files are meshes."""
 
 
 @click.command()
-@click.argument("words", nargs=-1, metavar="SCENE [FREQUENCIES]")
-@click.option("--scene", help="Whose beam the model is of, where it is not named first.")
-@overridden
-@click.option("--count", metavar="N", help="Segments or elements of the model. Default: whichever fits.")
-@click.option("--modes", metavar="FILE", help="Mode shapes: x in the first column, then one column for each mode.")
-@click.option("--model", metavar="MODULE:CLASS", help="A model in Python in place of a list.")
+@scene_argument
+@click.argument("given", nargs=-1, metavar="FILE | FREQUENCIES...")
+@overrides_option
 @click.option(
-    "--unit",
-    type=click.Choice(["Hz", "kHz", "rad/s"], case_sensitive=False),
-    metavar="[Hz|kHz|rad/s]",
-    help="Of the list. Default: its head's, else Hz.",
+    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any."
 )
-@click.option("--kind", type=click.Choice(["segments", "elements"]), help="What you built, if it is to be no guess.")
-@click.option("--error", default="0.1%", show_default=True, metavar="E", help="For which the parts are counted.")
-@click.option("--mode", metavar="N", help="At which. Default: the last of the list.")
-@click.option("--within", metavar="E", help="Gate every error against the exact beam: 1%.")
-@click.option("--theory", default="euler-bernoulli", show_default=True, help="Of the exact beam.")
-@click.option("--reports", "folder", metavar="PATH", help="Folder for an HTML report. Default: none is written.")
-@json_alone
+@click.option("--modes", "shapes", metavar="FILE", help="Mode shapes: x in the first column, then one column a mode.")
+@click.option("--model", metavar="MODULE:FUNCTION", help="A Python model (beam, n_modes, count) -> frequencies in Hz.")
+@click.option("--unit", type=click.Choice(["Hz", "kHz", "rad/s"]), help="Of the list. Default: its header's, else Hz.")
+@click.option("--kind", type=click.Choice(["segments", "elements"]), help="Candidates of one kind only.")
+@click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
+@click.option("--within", metavar="E", help="Acceptance: largest error against the exact beam, for instance 1%.")
+@click.option(
+    "--theory",
+    type=click.Choice(["euler-bernoulli", "rayleigh", "timoshenko"]),
+    default="euler-bernoulli",
+    show_default=True,
+    help="Of the exact beam.",
+)
+@format_options
 def compare(
-    words: tuple[str, ...],
-    scene: str | None,
+    scene: str,
+    given: tuple[str, ...],
     overrides: tuple[str, ...],
-    count: str | None,
-    modes: str | None,
+    count: int | None,
+    shapes: str | None,
     model: str | None,
     unit: str | None,
     kind: str | None,
-    error: str,
-    mode: str | None,
+    mode: int | None,
     within: str | None,
     theory: str,
-    folder: str | None,
-    as_json: bool,
+    **formats: bool,
 ) -> None:
-    """Say what somebody's model of SCENE's beam is, from its natural FREQUENCIES, and judge it.
+    """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
 
-    FREQUENCIES is a text file, or - for standard input: comma, semicolon, tab or spaces, with a head or without, a
-    column of mode numbers or none. Exit 1 where the list has to be mended, nothing known fits it, or an error
-    lies beyond --within.
+    FILE is a list of frequencies (.csv, .txt, .tsv, .dat, or - for standard input) or a mesh with mode shapes. Exit
+    status 1 where the list has a fault, no candidate agrees, or an error exceeds --within.
+
+    Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
-    from verify.identify.compare import Asked
-    from verify.identify.compare import compare as compared
-    from verify.report.plain import accuracy, mode_number
+    from verify.compare.compare import Options
+    from verify.compare.compare import compare as compare_list
+    from verify.compare.reading import listed, read_frequencies, read_shapes, solve_model
+    from verify.errors import InputError
+    from verify.scene.load import load_scene
 
-    if len(words) == 1 and scene is None and modes is None and model is None:
-        raise click.UsageError(f"SCENE and FREQUENCIES are asked for, {words[0]!r} is one of them.")
-    named, rest = scene_first(words, scene, 1, default=None)
-    loaded = load_first(words, scene, named, overrides, "verify compare SCENE FREQUENCIES")
-    asked = Asked(
-        frequencies=Path(rest[0]) if rest else None,
-        shapes=None if modes is None else Path(modes),
-        model=model,
-        count=whole_number("count", count),
-        unit=unit,
-        kind=kind,
-        mode=None if mode is None else mode_number(mode),
-        error=accuracy(error),
-        within=None if within is None else accuracy(within, "within"),
-        theory=theory,
-    )
-    result = compared(loaded, asked)
-    report = _report(loaded, result, folder) if folder is not None else None
-    _show(result, report, as_json=as_json)
-    if not result.passed:
+    if bool(given) == bool(model):
+        raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
+    loaded = load_scene(scene, overrides)
+    options = Options(count=count, kind=kind, mode=mode, within=_ratio(within), theory=theory)
+    numbers = [_number(word) for word in given]
+    if model is not None:
+        frequencies, forms = solve_model(model, loaded.beam, count, mode)
+        result = compare_list(loaded, frequencies, forms, options)
+    elif all(number is not None for number in numbers):
+        typed = listed("frequencies", [n for n in numbers if n is not None], given, unit=unit or "Hz")
+        result = compare_list(loaded, typed, None, options)
+    elif len(given) > 1:
+        raise InputError(f"frequencies = {' '.join(given)}: give one file, or numbers alone")
+    elif Path(given[0]).suffix.lower() in TEXT:
+        frequencies = read_frequencies(Path(given[0]), unit)
+        forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
+        result = compare_list(loaded, frequencies, forms, options)
+    else:
+        from verify.compare.meshes import read_mesh
+        from verify.compare.shapes import compare_shapes
+
+        result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
+    show(result, **formats)
+    if not result.data["passed"]:
         raise SystemExit(GATE_FAILED)
 
 
-def _report(scene: "Scene", result: "Compared", folder: str) -> Path:
-    """Write the page. Raises InputError."""
-    import sys
-
-    from verify.files import writable_folder
-    from verify.report.html import write_comparison
-
-    path = writable_folder(Path(folder), "reports") / f"compare-{scene.name}.html"
-    write_comparison(scene, result, path, as_line(["verify", *sys.argv[1:]]))
-    return path
+def _number(word: str) -> float | None:
+    try:
+        return float(word)
+    except ValueError:
+        return None
 
 
-def _show(result: "Compared", report: Path | None, *, as_json: bool) -> None:
-    if as_json:
-        print_json(result.plain() | {"report": str(report) if report else None})
-        return
-    from verify.report.terminal import print_compared
+def _ratio(text: str | None) -> float | None:
+    """A relative error such as 1% or 0.01. Raises InputError."""
+    from verify.errors import InputError
 
-    print_compared(result, report)
+    value = None if text is None else _number(text.removesuffix("%"))
+    if text is not None and (value is None or not 0.0 < value < float("inf")):
+        raise InputError(f"within = {text!r}: give a relative error such as 1% or 0.01")
+    return None if value is None or text is None else value / (100.0 if text.endswith("%") else 1.0)

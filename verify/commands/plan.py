@@ -1,42 +1,26 @@
-"""What a scene will run."""
+"""`verify plan`: which parts of a scene run."""
 
 import click
 
-from verify.commands.shared import (
-    GATE_FAILED,
-    json_alone,
-    load,
-    overridden,
-    print_json,
-    scene_name,
-)
+from verify.commands.shared import format_options, overrides_option, scene_argument, show
 
 
 @click.command()
-@scene_name
-@overridden
-@json_alone
-def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Print what SCENE will run, what is skipped, and why; exit 1 where something cannot run.
+@scene_argument
+@overrides_option
+@format_options
+def plan(scene: str, overrides: tuple[str, ...], **formats: bool) -> None:
+    """Show which gates and studies of SCENE run, which are skipped, and why. Nothing is solved.
 
-    It solves nothing but two or three exact fields under a slider, by which it says how the slider is coupled.
-
-    Example: `verify plan paper`
+    Example: `verify plan paper --set beam.length=0.4`
     """
-    from verify.run.applies import that_change
-    from verify.run.plan import plan_scene
+    from verify.report.result import Column, Result, Table
+    from verify.scene.load import load_scene
+    from verify.scene.run import plan as plan_scene
+    from verify.scene.warnings import unit_warnings
 
-    asked = load(scene, overrides)
-    planned = plan_scene(asked, that_change(scene, overrides))
-    if as_json:
-        import msgspec
-
-        print_json(msgspec.to_builtins(planned))
-    else:
-        from verify.report.terminal import Terminal, print_plan, print_remarks
-        from verify.run.remarks import remarks_on
-
-        print_remarks(remarks_on(asked), Terminal())
-        print_plan(planned)
-    if planned.problems:
-        raise SystemExit(GATE_FAILED)
+    rows = [(row.what, row.kind, row.runs, row.why) for row in plan_scene(scene, overrides)]
+    table = Table("", [Column("what"), Column("kind"), Column("runs"), Column("quantity, or why skipped")], rows)
+    skipped = sum(not row[2] for row in rows)
+    summary = f"{len(rows) - skipped} parts run, {skipped} are skipped."
+    show(Result(summary, [table], warnings=unit_warnings(load_scene(scene, overrides))), **formats)

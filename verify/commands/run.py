@@ -1,92 +1,124 @@
-"""Run a scene, or several, and judge their gates."""
+"""`verify run`: gates and studies of one or several scenes, with reports."""
 
 from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
 
 import click
 
-from verify.commands.shared import (
-    GATE_FAILED,
-    command_line,
-    json_alone,
-    load,
-    overridden,
-    print_json,
-    progress,
-)
+from verify.commands.shared import GATE_FAILED, console, json_option, overrides_option, print_json, progress
+
+CANNOT_RUN = 2
+
+
+class Task(NamedTuple):
+    """One scene to run; picklable."""
+
+    scene: str
+    overrides: tuple[str, ...]
+    reports: Path | None
+    keep: int
+    command: str
 
 
 @click.command()
 @click.argument("scenes", nargs=-1, metavar="[SCENE]...")
-@overridden
+@overrides_option
+@click.option("--to", "folder", default="reports", show_default=True, metavar="FOLDER", help="Folder of the reports.")
+@click.option("--no-report", is_flag=True, help="Write no files.")
 @click.option(
-    "--reports", "folder", default="reports", show_default=True, metavar="PATH", help="Folder for the HTML reports."
+    "--keep", type=click.IntRange(min=0), default=5, show_default=True, metavar="N", help="Saved runs of a scene."
 )
-@click.option(
-    "--keep",
-    "most",
-    type=click.IntRange(min=0),
-    default=5,
-    show_default=True,
-    metavar="N",
-    help="Keep the N newest runs of a name in a folder of their own, and take older ones away.",
-)
-@click.option("--no-report", is_flag=True, help="Judge only; write nothing.")
-@json_alone
+@json_option
 def run(
-    scenes: tuple[str, ...], overrides: tuple[str, ...], folder: str, most: int, no_report: bool, as_json: bool
+    scenes: tuple[str, ...], overrides: tuple[str, ...], folder: str, no_report: bool, keep: int, as_json: bool
 ) -> None:
-    """Run everything SCENE asks for; write its report; exit 1 when a gate fails.
+    """Run gates and studies of SCENE and write its report; exit 1 where a gate fails.
 
-    Without SCENE all packaged scenes are run, side by side where cores allow, and with several those; their reports
-    stand behind one page, index.html. A scene that cannot run does not stop the others; the exit status is 2 then.
+    With several scenes, or none for all packaged ones, they run in parallel and FOLDER/index.html links to their
+    reports. The latest report is FOLDER/SCENE.html; FOLDER/SCENE/TIME has the saved runs (index.html, run.json), which
+    `verify diff` compares.
 
-    The latest report of a scene is PATH/SCENE.html. That page is kept in PATH/SCENE/TIME as well, beside run.json,
-    which `verify report` and `verify diff` read.
-
-    Where --set changes what exists (beam, drive, slider, motion), the report is named after it, and gates that were
-    stated for something else are not applicable: neither passed nor failed, unless their band is set as well.
-    Example: `verify run paper --set beam.length=0.4`
+    With --set gates that hold for other values are skipped. Example: `verify run paper --set beam.length=0.4`
     """
-    reports = None if no_report else Path(folder)
-    if len(scenes) == 1:
-        _run_one(scenes[0], overrides, reports, most, as_json)
-    else:
-        from verify.commands.suite import run_several
-
-        run_several(scenes, overrides, reports, most, as_json)
-
-
-def _run_one(scene: str, overrides: tuple[str, ...], folder: Path | None, most: int, as_json: bool) -> None:
-    """One scene, and what it says in full."""
     from verify.files import writable_folder
-    from verify.run.applies import TAKEN, check_free, report_name, that_change
-    from verify.run.runner import n_steps, run_scene
+    from verify.scene.load import load_scene, packaged_scenes
 
-    asked = load(scene, overrides)
-    changes = that_change(scene, overrides)
-    name = report_name(asked, changes)
-    if folder is not None:
-        check_free(name, TAKEN)
-        writable_folder(folder, "reports")
-        if most:
-            from verify.report.kept import folder_for
-
-            folder_for(folder, name)
-    with progress(n_steps(asked), quiet=as_json) as step:
-        result = run_scene(asked, step, changes)
-    written = None
-    if folder is not None:
-        from verify.report.kept import keep
-
-        written = keep(result, folder, name, command_line("run", (scene,), overrides), most)
-    latest, kept = (written.latest, written.folder) if written else (None, None)
-    if as_json:
-        from verify.report.plain import run_as_plain
-
-        print_json(run_as_plain(result, latest))
+    names = scenes or packaged_scenes()
+    if len(names) == 1:
+        load_scene(names[0], overrides)  # refused before a folder is made
+    reports = None if no_report else writable_folder(Path(folder), "--to")
+    tasks = [Task(name, overrides, reports, keep, _command_line((name,), overrides)) for name in names]
+    if len(tasks) == 1:
+        _run_one(tasks[0], as_json)
     else:
-        from verify.report.terminal import print_run
+        _run_several(tasks, as_json, _command_line(scenes, overrides))
 
-        print_run(result, latest, kept)
+
+def _run_one(task: Task, as_json: bool) -> None:
+    from verify.report.summary import run_data
+    from verify.report.terminal import print_run
+    from verify.scene.run import plan, run_scene
+
+    steps = sum(row.runs for row in plan(task.scene, task.overrides)) if not as_json else None
+    with progress(steps, quiet=as_json) as step:
+        result = run_scene(task.scene, step, task.overrides)
+        saved = _save(result, task)
+    if as_json:
+        print_json(run_data(result, task.command) | {"page": str(saved.page) if saved else None})
+    else:
+        print_run(result, console(), saved)
     if not result.passed:
         raise SystemExit(GATE_FAILED)
+
+
+def _run_several(tasks: list[Task], as_json: bool, command: str) -> None:
+    from verify.parallel import map_processes
+    from verify.report.index import index_result, write_index
+
+    start = perf_counter()
+    with progress(len(tasks), quiet=as_json) as step:
+        step("scenes")
+        lines = map_processes(_line_of, tasks, lambda done: step(f"{done} of {len(tasks)} scenes"))
+    reports = tasks[0].reports
+    if reports is not None:
+        write_index(lines, reports / "index.html", command, perf_counter() - start)
+    if as_json:
+        print_json({"passed": all(line["passed"] for line in lines), "scenes": lines})
+    else:
+        index_result(lines).print(console())
+        if reports is not None:
+            click.echo(f"report: {reports / 'index.html'}")
+    if any(line["passed"] is None for line in lines):
+        raise SystemExit(CANNOT_RUN)
+    if not all(line["passed"] for line in lines):
+        raise SystemExit(GATE_FAILED)
+
+
+def _line_of(task: Task) -> dict[str, Any]:
+    """The line of one scene in the index; the work of one process."""
+    from verify.errors import InputError
+    from verify.report.archive import report_name
+    from verify.report.index import failed_line, scene_line
+    from verify.scene.run import run_scene
+
+    try:
+        result = run_scene(task.scene, overrides=task.overrides)
+        saved = _save(result, task)
+    except InputError as error:
+        return failed_line(task.scene, error.sentences)
+    return scene_line(result, report_name(result.scene.name, task.overrides), saved)
+
+
+def _save(result: Any, task: Task) -> Any:
+    from verify.report.archive import report_name, save_run
+
+    if task.reports is None:
+        return None
+    return save_run(result, task.reports, report_name(result.scene.name, task.overrides), task.command, task.keep)
+
+
+def _command_line(scenes: tuple[str, ...], overrides: tuple[str, ...]) -> str:
+    from shlex import join
+
+    return join(["verify", "run", *scenes, *(word for text in overrides for word in ("--set", text))])

@@ -1,75 +1,75 @@
-"""The scenes that there are, and a new one."""
+"""`verify scenes`: list and show scenes, start a new one."""
 
 from pathlib import Path
 
 import click
 
-from verify.commands.shared import json_alone, load, overridden, print_json, scene_name
+from verify.commands.shared import format_options, overrides_option, print_json, scene_argument, show
 from verify.errors import InputError, printable
 
 
-@click.command()
-@json_alone
-def scenes(as_json: bool) -> None:
-    """List the packaged scenes. Example: `verify scenes --json`."""
-    from verify.scenes.scene import load_scene, packaged_scenes
+@click.group(invoke_without_command=True)
+@format_options
+@click.pass_context
+def scenes(context: click.Context, /, **formats: bool) -> None:
+    """List the packaged scenes, show one, or write a new one."""
+    if context.invoked_subcommand is None:
+        _list(**formats)
+
+
+def _list(**formats: bool) -> None:
+    from verify.report.result import Column, Result, Table
+    from verify.scene.load import load_scene, packaged_scenes
 
     found = [load_scene(name) for name in packaged_scenes()]
-    if as_json:
-        print_json([{"scene": s.name, "title": s.title, "gates": len(s.gate)} for s in found])
-        return
-    for one in found:
-        click.secho(one.name, bold=True, nl=False)
-        click.echo(f"  {one.title} ({len(one.gate)} gates)")
+    rows = [(one.name, one.title, len(one.gate)) for one in found]
+    show(Result(tables=[Table("", [Column("scene"), Column("title"), Column("gates")], rows)]), **formats)
 
 
-@click.command()
-@click.argument("path")
-@click.option("--from", "source", metavar="SCENE", help="Copy SCENE, its comments with it, under the name of PATH.")
-@click.option("--force", is_flag=True, help="Replace a file that is there.")
-@json_alone
-def init(path: str, source: str | None, force: bool, as_json: bool) -> None:
-    """Write a commented scene to PATH to start from.
+@scenes.command("list")
+@format_options
+def list_scenes(**formats: bool) -> None:
+    """List the packaged scenes."""
+    _list(**formats)
 
-    Example: `verify init mine.toml --from steel-cantilever`
+
+@scenes.command("show")
+@scene_argument
+@overrides_option
+@click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
+def show_scene(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Print the TOML of SCENE: the file itself or, with --set, the values that result.
+
+    Example: `verify scenes show paper --set beam.length=0.4`
     """
-    from verify.files import exists, write_whole
-    from verify.scenes.scene import STARTER, scene_path
-    from verify.scenes.toml import read_text
-    from verify.scenes.writing import name_of, renamed
+    from verify.scene.load import load_scene, read_text, scene_path, tables_of, toml_text
 
-    if path.startswith("--"):
-        raise InputError(f"path = {path!r} looks like an option: write it as './{path}'")
-    text = STARTER.read_text("utf-8") if source is None else renamed(read_text(scene_path(source)), name_of(Path(path)))
-    if exists(Path(path), "path") and not force:
-        raise InputError(f"path = {path!r} exists: name another file, or replace it with --force")
-    write_whole(Path(path), text, "path")
-    if as_json:
-        print_json({"path": path, "next": ["verify", "run", path]})
-    else:
-        from shlex import quote
-
-        click.echo(printable(f"wrote {path}; next: verify run {quote(path)}"))
-
-
-@click.command()
-@scene_name
-@overridden
-@json_alone
-def show(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Print the TOML of SCENE.
-
-    As it is written or, with --set, as it is then read.
-
-    Example: `verify show paper --set beam.length=0.4`
-    """
-    from verify.scenes.scene import scene_path, tables_of
-    from verify.scenes.toml import read_text
-    from verify.scenes.writing import toml_text
-
-    load(scene, overrides)  # which refuses what is no scene
+    load_scene(scene, overrides)
     if as_json:
         print_json(tables_of(scene, overrides))
     else:
         text = toml_text(tables_of(scene, overrides)) if overrides else read_text(scene_path(scene))
         click.echo(text, nl=not text.endswith("\n"))
+
+
+@scenes.command()
+@click.argument("path")
+@click.option("--from", "source", metavar="SCENE", help="Copy SCENE with its comments, under the name of PATH.")
+@click.option("--force", is_flag=True, help="Replace an existing file.")
+def init(path: str, source: str | None, force: bool) -> None:
+    """Write a commented scene to PATH.
+
+    Example: `verify scenes init mine.toml --from steel-cantilever`
+    """
+    from shlex import quote
+
+    from verify.files import exists, write_whole
+    from verify.scene.load import STARTER, copy_with_name, name_of, read_text, scene_path
+
+    text = read_text(STARTER)
+    if source is not None:
+        text = copy_with_name(read_text(scene_path(source)), name_of(Path(path)))
+    if exists(Path(path), "path") and not force:
+        raise InputError(f"path = {path!r} exists: name another file, or replace it with --force")
+    write_whole(Path(path), text, "path")
+    click.echo(printable(f"wrote {path}; next: verify run {quote(path)}"))

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam
 from verify.elements.curvatures import axial_weights, curvature_matrix, element_curvatures
-from verify.elements.mesh import Elements, mass_matrix, moving_matrix, slope_matrix
+from verify.elements.mesh import Elements
 from verify.models.arrays import Array
-from verify.models.pencil import FactoredPencil, on_diagonals
+from verify.models.pencil import FactoredPencil
 
 SAME_PLACE = 1e-9
 """Of a mean element: what stands so near to a node stands on it."""
@@ -61,7 +60,7 @@ def _lifted(elements: Elements, bending: float) -> float:
     beam, parts = elements.beam, elements.parts
     if beam.mass or beam.tension < 0.0 or elements.theory != "euler-bernoulli":
         return 0.0
-    lifted = ground_stiffness(beam, parts.unit) / float(parts.masses_per_length.max())
+    lifted = _ground_stiffness(elements) / float(parts.masses_per_length.max())
     return max(lifted - max(1e-10 * lifted, bending), 0.0)
 
 
@@ -71,7 +70,8 @@ Strained = tuple[Callable[[Array], Array], Callable[[], Any], Array]
 
 def _axial(elements: Elements) -> Strained:
     """Chord, mean curvature and gradient of every element, (3N, ...), with T l, T l/12 and T l/20."""
-    lengths, force = elements.lengths, axial_force(elements)
+    lengths, beam = elements.lengths, elements.beam
+    force = np.full(len(lengths), beam.tension * elements.parts.unit**2 / beam.bending_stiffness)
 
     def read(values: Array) -> Array:
         chord = np.diff(values[::2], axis=0) / lengths[:, None]
@@ -85,14 +85,8 @@ def _axial(elements: Elements) -> Strained:
         where = (np.concatenate([e, e]), np.concatenate([2 * e, 2 * e + 2]))
         return vstack([csc_array((entries, where), shape=(n, 2 * n + 2)), curvature_matrix(lengths)], format="csc")
 
-    pulled = slope_matrix(elements.basis, force)
+    pulled = elements.assemble("stretching", force)
     return read, matrix, axial_weights(lengths, pulled.diagonal(2), pulled.diagonal(3))
-
-
-def axial_force(elements: Elements) -> Array:
-    """T in EI / unit^2, of each element, (N,)."""
-    beam = elements.beam
-    return np.full(len(elements.lengths), beam.tension * elements.parts.unit**2 / beam.bending_stiffness)
 
 
 def _ground(elements: Elements) -> Strained:
@@ -101,13 +95,13 @@ def _ground(elements: Elements) -> Strained:
     lengths, nodes = elements.lengths, elements.parts.nodes
     x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
     matrix = _rows(elements, elements.basis.weights(x))
-    stiffness = ground_stiffness(elements.beam, elements.parts.unit) * (lengths[:, None] * 0.5 * weights).ravel()
+    stiffness = _ground_stiffness(elements) * (lengths[:, None] * 0.5 * weights).ravel()
     return lambda values: matrix @ values, lambda: matrix, stiffness
 
 
-def ground_stiffness(beam: Beam, unit: float) -> float:
+def _ground_stiffness(elements: Elements) -> float:
     """K_f in EI / unit^4."""
-    return beam.foundation * unit**4 / beam.bending_stiffness
+    return elements.beam.foundation * elements.parts.unit**4 / elements.beam.bending_stiffness
 
 
 def _springs(elements: Elements) -> Strained:
@@ -122,11 +116,13 @@ def _springs(elements: Elements) -> Strained:
 
 def added_mass(elements: Elements) -> Any:
     """What masses and rotary inertias add to M, over all degrees of freedom, sparse."""
+    from scipy.sparse import diags_array
+
     beam, unit = elements.beam, elements.parts.unit
     lift = [(mass.position, mass.mass / unit) for mass in beam.mass if mass.mass]
     turn = [(mass.position, mass.rotary_inertia / unit**3) for mass in beam.mass if mass.rotary_inertia]
     matrix, inertia = _felt(elements, lift, turn)
-    return (matrix.T @ on_diagonals({0: inertia / beam.mass_per_length}) @ matrix).tocsr()
+    return (matrix.T @ diags_array(inertia / beam.mass_per_length) @ matrix).tocsr()
 
 
 def _felt(elements: Elements, lift: list[tuple[float, float]], turn: list[tuple[float, float]]) -> tuple[Any, Array]:
@@ -155,19 +151,3 @@ def _rows(elements: Elements, weights: tuple[Any, list[Array]]) -> Any:
     found = csc_array((np.ravel(values), (where.ravel(), dofs.ravel())), shape=(dofs.shape[1], elements.basis.N))
     found.eliminate_zeros()
     return found
-
-
-def added_matrix(elements: Elements, own: Any) -> Any:
-    """K with what scikit-fem assembles of axial force and foundation, and the springs, over all degrees of freedom."""
-    beam, parts, basis = elements.beam, elements.parts, elements.basis
-    total = own
-    if beam.tension:
-        total = total + slope_matrix(basis, axial_force(elements))
-    if beam.foundation:
-        ground = np.full(len(parts.lengths), ground_stiffness(beam, parts.unit))
-        shear = elements.theory == "timoshenko"
-        total = total + (moving_matrix if shear else mass_matrix)(basis, ground)
-    if beam.spring:
-        _, matrix, stiffness = _springs(elements)
-        total = total + matrix().T @ on_diagonals({0: stiffness}) @ matrix()
-    return total.tocsr()

@@ -12,11 +12,7 @@ def curvature_weights(lengths: Array, stiffness: Any) -> Array:
 
     Between its two nodes K has one element alone: -4 d_1 / l^2 for the deflections, d_1 - d_0 for the slopes.
     """
-    return weights_beside(lengths, stiffness.diagonal(2))
-
-
-def weights_beside(lengths: Array, beside: Array) -> Array:
-    """The same from the second diagonal of K, (2N,); of many beams lengths are (N, n_beams), the others likewise."""
+    beside = stiffness.diagonal(2)
     gradients = -0.25 * lengths**2 * beside[::2]
     return np.concatenate([gradients - beside[1::2], gradients])
 
@@ -24,25 +20,12 @@ def weights_beside(lengths: Array, beside: Array) -> Array:
 def element_curvatures(lengths: Array, nodal: Array) -> Array:
     """Mean curvature and its gradient in every element, (2N, k), from nodal values (2N + 2, k).
 
-    Of many beams lengths are (N, n_beams), values (2N + 2, k, n_beams) and strains (2N, k, n_beams).
     theta_1 - theta_0 and theta_0 + theta_1 - 2 (w_1 - w_0)/l: their squares weighted with EI/l and 3 EI/l
     are twice the bending energy of a cubic element. Written as differences of differences.
     """
     chord = np.diff(nodal[::2], axis=0) / lengths[:, None]
     left, right = nodal[1:-1:2] - chord, nodal[3::2] - chord
     return np.concatenate([np.diff(nodal[1::2], axis=0), left + right])
-
-
-def curvature_loads(lengths: Array, forces: Array) -> Array:
-    """What forces (2N, ...) in the strains of `element_curvatures` are on nodal values, (2N + 2, ...)."""
-    mean, gradient = np.split(forces, 2)
-    found = np.zeros((len(forces) + 2, *forces.shape[1:]))
-    lift = 2.0 * gradient / lengths[:, None]
-    found[:-2:2] += lift
-    found[2::2] -= lift
-    found[1:-2:2] += gradient - mean
-    found[3::2] += gradient + mean
-    return found
 
 
 def element_shear_strains(lengths: Array, values: Array) -> Array:
@@ -83,7 +66,7 @@ def shear_strain_matrix(lengths: Array) -> Any:
 def axial_weights(lengths: Array, beside: Array, beyond: Array) -> Array:
     """D of chords, mean curvatures and gradients, (3N,): from the integral of T u' v' as scikit-fem assembles it.
 
-    Its second and third diagonals are given, of many beams as in `weights_beside`. Between the two nodes of an element:
+    Its second and third diagonals are given. Between the two nodes of an element:
     2 d_2 / l of left deflection and right slope, d_2 - d_1 of both slopes, -(d_0 + 4 d_2) / l^2 of both deflections.
     """
     gradients = 0.5 * lengths * beyond[::2]

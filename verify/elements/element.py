@@ -17,7 +17,7 @@ from skfem.mesh import MeshLine1
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
-from verify.elements.weighing import KEPT, weighed
+from verify.elements.mesh import KEPT
 from verify.models.arrays import Array, Indices
 
 _RULES = {
@@ -110,7 +110,7 @@ class LineBasis(CellBasis):  # type: ignore[misc]
     def read(self, nodal: Any, x: Array, derivative: int = 0) -> Any:
         """The cubics or a derivative at x (in the mesh's coordinate), (k, len(x)); nodal is (k, 2N + 2)."""
         dofs, weights = self.weights(x, derivative)
-        return weighed((nodal.take(each, axis=1) for each in dofs), weights)
+        return sum(nodal.take(each, axis=1) * weight for each, weight in zip(dofs, weights, strict=True))
 
     @cached_property
     def _stretches(self) -> tuple[Array, Array]:
@@ -154,14 +154,14 @@ def line_basis(nodes: Array) -> LineBasis:
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def bending(u: Any, v: Any, w: Any) -> Any:
-    """Of bending, EI u'' v''; `w.stiffness` is EI."""
-    return w.stiffness * u.hess[0, 0] * v.hess[0, 0]
+    """Of bending, EI u'' v''; `w.weight` is EI."""
+    return w.weight * u.hess[0, 0] * v.hess[0, 0]
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def inertia(u: Any, v: Any, w: Any) -> Any:
-    """Of inertia, rho A u v; `w.mass` is rho A."""
-    return w.mass * u * v
+    """Of inertia, rho A u v; `w.weight` is rho A."""
+    return w.weight * u * v
 
 
 @BilinearForm  # type: ignore[untyped-decorator]

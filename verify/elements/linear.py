@@ -1,7 +1,7 @@
 """Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers in metres, hertz, newtons."""
 
-from collections.abc import Callable, Sequence
-from functools import lru_cache, partial
+from collections.abc import Iterable
+from functools import lru_cache
 from math import pi, sqrt
 
 import numpy as np
@@ -9,25 +9,19 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.checks import MOST_PARTS, check_number, check_whole, check_word
-from verify.elements.cuts import check_cuts
-from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
-from verify.elements.pencil import (
-    check_unbuckled,
-    damped_stiffness,
-    element_pencil,
-    mesh_buckling_load,
-    uneven,
-)
-from verify.elements.weighing import KEPT
+from verify.elements.mesh import HELD, KEPT, Elements, build_elements, check_cuts, point_loads
+from verify.elements.pencil import check_unbuckled, damped_stiffness, element_pencil, mesh_buckling_load
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
-from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
-from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
+from verify.models.driven_pencil import check_dampings, harmonic_response, modal_receptance, name_resonance
+from verify.models.eigen import Eigenpairs, check_size, lowest
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed, within
 from verify.models.response import forced_response, resonance_distance
+from verify.models.sweeps import FIELD as FREQUENCIES
+from verify.models.sweeps import HarmonicSweep, swept_frequencies, swept_modes
 from verify.models.theory import check_theory
 from verify.options import THEORIES, Theory
 
@@ -42,9 +36,8 @@ def unknowns(beam: Beam, n_elements: int, theory: Theory = "euler-bernoulli") ->
     """
     check_whole(FIELD, n_elements, 1)
     check_word("theory", theory, THEORIES)
-    held = {"pinned": 1, "clamped": 2, "guided": 1, "free": 0}
     inside = 2 * n_elements if theory == "timoshenko" else 0
-    return 2 * n_elements + 2 + inside - sum(held[support] for support in beam.supports)
+    return 2 * n_elements + 2 + inside - sum(len(HELD[support]) for support in beam.supports)
 
 
 @as_typed
@@ -105,10 +98,9 @@ def buckling_load(beam: Beam, n_elements: int, *, grading: float = 1.0) -> float
 
 def _modes(elements: Elements, nodal: Array, pairs: Eigenpairs) -> Modes:
     beam, parts, basis, unit = elements.beam, elements.parts, elements.basis, elements.parts.unit
-    frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / unit**2
 
     def shapes(x: Array, derivative: int) -> Array:
-        return np.asarray(interpolate(basis, nodal, x / unit, derivative) / unit**derivative)
+        return np.asarray(basis.read(nodal, x / unit, derivative) / unit**derivative)
 
     quarters = _inside(parts, np.arange(4) / 4.0)
     points = np.append(quarters, parts.nodes[-1])
@@ -117,16 +109,21 @@ def _modes(elements: Elements, nodal: Array, pairs: Eigenpairs) -> Modes:
         model="fem",
         count=len(parts.lengths),
         length=beam.length,
-        frequencies_hz=frequencies,
+        frequencies_hz=_frequencies(elements, pairs.values),
         shapes=shapes,
         nodes=within(parts.nodes * unit, beam.length),
         readings={"nodal": lambda: nodal[:, basis.nodal_dofs[0]]},
         points=points * unit,
-        sampled=lambda: interpolate(basis, nodal, points),
+        sampled=lambda: basis.read(nodal, points),
         curvature_points=gauss * unit,
-        curvatures=lambda: interpolate(basis, nodal, gauss, 2) / unit**2,
+        curvatures=lambda: basis.read(nodal, gauss, 2) / unit**2,
         method=pairs.method,
     )
+
+
+def _frequencies(elements: Elements, values: Array) -> Array:
+    """Hz, of eigenvalues in the elements' units."""
+    return np.asarray(np.sqrt(values) * (elements.beam.wave_constant / (2.0 * pi)) / elements.parts.unit**2)
 
 
 def _inside(parts: Parts, xi: Array) -> Array:
@@ -137,7 +134,7 @@ def _inside(parts: Parts, xi: Array) -> Array:
 def leading_sign(elements: Elements, nodal: Array) -> Array:
     """+-1 for each mode, (k,): by the first of deflection, slope, curvature that the left end leaves free."""
     if elements.beam.supports[0] == "clamped":
-        leading = interpolate(elements.basis, nodal, np.zeros(1), 2)[:, 0]
+        leading = elements.basis.read(nodal, np.zeros(1), 2)[:, 0]
     else:
         leading = nodal[:, elements.free[0]]
     return np.where(leading < 0, -1.0, 1.0)
@@ -162,68 +159,91 @@ def solve_harmonic(
     force or a foundation have no loss.
     """
     forces = as_forces(forces)
-    check_asked(beam, 1, n_elements, grading, theory)
     check_drive(beam, forces, frequency_hz)
-    check_damping(beam, modal_damping)
-    elements, pencil = driven(beam, n_elements, grading, theory)
-    unit = elements.parts.unit
-    omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * unit**4
-    loads, undamped = force_loads(elements, forces), not (beam.loss_factor or modal_damping)
-    stiffness, asked = damped_stiffness(elements, pencil), probed(pencil, loads) if undamped else loads
-    free = damped_response(pencil, asked, omega2, stiffness, modal_damping)
-    if undamped:
-        near = partial(modes_around, theory=theory, grading=grading)
-        refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, near, n_elements, free)
-    every, turned = swept_shapes(elements, free[:, :1]), swept_turns(elements, free[:, :1])
+    return _fields(beam, forces, np.array([frequency_hz]), n_elements, modal_damping, grading, theory).field(0)
 
-    return HarmonicField(
+
+@as_typed
+def sweep_harmonic(
+    beam: Beam,
+    forces: Forces,
+    frequencies_hz: Numbers,
+    n_elements: int,
+    *,
+    modal_damping: float = 0.0,
+    grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+) -> HarmonicSweep:
+    """The steady fields of `solve_harmonic` at many frequencies, to rounding.
+
+    Raises InputError as `solve_harmonic` does, by index: of several resonances the first.
+    """
+    forces = as_forces(forces)
+    check_asked(beam, 1, n_elements, grading, theory)
+    frequencies = swept_frequencies(beam, forces, frequencies_hz, 2 * n_elements)
+    return _fields(beam, forces, frequencies, n_elements, modal_damping, grading, theory, FREQUENCIES)
+
+
+def _fields(
+    beam: Beam,
+    forces: tuple[PointForce, ...],
+    frequencies: Array,
+    n_elements: int,
+    modal_damping: float,
+    grading: float,
+    theory: Theory,
+    field: str = "",
+) -> HarmonicSweep:
+    """The fields at frequencies, (n,); `field` names them in messages by index."""
+    check_asked(beam, 1, n_elements, grading, theory)
+    check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
+    check_dampings(beam, modal_damping)
+    elements, pencil = _driven(beam, n_elements, grading, theory)
+    basis, unit = elements.basis, elements.parts.unit
+    omega2 = (2.0 * pi * frequencies / beam.wave_constant) ** 2 * unit**4
+
+    def modes_around(beam: Beam, n_modes: int, n_elements: int) -> Modes:
+        # a plain beam has n_modes below the frequency; masses lower others
+        wanted = n_modes if beam.uniform and theory == "euler-bernoulli" else 2 * n_modes + 2 * len(beam.mass)
+        most = n_elastic(beam, n_elements, theory)
+        return solve_modes(beam, min(wanted, most), n_elements, grading=grading, theory=theory)
+
+    def refuse(index: int) -> None:
+        named = f"{field}[{index}]" if field else "frequency_hz"
+        name_resonance("fem", beam, pencil, float(frequencies[index]), modes_around, n_elements, named)
+
+    unit_loads = point_loads(basis, np.array([force.position for force in forces]) / unit)
+    total = sum(phasor(force) * load for force, load in zip(forces, unit_loads, strict=True))
+    loads = np.array(total, dtype=np.complex128)[elements.free, None] * (unit**3 / beam.bending_stiffness)
+    undamped = not (beam.loss_factor or modal_damping)
+    stiffness = damped_stiffness(elements, pencil)
+    free = harmonic_response(pencil, loads, omega2, stiffness, modal_damping, refuse if undamped else None)
+    nodal = elements.all_values(free)
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        values: ComplexArray = basis.read(nodal, x / unit, derivative)
+        return values / unit**derivative
+
+    def turned(x: Array, derivative: int) -> ComplexArray:
+        values: ComplexArray = basis.read_turn(nodal, x / unit, derivative)
+        return values / unit ** (derivative + 1)
+
+    return HarmonicSweep(
         theory=theory,
         model="fem",
         count=n_elements,
         beam=beam,
-        frequency_hz=frequency_hz,
-        forces=tuple(forces),
-        shapes=lambda x, derivative: every(x, derivative)[0],
-        turned=None if turned is None else lambda x, derivative: turned(x, derivative)[0],
+        frequencies_hz=frequencies,
+        forces=forces,
+        shapes=shapes,
+        turned=turned if elements.shears else None,
     )
 
 
-def swept_shapes(elements: Elements, free: ComplexArray) -> Callable[[Array, int], ComplexArray]:
-    """The elements' cubics of the unknowns (n, k) complex: (x, derivative) -> (k, len(x))."""
-    nodal, basis, unit = elements.all_values(free), elements.basis, elements.parts.unit
-
-    def shapes(x: Array, derivative: int) -> ComplexArray:
-        values: ComplexArray = interpolate(basis, nodal, x / unit, derivative)
-        return values / unit**derivative
-
-    return shapes
-
-
-def swept_turns(elements: Elements, free: ComplexArray) -> Callable[[Array, int], ComplexArray] | None:
-    """Likewise the turns of sections that shear; None of elements in which nothing does."""
-    if elements.theory != "timoshenko":
-        return None
-    nodal, basis, unit = elements.all_values(free), elements.basis, elements.parts.unit
-
-    def turns(x: Array, derivative: int) -> ComplexArray:
-        values: ComplexArray = basis.read_turn(nodal, x / unit, derivative)
-        return values / unit ** (derivative + 1)
-
-    return turns
-
-
-def force_loads(elements: Elements, forces: Sequence[PointForce]) -> ComplexArray:
-    """Forces on the free unknowns, (n, 1), in the elements' units."""
-    unit = elements.parts.unit
-    unit_loads = point_loads(elements.basis, np.array([force.position for force in forces]) / unit)
-    total = sum(phasor(force) * load for force, load in zip(forces, unit_loads, strict=True))
-    return np.array(total, dtype=np.complex128)[elements.free, None] * (unit**3 / elements.beam.bending_stiffness)
-
-
-def driven(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
-    """The elements of a beam and their pencil, which knows no loss; small ones are kept for the next frequency."""
+def _driven(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
+    """The elements of a beam and their pencil, which knows no loss; small ones are cached for the next frequency."""
     bare = replace(beam, loss_factor=0.0) if beam.loss_factor else beam
-    elements, pencil = (_kept if n_elements < KEPT else _made)(bare, n_elements, grading, theory)
+    elements, pencil = (_cached if n_elements < KEPT else _made)(bare, n_elements, grading, theory)
     return replace(elements, beam=beam), pencil
 
 
@@ -232,20 +252,29 @@ def _made(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[
     return elements, element_pencil(elements)
 
 
-_kept = lru_cache(maxsize=16)(_made)
+_cached = lru_cache(maxsize=16)(_made)
 
 
-def check_damping(beam: Beam, modal_damping: float) -> None:
-    """Raise InputError for a modal ratio that is none, or beside a loss factor where the two couple the modes."""
-    check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
-    check_dampings(beam, modal_damping)
+@as_typed
+def sweep_modes(
+    beams: Iterable[Beam],
+    n_modes: int,
+    n_elements: int,
+    *,
+    grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+) -> Array:
+    """Frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
 
+    Raises InputError as `solve_modes` does, naming the beam by its index.
+    """
 
-def modes_around(beam: Beam, n_modes: int, n_elements: int, *, grading: float, theory: Theory) -> Modes:
-    """Modes among which that of a frequency is, `n_modes` of which a plain beam has below it: masses lower others."""
-    wanted = n_modes if beam.uniform and theory == "euler-bernoulli" else 2 * n_modes + 2 * len(beam.mass)
-    most = n_elastic(beam, n_elements, theory)
-    return solve_modes(beam, min(wanted, most), n_elements, grading=grading, theory=theory)
+    def solve(beam: Beam) -> Array:
+        check_asked(beam, n_modes, n_elements, grading, theory)
+        elements = build_elements(beam, n_elements, grading, theory)
+        return _frequencies(elements, lowest(element_pencil(elements), n_modes).values)
+
+    return swept_modes(beams, n_modes, solve)
 
 
 @as_typed
@@ -266,7 +295,7 @@ def unit_responses(
     """
     positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     check_asked(beam, 1, n_elements, 1.0, theory)
-    elements, pencil = driven(beam, n_elements, 1.0, theory)
+    elements, pencil = _driven(beam, n_elements, 1.0, theory)
     basis, unit = elements.basis, elements.parts.unit
     weights = point_loads(basis, positions / unit)[:, elements.free].T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4
@@ -274,7 +303,7 @@ def unit_responses(
         found = [_one_by_one(elements, pencil, weights, value, x) for value in omega2]
         return np.array(found).reshape(len(omega2), len(positions), len(x)) * (unit**3 / beam.bending_stiffness)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
-    shapes: Array = interpolate(basis, elements.all_values(modes), x / unit)
+    shapes: Array = basis.read(elements.all_values(modes), x / unit)
     return np.asarray(receptance @ shapes) * (unit**3 / beam.bending_stiffness)
 
 
@@ -283,9 +312,4 @@ def _one_by_one(elements: Elements, pencil: FactoredPencil, weights: Array, omeg
     if not elements.beam.loss_factor and abs(resonance_distance(pencil, omega2)) <= 2.0 * RESONANCE:
         return np.full((weights.shape[1], len(x)), np.nan, dtype=complex)
     nodal = elements.all_values(forced_response(pencil, weights, omega2, damped_stiffness(elements, pencil)))
-    return np.asarray(interpolate(elements.basis, nodal, x / elements.parts.unit))
-
-
-def method(beam: Beam, n_modes: int, n_elements: int, theory: Theory = "euler-bernoulli") -> str:
-    """How `solve_modes` will find its eigenvalues, in words."""
-    return method_name(unknowns(beam, n_elements, theory), n_modes, uneven(beam, theory))
+    return np.asarray(elements.basis.read(nodal, x / elements.parts.unit))

@@ -1,9 +1,8 @@
 """K = B^T diag(d) B and M of the elements: B reads strains exactly, d and M are scikit-fem's.
 
 scikit-fem assembles K and M. K drowns its low eigenvalues in the rounding of its high ones, so it is kept as the
-factors it is made of: what every element contributes is read off K's entries between its two nodes, and B is
-written as differences of differences. `factor_difference` holds the product against K, entry by entry.
-What an axial force, a foundation, springs and masses add is in `added`.
+factors it is made of: d of every element is read off K's entries between its two nodes, and B is written as differences
+of differences. Axial force, foundation, springs and masses are in `added`.
 """
 
 from typing import Any
@@ -12,7 +11,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam
-from verify.elements.added import added_mass, added_matrix, added_strains, stiffest
+from verify.elements.added import added_mass, added_strains, stiffest
 from verify.elements.curvatures import (
     curvature_matrix,
     curvature_weights,
@@ -20,22 +19,10 @@ from verify.elements.curvatures import (
     element_shear_strains,
     shear_strain_matrix,
 )
-from verify.elements.cuts import of_pieces
-from verify.elements.mesh import (
-    Elements,
-    build_elements,
-    mass_matrix,
-    moving_matrix,
-    rolling_matrix,
-    shear_matrix,
-    slope_matrix,
-    stiffness_matrix,
-    turn_matrix,
-)
+from verify.elements.mesh import Elements
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.compression import buckling_ratio
-from verify.models.driven_pencil import check_dense
 from verify.models.inverse import first_bending
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Theory
@@ -44,8 +31,8 @@ from verify.options import Theory
 def element_pencil(elements: Elements) -> FactoredPencil:
     """K = B^T diag(d) B over the strains of each element, and M by scikit-fem.
 
-    First two curvatures of each element, then its two shear strains where it has them, then what is added to the
-    beam. Raises InputError for a compression at which the elements buckle.
+    Strains are first the two curvatures of each element, then its two shear strains where it has them, then those of
+    `added`. Raises InputError for a compression at which the elements buckle.
     """
     pencil = _pencil(elements)
     if elements.beam.tension < 0.0:
@@ -54,28 +41,28 @@ def element_pencil(elements: Elements) -> FactoredPencil:
 
 
 def _pencil(elements: Elements) -> FactoredPencil:
-    lengths, free = elements.lengths, elements.free
+    lengths, free, beam, parts = elements.lengths, elements.free, elements.beam, elements.parts
     mass = inertia_matrix(elements)[free][:, free].tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
-    tension = elements.beam.tension * elements.parts.unit**2 / elements.beam.bending_stiffness
-    own = curvature_matrix if elements.theory != "timoshenko" else shear_strain_matrix
-    read = element_curvatures if elements.theory != "timoshenko" else element_shear_strains
+    tension = beam.tension * parts.unit**2 / beam.bending_stiffness
+    matrix = shear_strain_matrix if elements.shears else curvature_matrix
+    read = element_shear_strains if elements.shears else element_curvatures
     plain = FactoredPencil(
         n=len(free),
         rigid=rigid_shapes(elements)[free],
         strain=lambda values: read(lengths, elements.all_values(values).T),
         stiffness=own_weights(elements),
-        strain_matrix=lambda: own(lengths)[:, free],
+        strain_matrix=lambda: matrix(lengths)[:, free],
         mass_matrix=lambda: mass,
-        uneven=uneven(elements.beam, elements.theory),
-        bending=first_bending(lengths, elements.parts.stiffnesses, elements.parts.masses_per_length, tension),
+        uneven=uneven(beam, elements.theory),
+        bending=first_bending(lengths, parts.stiffnesses, parts.masses_per_length, tension),
     )
     return added_strains(elements, plain)
 
 
 def uneven(beam: Beam, theory: Theory) -> bool:
-    """Whether stiffnesses of many sizes come together: of shear, of springs, of short elements beside what stands."""
+    """Whether stiffnesses of many sizes come together: of shear, of springs, of short elements beside attachments."""
     return theory == "timoshenko" or bool(set(beam.added) - {"section"})
 
 
@@ -99,54 +86,35 @@ def mesh_buckling_load(elements: Elements, pencil: FactoredPencil | None = None)
 def damped_stiffness(elements: Elements, pencil: FactoredPencil) -> ComplexArray:
     """D with the beam's loss factor, which acts on its bending and shear and on nothing that is added, (m,)."""
     stiffness = np.asarray(pencil.stiffness, dtype=complex)
-    stiffness[: own_strains(elements)] *= 1.0 + 1j * elements.beam.loss_factor
+    own = len(elements.lengths) * (4 if elements.shears else 2)
+    stiffness[:own] *= 1.0 + 1j * elements.beam.loss_factor
     return stiffness
-
-
-def own_strains(elements: Elements) -> int:
-    """How many strains there are of the beam's own bending and shear."""
-    return len(elements.lengths) * (4 if elements.theory == "timoshenko" else 2)
 
 
 def own_weights(elements: Elements) -> Array:
     """D of the beam's own bending and shear, (2N,) or (4N,), read off what scikit-fem assembles."""
-    lengths, basis = elements.lengths, elements.basis
-    if elements.theory != "timoshenko":
-        return curvature_weights(lengths, stiffness_matrix(basis, elements.parts.stiffnesses))
-    bending, shear = _timoshenko_stiffness(elements)
-    nodal = 2 * len(lengths) + 2
-    inside = shear.diagonal()[basis.interior_dofs]
-    return np.concatenate([curvature_weights(lengths, bending[:nodal, :nodal]), *inside])
-
-
-def own_matrix(elements: Elements) -> Any:
-    """K of the beam's own bending and shear by scikit-fem, over all degrees of freedom, sparse."""
-    if elements.theory != "timoshenko":
-        return stiffness_matrix(elements.basis, elements.parts.stiffnesses)
-    bending, shear = _timoshenko_stiffness(elements)
-    return bending + shear
-
-
-def _timoshenko_stiffness(elements: Elements) -> tuple[Any, Any]:
-    """Bending and shear in K."""
-    beam, parts, basis = elements.beam, elements.parts, elements.basis
+    lengths, beam, parts = elements.lengths, elements.beam, elements.parts
+    if not elements.shears:
+        return curvature_weights(lengths, elements.assemble("bending", parts.stiffnesses))
     scale = parts.unit**2 / beam.bending_stiffness
-    shear = of_pieces(beam, parts, [piece.shear_stiffness * scale for piece in beam.pieces])  # type: ignore[operator]
-    shear = np.minimum(shear, stiffest(elements))
-    return turn_matrix(basis, parts.stiffnesses), shear_matrix(basis, shear)
+    stiffness = elements.of_pieces([piece.shear_stiffness * scale for piece in beam.pieces])  # type: ignore[operator]
+    shear = elements.assemble("shearing", np.minimum(stiffness, stiffest(elements)))
+    bending = elements.assemble("turning", parts.stiffnesses)
+    nodal = 2 * len(lengths) + 2
+    inside = shear.diagonal()[elements.basis.interior_dofs]
+    return np.concatenate([curvature_weights(lengths, bending[:nodal, :nodal]), *inside])
 
 
 def inertia_matrix(elements: Elements) -> Any:
     """M by scikit-fem with the masses that stand on the beam, over all degrees of freedom, sparse."""
-    beam, parts, basis = elements.beam, elements.parts, elements.basis
-    shear = elements.theory == "timoshenko"
-    mass = (moving_matrix if shear else mass_matrix)(basis, parts.masses_per_length)
+    beam, parts = elements.beam, elements.parts
+    mass = elements.assemble("moving" if elements.shears else "inertia", parts.masses_per_length)
     mass = mass + added_mass(elements) if beam.mass else mass
     if elements.theory == "euler-bernoulli":
         return mass
     scale = 1.0 / (beam.mass_per_length * parts.unit**2)
-    rotary = of_pieces(beam, parts, [piece.rotary_inertia * scale for piece in beam.pieces])  # type: ignore[operator]
-    return mass + (rolling_matrix if shear else slope_matrix)(basis, rotary)
+    rotary = elements.of_pieces([piece.rotary_inertia * scale for piece in beam.pieces])  # type: ignore[operator]
+    return mass + elements.assemble("rolling" if elements.shears else "stretching", rotary)
 
 
 def rigid_shapes(elements: Elements) -> Array:
@@ -159,19 +127,3 @@ def rigid_shapes(elements: Elements) -> Array:
         shape[deflections] = turn * x + (lift / unit if turn else lift)
         shape[slopes] = turn
     return shapes
-
-
-def factor_difference(beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli") -> float:
-    """How far B^T diag(d) B is from the assembled K: the largest entry of the difference over sqrt(K_ii K_jj).
-
-    Over the free unknowns, with B as the sparse array and as the differences that read the eigenvalues, the worse
-    of both. Raises InputError where the beam cannot be divided so, and beyond the dense size.
-    """
-    elements = build_elements(beam, n_elements, grading, theory)
-    pencil = element_pencil(elements)
-    check_dense(pencil, "the factored stiffness against the assembled one")
-    assembled = added_matrix(elements, own_matrix(elements))[elements.free][:, elements.free].toarray()
-    scale = np.sqrt(assembled.diagonal())
-    factors = (pencil.strain(np.eye(pencil.n)), pencil.strain_matrix().toarray())
-    products = [strain.T @ (pencil.stiffness[:, None] * strain) for strain in factors]
-    return float(max(abs((product - assembled) / np.outer(scale, scale)).max() for product in products))

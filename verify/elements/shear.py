@@ -17,7 +17,6 @@ from skfem.element.element import Element
 from skfem.refdom import RefLine
 
 from verify.elements.element import _MIDDLE, Line, LineBasis, cubics
-from verify.elements.weighing import weighed
 from verify.models.arrays import Array, Indices
 
 
@@ -83,7 +82,7 @@ class ShearBasis(LineBasis):
     def read_turn(self, nodal: Any, x: Array, derivative: int = 0) -> Any:
         """The turns or a derivative at x (in the mesh's coordinate), (k, len(x)); nodal is (k, 4N + 2)."""
         dofs, weights = self.turn_weights(x, derivative)
-        return weighed((nodal.take(each, axis=1) for each in dofs), weights)
+        return sum(nodal.take(each, axis=1) * weight for each, weight in zip(dofs, weights, strict=True))
 
 
 def shear_basis(nodes: Array) -> ShearBasis:
@@ -94,23 +93,23 @@ def shear_basis(nodes: Array) -> ShearBasis:
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def turning(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
-    """Of bending, EI psi' psi'; `w.stiffness` is EI."""
-    return w.stiffness * p.grad[0] * q.grad[0]
+    """Of bending, EI psi' psi'; `w.weight` is EI."""
+    return w.weight * p.grad[0] * q.grad[0]
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def shearing(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
-    """Of shear, kappa G A gamma gamma; `w.stiffness` is kappa G A."""
-    return w.stiffness * (u.grad[0] - p) * (v.grad[0] - q)
+    """Of shear, kappa G A gamma gamma; `w.weight` is kappa G A."""
+    return w.weight * (u.grad[0] - p) * (v.grad[0] - q)
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def moving(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
-    """Of inertia, rho A w w, or of a foundation; `w.mass` is rho A or k_f."""
-    return w.mass * u * v
+    """Of inertia, rho A w w, or of a foundation; `w.weight` is rho A or k_f."""
+    return w.weight * u * v
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def rolling(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
-    """Of rotary inertia, rho I psi psi; `w.mass` is rho I."""
-    return w.mass * p * q
+    """Of rotary inertia, rho I psi psi; `w.weight` is rho I."""
+    return w.weight * p * q

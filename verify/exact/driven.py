@@ -11,6 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.errors import InputError
 from verify.exact.buckling import check_stable
 from verify.exact.lineup import Lineup, line_up, place_of
 from verify.exact.roots import general_frequency_hz, trials
@@ -64,7 +65,13 @@ def _under_unit_forces(
     for i, position in enumerate(positions):
         at = int(np.searchsorted(spans.stretch, place_of(places, position / beam.length)))
         jumps[at, 3, i] = beam.length**3 / beam.bending_stiffness / spans.sizes[3]
-    return spans, solver(spans)(jumps)
+    try:
+        return spans, solver(spans)(jumps)
+    except np.linalg.LinAlgError:
+        raise InputError(
+            f"frequency_hz = {frequency_hz!r}: a beam that no support holds moves beyond floating point, give a higher "
+            "frequency_hz or other supports"
+        ) from None
 
 
 def _refuse_resonance(beam: Beam, line: Lineup, beta_length: float, frequency_hz: float, theory: str) -> None:

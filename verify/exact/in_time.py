@@ -8,8 +8,9 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.checks import check_whole
 from verify.errors import InputError
+from verify.exact.harmonic import solve_harmonic
 from verify.exact.lineup import line_up
-from verify.exact.modes import mode_shapes, solve_harmonic, solve_modes
+from verify.exact.modes import mode_shapes, solve_modes
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import phasor
 from verify.models.places import as_typed

@@ -1,6 +1,6 @@
 """Exact modes: uniform Euler-Bernoulli beams in closed form, free of overflow at any mode; all others by transfer."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import exp, pi, sqrt
 
@@ -9,29 +9,16 @@ import numpy as np
 from verify.beam import Beam
 from verify.checks import check_whole, check_word
 from verify.exact.buckling import check_stable
-from verify.exact.closed_forms import HIGHEST, check_mode, frequency_hz, root_parts
-from verify.exact.harmonic import solve_harmonic, unit_responses
-from verify.exact.roots import general_frequency_hz, modes_below
+from verify.exact.closed_forms import check_mode, frequency_hz, root_parts
+from verify.exact.roots import general_frequency_hz
 from verify.models.arrays import Array
 from verify.models.modes import Modes
 from verify.models.places import Numbers, as_typed, places
+from verify.models.sweeps import swept_modes
 from verify.models.theory import check_theory
 from verify.options import THEORIES
-from verify.patience import check_work
 
-__all__ = [
-    "exact_frequency_hz",
-    "mode_shape",
-    "mode_shapes",
-    "modes_below",
-    "solve_harmonic",
-    "solve_modes",
-    "stepped_frequency_hz",
-    "unit_responses",
-]
-
-_CLOSED_S, _COUNTED_S = 1.5e-5, 3e-4
-"""Seconds that a mode takes, from above: in closed form, and counted on each stretch of a beam and once more."""
+MOST_MODES = 100_000
 _MIRRORED = {
     ("pinned", "clamped"),
     ("pinned", "free"),
@@ -48,10 +35,10 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
 
     Of uniform Euler-Bernoulli beams roots in the exponential form y = (n + c) pi + s g atan(exp(-2 y / g)), shapes with
     decaying exponentials from both ends; of all others as `exact_frequency_hz` and `exact.shapes`. Raises InputError
-    for n_modes < 1 or so many that they take longer than is waited for, an unknown theory, what a theory lacks, and
+    for n_modes < 1 or beyond `MOST_MODES`, an unknown theory, what a theory lacks, and
     compression beyond buckling.
     """
-    check_n_modes(beam, n_modes, theory)
+    check_n_modes(n_modes, theory)
     plain = theory == "euler-bernoulli" and beam.uniform
     solve = frequency_hz if plain else exact_frequency_hz
     frequencies = np.array([solve(beam, n, theory) for n in range(1, n_modes + 1)])
@@ -78,13 +65,20 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
     )
 
 
-def check_n_modes(beam: Beam, n_modes: int, theory: str, n_beams: int = 1) -> None:
-    """Raise InputError where there are no modes to be found, or where finding them takes longer than is waited for."""
-    check_whole("n_modes", n_modes, 1)
+def check_n_modes(n_modes: int, theory: str) -> None:
+    """Raise InputError for no modes, more than `MOST_MODES`, or an unknown theory."""
+    check_whole("n_modes", n_modes, 1, MOST_MODES)
     check_word("theory", theory, THEORIES)
-    closed = has_closed_form(beam, min(n_modes, HIGHEST), theory)
-    each = _CLOSED_S if closed else _COUNTED_S * (1 + len(beam.pieces))
-    check_work("n_modes", n_modes, min(n_modes, HIGHEST) * n_beams * each, "ask for fewer modes")
+
+
+@as_typed
+def sweep_modes(beams: Iterable[Beam], n_modes: int, theory: str = "euler-bernoulli") -> Array:
+    """Exact frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
+
+    Raises InputError as `solve_modes` does, naming the beam by its index.
+    """
+    numbers = range(1, n_modes + 1)
+    return swept_modes(beams, n_modes, lambda beam: np.array([exact_frequency_hz(beam, n, theory) for n in numbers]))
 
 
 @as_typed
@@ -102,7 +96,7 @@ def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0, theory: s
 @as_typed
 def mode_shapes(beam: Beam, n_modes: int, x: Numbers, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
     """The same of the first `n_modes` modes, (n_modes, *shape of x). Raises InputError likewise."""
-    check_n_modes(beam, n_modes, theory)
+    check_n_modes(n_modes, theory)
     return _shapes(beam, range(1, n_modes + 1), x, derivative, theory)
 
 

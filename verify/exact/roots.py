@@ -51,6 +51,8 @@ def nth_root(say: Callable[[float], Found], wanted: int) -> float:
     Intervals are halved, the same ones for all roots, until one holds this root alone; where it never does, roots
     coincide to rounding.
     """
+    from scipy.optimize import brentq
+
     low, high = 0.0, 1.0
     while say(high).below < wanted:
         low, high = high, 2.0 * high
@@ -58,30 +60,7 @@ def nth_root(say: Callable[[float], Found], wanted: int) -> float:
         lower, upper = say(low), say(high)
         alone = low > 0.0 and upper.below - lower.below == 1 and (upper.minor > 0.0) != (lower.minor > 0.0)
         if alone and high - low < 0.1 * high:
-            return _refined(say, low, lower.minor, high, upper.minor)
+            return float(brentq(lambda root: say(root).minor, low, high, xtol=1e-300, rtol=8.9e-16))
         middle = 0.5 * (low + high)
         low, high = (low, middle) if say(middle).below >= wanted else (middle, high)
     return high
-
-
-def _refined(say: Callable[[float], Found], a: float, fa: float, b: float, fb: float) -> float:
-    """The root of a minor in an interval over which its sign changes (Chandrupatla, Adv. Eng. Software 28, 1997)."""
-    c, fc, t = a, fa, 0.5
-    for _ in range(200):
-        x = a + t * (b - a)
-        fx = say(x).minor
-        if (fx > 0.0) == (fa > 0.0):
-            c, fc = a, fa
-        else:
-            c, fc, b, fb = b, fb, a, fa
-        a, fa = x, fx
-        best = a if abs(fa) < abs(fb) else b
-        least = _DIGITS * abs(best) / abs(b - a) if b != a else 1.0
-        if least >= 0.5 or fx == 0.0:
-            return best
-        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
-        t = 0.5
-        if phi**2 < xi and (1.0 - phi) ** 2 < 1.0 - xi:
-            t = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-        t = min(1.0 - least, max(least, t))
-    return b

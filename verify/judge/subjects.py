@@ -58,7 +58,7 @@ class Exact(Model):
         self, beam: "Beam", forces: "Sequence[PointForce]", frequencies_hz: "Array", count: int | None, **settings: Any
     ) -> "HarmonicSweep":
         """All at once."""
-        from verify.exact.sweeps import sweep_harmonic
+        from verify.exact.harmonic import sweep_harmonic
 
         return sweep_harmonic(beam, forces, frequencies_hz, **settings)
 
@@ -113,8 +113,6 @@ class Discrete(Model):
     """What that module calls the number of its parts."""
     size_settings: tuple[str, ...] = ()
     """Settings that its number of unknowns depends on."""
-    method_settings: tuple[str, ...] = ()
-    """Settings that the way to its eigenvectors depends on."""
 
     @property
     def verbs(self) -> "ModuleType":
@@ -140,11 +138,6 @@ class Discrete(Model):
         """How many unknowns are solved for."""
         return int(self.verbs.unknowns(beam, count, **self._of_size(settings)))
 
-    def method(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> str:
-        """How its eigenvectors are found."""
-        known = {name: value for name, value in settings.items() if name in self.method_settings}
-        return str(self.verbs.method(beam, n_modes, count, **known))
-
     @named_count
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes."""
@@ -164,10 +157,7 @@ class Discrete(Model):
         self, beam: "Beam", forces: "Sequence[PointForce]", frequencies_hz: "Array", count: int | None, **settings: Any
     ) -> "HarmonicSweep":
         """All at once."""
-        from importlib import import_module
-
-        sweeps = import_module(f"{self.home.rpartition('.')[0]}.sweeps")
-        found: HarmonicSweep = sweeps.sweep_harmonic(beam, forces, frequencies_hz, count, **settings)
+        found: HarmonicSweep = self.verbs.sweep_harmonic(beam, forces, frequencies_hz, count, **settings)
         return found
 
     @named_count
@@ -206,7 +196,6 @@ class Segments(Discrete):
     bounds = "below"
     fewest = 2
     size_settings = ("theory", "attachment")
-    method_settings = ("joints", "theory", "attachment")
     modal_settings = ("wall", "joints", "grading", "theory", "attachment")
     field_settings = ("modal_damping", "joint_dashpot", "load", "reading", "wall", "joints", "theory", "attachment")
     buckling_settings = ("wall", "joints", "grading", "attachment")
@@ -255,7 +244,7 @@ class Elements(Discrete):
     field_settings = ("modal_damping", "theory")
     buckling_settings = ("grading",)
     unknowns_per_part = 2
-    size_settings = method_settings = ("theory",)
+    size_settings = ("theory",)
     library = "scikit-fem"
 
     @named_count

@@ -10,7 +10,7 @@ from msgspec import Meta
 
 from verify.beam import Beam
 from verify.errors import InputError
-from verify.judge.workbench import Settings
+from verify.judge.cache import Settings
 from verify.models.catalogue import MODELS, discrete
 from verify.options import WALLS, Attachment, Joints, Theory, Wall
 

@@ -1,19 +1,13 @@
 """How a beam is divided into segments or elements: lengths and properties of the parts. Geometry, no mechanics."""
 
-from collections.abc import Sequence
-from operator import attrgetter
-
 import msgspec
 import numpy as np
 
 from verify.beam import Beam
 from verify.checks import check_number
 from verify.errors import InputError
-from verify.models.arrays import Array, Indices
+from verify.models.arrays import Array
 from verify.section import Piece
-
-_FIGURES = attrgetter("length", "bending_stiffness", "mass_per_length")
-"""Of a piece, for the parts of many beams."""
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -43,28 +37,6 @@ class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def nodes(self) -> Array:
         """Ends of the parts, (N + 1,), in units from the left end."""
         return np.concatenate([[0.0], np.cumsum(self.lengths)])
-
-
-class ManyParts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Parts of many beams, each (N, n_beams), relative to those of each beam as `Parts` has them."""
-
-    unit: Array
-    """(n_beams,), metres."""
-    lengths: Array
-    stiffnesses: Array
-    """EI."""
-    masses_per_length: Array
-    section: Indices
-    """Which piece of the beam each is a part of."""
-
-    def of_pieces(self, figures: Array) -> Array:
-        """Figures (n_pieces, n_beams) of the parts, (N, n_beams)."""
-        return np.take_along_axis(figures, self.section, axis=0)
-
-    @property
-    def nodes(self) -> Array:
-        """Ends of the parts, (N + 1, n_beams), in units from the left end."""
-        return np.concatenate([np.zeros_like(self.lengths[:1]), np.cumsum(self.lengths, axis=0)])
 
 
 def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ...] = ()) -> Parts:
@@ -97,29 +69,6 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
     )
 
 
-def divide_each(
-    beams: Sequence[Beam], count: int, pieces: Sequence[Sequence[Piece]], grading: float = 1.0
-) -> ManyParts:
-    """What `divide` makes of each of many beams of equally many pieces."""
-    units = np.array([beam.length for beam in beams]) / count
-    rows = np.array([_FIGURES(piece) for each in pieces for piece in each])
-    lengths, stiffnesses, masses = rows.reshape(len(beams), -1, 3).transpose(2, 1, 0)
-    own = np.array([_FIGURES(beam.own)[1:] for beam in beams]).T
-    shares = _counts_of_each(lengths, count)
-    part, section = np.arange(count)[:, None], np.zeros((count, len(beams)), dtype=np.intp)
-    ends = np.cumsum(shares, axis=0)
-    for end in ends[:-1]:
-        section += part >= end
-    figures = (lengths / units / shares, stiffnesses / own[0], masses / own[1])
-    found = [np.take_along_axis(figure, section, axis=0) for figure in figures]
-    if grading != 1.0:
-        begins, all_of = (np.take_along_axis(figure, section, axis=0) for figure in (ends - shares, shares))
-        steps = grading ** ((part - begins) / np.maximum(all_of - 1.0, 1.0))
-        totals = np.array([np.where(section == i, steps, 0.0).sum(axis=0) for i in range(len(shares))])
-        found[0] = found[0] * all_of * steps / np.take_along_axis(totals, section, axis=0)
-    return ManyParts(unit=units, lengths=found[0], stiffnesses=found[1], masses_per_length=found[2], section=section)
-
-
 def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:
     """E, I, rho A, A of every piece over the beam's own, (n_pieces, 4).
 
@@ -145,19 +94,12 @@ def check_division(beam: Beam, count: int, grading: float = 1.0) -> None:
 
 def part_counts(lengths: list[float], count: int) -> list[int]:
     """How many of `count` parts each section gets: in proportion to length by largest remainders, at least one."""
-    return [int(n) for n in _counts_of_each(np.array(lengths)[:, None], count)[:, 0]]
-
-
-def _counts_of_each(lengths: Array, count: int) -> Array:
-    """The same of many beams, (n_sections, n_beams)."""
-    shares = lengths / sum(lengths) * count
+    shares = np.array(lengths) / sum(lengths) * count
     counts = np.maximum(np.floor(shares + 1e-9), 1.0)
-    while (open_ := counts.sum(axis=0) != count).any():
-        step = np.where(counts.sum(axis=0) < count, 1.0, -1.0)
-        wanting = np.where(counts + step >= 1.0, step * (shares - counts), -np.inf)
-        taken = (wanting.argmax(axis=0)[open_], np.flatnonzero(open_))
-        counts[taken] += step[open_]
-    return np.asarray(counts)
+    while (missing := count - counts.sum()) != 0.0:
+        step = np.sign(missing)
+        counts[np.where(counts + step >= 1.0, step * (shares - counts), -np.inf).argmax()] += step
+    return [int(n) for n in counts]
 
 
 def _graded(length: float, n: int, grading: float) -> Array:

@@ -1,7 +1,6 @@
 """Linear algebra of driven pencils, the same for whoever brings one: direct, modal, and the refusal of resonances."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -14,23 +13,59 @@ from verify.models.modes import Modes
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.models.response import distance_answered, forced_response, probe
 
+FEW = 4
+"""Frequencies up to which each is solved by itself."""
 
-def damped_response(
-    pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray, modal_damping: float
+
+def harmonic_response(
+    pencil: FactoredPencil,
+    loads: ComplexArray,
+    omega2: Array,
+    stiffness: ComplexArray,
+    modal_damping: float = 0.0,
+    refuse: Callable[[int], None] | None = None,
 ) -> ComplexArray:
-    """The response (n, 1) with complex stiffnesses (m,), or with the same damping ratio in every mode.
+    """Responses (n, n_frequencies) to loads (n, 1) at omega^2 (n_frequencies,).
 
-    Modal damping takes all modes of the pencil. Raises InputError where it is asked for beyond the dense size
-    or together with dashpots that couple the modes.
+    `stiffness` is (m,), or (n_frequencies, m) where it depends on the frequency; `modal_damping` is the damping ratio
+    of every mode. Many frequencies are summed over all modes where damping leaves them uncoupled; else each is solved
+    as a band. `refuse`, of an undamped pencil, is called with the index of the first frequency at a resonance. Raises
+    InputError for both dampings together where they couple modes, and for modal damping beyond the dense size.
     """
-    if not modal_damping:
-        return forced_response(pencil, loads, omega2, stiffness)
-    factors = stiffness / pencil.stiffness
-    check_couples(factors)
-    check_dense(pencil, "modal_damping")
-    values, vectors = receptance_basis(pencil)
-    denominators = values * factors[0] - omega2 + 2j * modal_damping * np.sqrt(values * omega2)
-    return np.asarray(vectors @ ((vectors.T @ loads) / denominators[:, None]))
+    over = np.broadcast_to(stiffness, (len(omega2), len(pencil.stiffness)))
+    factors = over / pencil.stiffness
+    if modal_damping:
+        if (np.ptp(factors.imag, axis=1) > 1e-9 * abs(factors).max(axis=1)).any():
+            raise InputError("joint_dashpot and modal_damping together: dashpots couple the modes, give one of the two")
+        check_dense(pencil, "modal_damping")
+    coupled = np.ptp(factors.imag, axis=1) > 1e-15 * abs(factors).max(axis=1)
+    if not modal_damping and (coupled.any() or len(omega2) <= FEW or not takes_all_modes(pencil)):
+        known = bool(pencil.bases) and refuse is not None  # which tell resonances
+        probed = loads if refuse is None or known else np.hstack([loads, probe(pencil)])
+        found = [forced_response(pencil, probed, float(w2), d) for w2, d in zip(omega2, over, strict=True)]
+        if known:
+            distances = abs(pencil.bases[0][0] / omega2[:, None] - 1.0).min(axis=1)
+        elif refuse is not None:
+            answers = zip(found, omega2, strict=True)
+            distances = np.array([distance_answered(pencil, one[:, 1].real, float(w2)) for one, w2 in answers])
+        response = np.hstack([one[:, :1] for one in found]).astype(complex)
+    else:
+        values, vectors = receptance_basis(pencil)
+        distances = abs(values / omega2[:, None] - 1.0).min(axis=1)
+        denominators = values * factors[:, :1] - omega2[:, None]
+        if modal_damping:
+            denominators = denominators + 2j * modal_damping * np.sqrt(values * omega2[:, None])
+        response = _combined(vectors, _combined(vectors.T, loads) / denominators.T)
+    if refuse is not None:
+        for index in np.flatnonzero(abs(distances) <= 2.0 * RESONANCE):
+            refuse(int(index))
+    return response
+
+
+def _combined(columns: Array, shares: ComplexArray) -> ComplexArray:
+    """Real columns by complex shares, in half of the time of columns made complex."""
+    flat = np.ascontiguousarray(shares, dtype=complex).view(float)
+    return np.asarray((columns @ flat).view(complex))
 
 
 def modal_receptance(
@@ -64,12 +99,6 @@ def check_dampings(beam: Beam, modal_damping: float) -> None:
         )
 
 
-def check_couples(factors: ComplexArray) -> None:
-    """Raise InputError where dashpots, by their share (..., m) in every stiffness, couple modes of one ratio."""
-    if (np.ptp(factors.imag, axis=-1) > 1e-9 * abs(factors).max(axis=-1)).any():
-        raise InputError("joint_dashpot and modal_damping together: dashpots couple the modes, give one of the two")
-
-
 def receptance_basis(pencil: FactoredPencil) -> tuple[Array, Array]:
     """All eigenvalues and vectors as `modal_basis`, for sums over modes, which lose what the vectors lose.
 
@@ -93,33 +122,6 @@ def check_dense(pencil: FactoredPencil, what: str) -> None:
     """Raise InputError where all modes of a pencil would be too many."""
     if pencil.n > 4 * DENSE_UNKNOWNS:
         raise InputError(f"{what} takes all {pencil.n} modes of the model: lower count to {DENSE_UNKNOWNS} or less")
-
-
-def probed(pencil: FactoredPencil, loads: ComplexArray) -> ComplexArray:
-    """Loads (n, 1) with one beside them whose answer tells how far a resonance is, where no kept modes do."""
-    return loads if pencil.bases else np.hstack([loads, probe(pencil)])
-
-
-def refuse_near_resonance(
-    model: str,
-    beam: Beam,
-    pencil: FactoredPencil,
-    omega2: float,
-    frequency_hz: float,
-    solve_modes: Callable[[Beam, int, int], Modes],
-    count: int,
-    answer: ComplexArray,
-) -> None:
-    """Raise InputError where an undamped pencil is driven at one of its own frequencies, which kept modes tell.
-
-    `answer` is what `probed` loads are answered with, (n, 2) where no modes are kept: one factorisation for both.
-    """
-    if pencil.bases:
-        distance = abs(pencil.bases[0][0] / omega2 - 1.0).min()
-    else:
-        distance = distance_answered(pencil, answer[:, 1].real, omega2)
-    if abs(distance) <= 2.0 * RESONANCE:
-        name_resonance(model, beam, pencil, frequency_hz, solve_modes, count)
 
 
 def name_resonance(

@@ -16,7 +16,6 @@ from verify.models.pencil import (
     restarts,
 )
 from verify.models.polishing import polished, sharpened, told_apart
-from verify.patience import check_work
 
 _LANCZOS = 1e-10
 """Where Lanczos stops: the error of a vector enters the quotient squared."""
@@ -25,9 +24,8 @@ _UNLIKE = 1e4
 of random steps were off by 2e-12 at most, at ten times as much by 4e-10."""
 _WHOLE = 32
 """Rows up to which a triangle is inverted at once."""
-_BYTES_PER_UNKNOWN = 2000
-"""Of the sparse factorisation and its matrices, beside the Lanczos basis (measured peaks at 3e5 parts in all: 1300
-for modes, 2230 for a driven field, which counts as one mode and 700 of basis)."""
+MOST_UNKNOWNS, MOST_DENSE = 5_000_000, 20_000
+"""Largest sparse system (about 10 GB) and largest dense one (about 10 GB)."""
 
 
 class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -42,61 +40,25 @@ class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def check_size(n_unknowns: int, n_modes: int, available: int, field: str, count: int) -> None:
-    """Raise InputError, before anything large is allocated, where modes, memory or time do not suffice.
+    """Raise InputError for more modes than the `available` elastic ones, and for systems that are too large.
 
-    `available` is the number of elastic modes the model has; `field` and `count` name what the user chose.
+    `field` and `count` name the number of parts.
     """
     if n_modes > available:
         raise InputError(
             f"n_modes = {n_modes!r} is more than the {available} elastic modes that {field} = {count} gives: "
             f"ask for fewer modes or raise {field}"
         )
-    needed = required_bytes(n_unknowns, n_modes)
-    if needed > (memory := _memory_bytes()):
+    if n_unknowns > (most := MOST_DENSE if uses_dense(n_unknowns, n_modes) else MOST_UNKNOWNS):
         raise InputError(
-            f"{field} = {count} needs about {needed / 2**30:.3g} GiB and this machine has "
-            f"{memory / 2**30:.3g} GiB: lower {field}"
+            f"{field} = {count}: {n_unknowns} unknowns with {n_modes} modes are more than the {most} of the largest "
+            f"system, lower {field} or the number of modes"
         )
-    check_work(field, count, solve_seconds(n_unknowns, n_modes), f"lower {field} or the number of modes")
 
 
 def uses_dense(n_unknowns: int, n_modes: int) -> bool:
     """Whether a dense solver is used: few unknowns, or a good part of all modes wanted."""
     return n_unknowns <= DENSE_UNKNOWNS or 4 * n_modes > n_unknowns
-
-
-def required_bytes(n_unknowns: int, n_modes: int) -> int:
-    """An estimate from above of the memory a solve takes."""
-    if uses_dense(n_unknowns, n_modes):
-        return 8 * 8 * n_unknowns**2
-    return n_unknowns * (_BYTES_PER_UNKNOWN + 8 * 4 * (2 * n_modes + 20))
-
-
-def solve_seconds(n_unknowns: int, n_modes: int) -> float:
-    """An estimate from above of the time a solve takes: n^3 where it is dense, else what each Lanczos vector costs.
-
-    Each is held against those before. Measured of five modes: 31 to 38 s of the 2e6 unknowns of elements and 8 s of the
-    1e6 of segments, told 39 and 20; of 100, 250, 500 modes of 1e4 unknowns 0.4, 2.7, 13.9 s, told 1.6, 5.5, 17.
-    """
-    if uses_dense(n_unknowns, n_modes):
-        return 1e-9 * n_unknowns**3
-    return n_unknowns * (1.5e-5 + 9e-7 * n_modes + 5e-9 * n_modes**2)
-
-
-def field_seconds(n_unknowns: int, laden: bool = False) -> float:
-    """An estimate from above of the time a driven field takes with its reading, of a beam that is `laden` or bare.
-
-    Measured of narrow bands: 2.6e-6 s for each unknown and a quarter of a millisecond. What is added to a beam widens
-    them and is refined under slow drives: 2.5e-6 (a spring) to 6.9e-6 s (elements on ground) and half a millisecond.
-    """
-    return 5e-4 + 8e-6 * n_unknowns if laden else 2.5e-4 + 3e-6 * n_unknowns
-
-
-def _memory_bytes() -> int:
-    """Physical memory of this machine."""
-    import os
-
-    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def method_name(n_unknowns: int, n_modes: int, uneven: bool = False) -> str:

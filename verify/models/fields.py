@@ -3,13 +3,13 @@
 from collections.abc import Callable, Sequence
 from math import sqrt
 
+import msgspec
 import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.checks import check_whole
 from verify.errors import InputError, ResonanceError
-from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 from verify.models.places import Forces, Numbers, as_asked, as_forces, in_a_row, keep_lines, places
 
@@ -25,7 +25,7 @@ RESONANCE = 1e-9
 """An undamped beam is not driven closer than this (relative) to a resonance: the answer would be rounding."""
 
 
-class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
+class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Steady motion Re(w(x) e^{+i omega t}) of one model under harmonic point forces."""
 
     model: str

@@ -86,10 +86,6 @@ class Model:
         """The order at which driven fields fall in the end, rms over the beam; that of frequencies unless it says."""
         return self.order(beam)
 
-    def method(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> str:
-        """How its eigenvectors are found, in a word or two."""
-        return self.title or self.parts
-
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes. Raises InputError."""
         raise self._has_no("solve_modes", "modes")

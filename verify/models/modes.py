@@ -4,12 +4,11 @@ from collections.abc import Callable
 
 import msgspec
 
-from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.places import Numbers, as_asked, keep_lines, places
 
 
-class Modes(Value, frozen=True, eq=False, kw_only=True):
+class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Elastic modes of one model, ascending; mode n stands at index n - 1.
 
     Shapes are normalised to unit modal mass (integral of rho A phi^2 dx = 1 kg m^2 / m^2, for a discrete

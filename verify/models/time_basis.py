@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 from math import comb, factorial
 from typing import TypeAlias
 
+import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 from verify.models.pencil import FactoredPencil
 from verify.models.places import Numbers, as_asked, keep_lines, places
@@ -17,7 +17,7 @@ Ratio: TypeAlias = float | Array
 """Of damping: of all modes, or (n,), of each."""
 
 
-class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
+class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """All modes that one model moves in, of unit modal mass (SI)."""
 
     model: str

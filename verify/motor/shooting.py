@@ -1,15 +1,14 @@
 """A motor's periodic motion by shooting: the state that a period gives back, by Newton's method on the period's map."""
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray, Indices
 from verify.motor import records
-from verify.motor.case import MotorCase
+from verify.motor.case import Block, MotorCase, blocks
 from verify.motor.feet import Placed, feet_of
-from verify.motor.repeated import Block, blocks
 from verify.motor.result import MotorRun, MotorState, uninterrupted
 
 MOST = 12
@@ -19,7 +18,7 @@ REPEATS = 1e-3
 """Of its own size: what is off by more after a period does not repeat itself. Landings on dashpots jump by steps."""
 
 
-class Periodic(Value, frozen=True, eq=False, kw_only=True):
+class Periodic(Struct, frozen=True, eq=False, kw_only=True):
     """A motion that repeats itself."""
 
     run: MotorRun
@@ -50,7 +49,14 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
             f"slider.coupling = {case.slider.coupling!r}, start = {case.start!r}: shooting is of a steady beam that "
             "does not feel its slider, give 'one-way' and 'steady'"
         )
-    run = uninterrupted(case.run(settle * case.period, held_speed=speed, frozen=True, samples=2, patient=False))
+    run = uninterrupted(
+        case.run(
+            settle * case.period,
+            held_speed=speed,
+            frozen=True,
+            samples=2,
+        )
+    )
     free, once = _free(case), blocks(case, speed, 1, 2)
 
     def period(state: MotorState | None) -> MotorRun:

@@ -8,20 +8,14 @@ import numpy as np
 from verify.beam import Beam
 from verify.models.arrays import Array, Indices
 from verify.models.underfoot import LEFT_BEAM, standing_at
-from verify.motion import records as beam_records
-from verify.motion.forcing import turns
-from verify.motion.records import Drive, Surface
+from verify.motion.records import Surface
 from verify.motion.request import Request
 from verify.motion.result import END
-from verify.motion.stepping import CHUNK
+from verify.motion.stepping import CHUNK, drive_of, modal_rows
 from verify.motion.surface import Stage
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of, fresh_log, hard_of, rubbing_of
 from verify.motor.records import BeamAnswer, Feet, GivenSurface, Hard, Line, Log, Rubbing
-
-ROUNDS, DAMPED_ROUNDS = 4.0, 6.0
-"""In a step, in which each point's force is spread over all pieces between the points: with dashpots it is found anew.
-"""
 
 
 class Riding(msgspec.Struct, eq=False, kw_only=True):
@@ -80,16 +74,6 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     def steps(self) -> int:
         """Of all stages so far."""
         return self.steps_before + int(self.log.tally[records.STEP])
-
-    def seconds(self, steps: int, table: Array, length: float) -> float:
-        """An estimate from above of the time the loop takes on a beam of that length, metres, and these polynomials."""
-        points, (pieces, terms, rows) = len(self.feet.points), table.shape
-        if not self.two_way:
-            return steps * (1e-6 + 1e-7 * points)
-        near = 2 * AROUND + 1 + pieces * float(np.ptp(self.feet.points[:, records.OFFSET])) / length
-        rounds = DAMPED_ROUNDS if np.any(self.feet.points[:, records.DASHPOT] > 0.0) else ROUNDS
-        step = 8e-6 + points * (8e-7 + 4e-9 * terms * rows + 7e-10 * rounds * terms**2 * near)
-        return float(steps * step + 2e-10 * rows * (terms * near) ** 2)
 
     def set_touch(self, levels: Array) -> None:
         """Depths as the slider is put down on these heights of the surface, (points,)."""
@@ -176,18 +160,8 @@ def _after(riding: Riding, step: float) -> Array:
 
 
 def _surface(stage: Stage, table: Array, z: Array, start: float) -> Surface:
-    """The whole beam as the loop sees it."""
-    modes = np.zeros((beam_records.READ + 1, z.shape[1]))
-    modes[[beam_records.Z_RE, beam_records.Z_IM]] = z
-    modes[beam_records.SIGMA], modes[beam_records.OMEGA] = stage.modal.sigmas, stage.modal.omegas
-    modes[[beam_records.HALF_RE, beam_records.HALF_IM]] = turns(stage.modal, 0.5 * stage.dt)
-    drive = Drive(
-        omega=float(stage.omega),
-        origin=float(stage.origin),
-        unit=float(stage.unit_s),
-        growth=np.array(stage.growth, dtype=float),
-    )
-    return Surface(modes, drive, table, stage.edges - start)
+    """The whole beam as the kernels read it."""
+    return Surface(modal_rows(stage, z), drive_of(stage), table, stage.edges - start)
 
 
 def beam_answer(surface: Surface) -> BeamAnswer:
@@ -288,16 +262,16 @@ def _run_hard(
     stage: Stage, surface: Surface, riding: Riding, line: Line, hard: Hard, tell: Callable[[int], None]
 ) -> str:
     """The same of a hard point."""
-    from verify.motor import hop_kernels
+    from verify.motor import impact_kernels
 
     feet, before = riding.feet, riding.before
     if before[0, 0] == RIDES_FROM_HERE:
-        added = hop_kernels.put(0.0, surface, feet, riding.rubbing, line)
+        added = impact_kernels.put(0.0, surface, feet, riding.rubbing, line)
         before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
         riding.look(stage.dt)
 
     def hop(steps: int) -> int:
-        return hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)
+        return impact_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)
 
     def advance(steps: int) -> int:
         grown = (feet.body, feet.state, feet.touch, feet.sums, before, riding.log.before, riding.log.tally)

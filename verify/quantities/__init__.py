@@ -1,20 +1,6 @@
-"""Named figures: what each takes, what it needs solved, what work that is, and how it is evaluated.
+"""Named quantities of interest for gates, claims, tables and `verify measure`: one module a family."""
 
-Takes a scene and a workbench, gives a number. Gates, claims, tables and `verify measure` ask here.
-"""
+from verify.quantities import chain, contact, modes, motor, slider, waves  # noqa: F401
+from verify.quantities.base import QUANTITIES, describe, evaluate, parse_arguments, quantity
 
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from verify.quantities.catalogue import described
-
-__all__ = ["described"]
-
-
-def __getattr__(name: str) -> Any:
-    """Import the list of all quantities when it is first asked for."""
-    if name not in __all__:
-        raise AttributeError(f"module 'verify.quantities' has no attribute {name!r}")
-    from verify.quantities import catalogue
-
-    return getattr(catalogue, name)
+__all__ = ["QUANTITIES", "describe", "evaluate", "parse_arguments", "quantity"]

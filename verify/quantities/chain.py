@@ -1,279 +1,271 @@
-"""Named figures of the nonlinear chain."""
+"""Quantities of the nonlinear chain: benchmark problems, its motion from rest, a slider on it."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import msgspec
+from msgspec import Meta
+from msgspec.structs import replace
+
+from verify import options
 from verify.errors import InputError
-from verify.judge.workbench import Workbench
-from verify.quantities import beforehand, compiled
-from verify.quantities.chain_arguments import (
-    ContactLine,
-    Departing,
-    FreeMotion,
-    FromRest,
-    Hanging,
-    LargeAmplitude,
-    Ridden,
-    RolledUp,
-    TipUnderLoad,
-    Turning,
-)
-from verify.quantities.kind import Quantity
+from verify.quantities.base import Place, Scene, quantity
+from verify.quantities.options import ForceAmplitude, Grading, Mode, SoftStart, Wall
+from verify.quantities.slider import ChainSliderOptions, Time
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
+    from verify.beam import PointForce
     from verify.chain.ride import ChainRide
-    from verify.scenes.scene import Scene
+    from verify.judge.cache import SolutionCache
+
+Method = Annotated[
+    Literal["adaptive", "rk4", "modal", "linear"],
+    Meta(description="modal: exact linear flow and kicks; linear: that flow alone; default: rk4 with a step"),
+]
+Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
+Tolerance = Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step")]
+Seconds = Annotated[float, Meta(gt=0, description="s, from rest")]
+FixedStep = Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive")]
+BEAM = ("beam",)
 
 
-def _cantilever_tip(a: TipUnderLoad, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain import problems as chain_studies
+@quantity("chain.cantilever_tip", unit="1", reads=())
+def cantilever_tip(
+    *,
+    segments: Links,
+    load: Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")],
+    component: Annotated[Literal["deflection", "shortening"], Meta(description="w/L, or 1 - x/L")] = "deflection",
+    wall: Wall = "gregory",
+) -> float:
+    """Tip displacement over L of a cantilever under a dead transverse force (elastica)."""
+    from verify.chain.problems import cantilever_tip
 
-    return float(getattr(chain_studies.cantilever_tip(a.load, a.links, a.wall), a.component))
-
-
-def _rollup_gap(a: RolledUp, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain import problems as chain_studies
-
-    return chain_studies.rollup_gap(a.links, a.wall)
-
-
-def _hanging_frequency(a: Hanging, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain import problems as chain_studies
-
-    return chain_studies.hanging_frequency(a.mode, a.links)
+    return float(getattr(cantilever_tip(load, segments, wall), component))
 
 
-def _turning_frequency(a: Turning, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain import problems as chain_studies
+@quantity("chain.rollup_gap", unit="1", reads=())
+def rollup_gap(*, segments: Links, wall: Wall = "half") -> float:
+    """Distance of the ends over L of a cantilever under an end moment 2 pi EI/L."""
+    from verify.chain.problems import rollup_gap
 
-    return chain_studies.turning_frequency(a.mode, a.links, a.speed, a.wall)
-
-
-def _large_amplitude_frequency(a: LargeAmplitude, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain import problems as chain_studies
-
-    return chain_studies.large_amplitude_frequency(scene.beam, a.amplitude, a.links, bench.tell)
+    return rollup_gap(segments, wall)
 
 
-def _energy_drift(a: FreeMotion, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain import problems as chain_studies
+@quantity("chain.hanging_frequency", unit="1", reads=())
+def hanging_frequency(*, segments: Links, mode: Mode) -> float:
+    """Omega sqrt(L/g) of a hanging chain of uniform links."""
+    from verify.chain.problems import hanging_frequency
 
-    return chain_studies.energy_drift(
-        scene.beam, a.links, a.amplitude, a.periods, a.step, a.tolerance or 1e-8, bench.tell
-    )
-
-
-def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> float:
-    from msgspec.structs import replace
-
-    from verify.chain import problems as chain_studies
-    from verify.chain.from_rest import point_forces
-
-    forces = point_forces(scene, "chain.transient_deflection")
-    assert scene.drive is not None
-    if a.x > scene.beam.length:
-        raise InputError(f"x = {a.x!r} lies off the chain: give up to {scene.beam.length!r} m")
-    if a.force is not None:
-        forces = tuple(replace(force, amplitude=a.force) for force in forces)
-    method = a.method or ("rk4" if a.step is not None else "adaptive")
-    motion = chain_studies.transient(
-        scene.beam,
-        forces,
-        scene.drive.frequency_hz,
-        [a.time],
-        a.links,
-        step=a.step,
-        method=method,
-        axial_inertia=a.inertia == "full",
-        tolerance=a.tolerance,
-        progress=bench.tell,
-    )
-    bench.n_unkept_motions += 1
-    return float(motion.deflection([a.x])[0, 0])
+    return hanging_frequency(mode, segments)
 
 
-def _axial_departure(a: Departing, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain.departure import departure, driven_chain
+@quantity("chain.turning_frequency", unit="1", reads=())
+def turning_frequency(
+    *,
+    segments: Links,
+    mode: Mode,
+    speed: Annotated[float, Meta(ge=0, le=1e3, description="of the hub, in sqrt(EI / (rho A L^4))")],
+    wall: Wall = "gregory",
+) -> float:
+    """Omega sqrt(rho A L^4/EI) of the lead-lag modes of a rotating cantilever."""
+    from verify.chain.problems import turning_frequency
 
-    driven = driven_chain(scene, "chain.axial_departure", a.links, a.time, a.x)
-    found = departure(driven, a.force, a.inertia, bench.tell)
-    return found.at_end if a.of == "end" else found.rms
+    return turning_frequency(mode, segments, speed, wall)
 
 
-def _contact_line_error(a: ContactLine, scene: "Scene", bench: Workbench) -> float:
+@quantity("chain.large_amplitude_frequency", unit="1", reads=BEAM)
+def large_amplitude_frequency(
+    scene: Scene,
+    cache: "SolutionCache",
+    *,
+    segments: Links,
+    amplitude: Annotated[float, Meta(gt=0, description="at mid-span, in radii of gyration h / sqrt(12)")],
+) -> float:
+    """First frequency between immovable hinges over the linear one."""
+    from verify.chain.problems import large_amplitude_frequency
+
+    return large_amplitude_frequency(scene.beam, amplitude, segments, cache.progress)
+
+
+@quantity("chain.energy_drift", unit="1", reads=BEAM)
+def energy_drift(
+    scene: Scene,
+    cache: "SolutionCache",
+    *,
+    segments: Links,
+    amplitude: Annotated[float, Meta(gt=0, le=0.1, description="at mid-span, over L")] = 0.05,
+    periods: Annotated[float, Meta(gt=0, le=1000, description="of the linear first mode")] = 1.0,
+    step: FixedStep | None = None,
+    tolerance: Tolerance | None = None,
+) -> float:
+    """Largest change of energy of an undamped free chain over its energy."""
+    from verify.chain.problems import energy_drift
+
+    if step is not None and tolerance is not None:
+        raise InputError(f"tolerance = {tolerance!r} with step = {step!r}: give one of the two")
+    return energy_drift(scene.beam, segments, amplitude, periods, step, tolerance or 1e-8, cache.progress)
+
+
+@quantity("chain.imbalance", unit="1", reads=())
+def imbalance(
+    cache: "SolutionCache",
+    *,
+    segments: Links,
+    tip: Annotated[options.Tip, Meta(description="free, or a roller on an axial spring")] = "free",
+    tolerance: Tolerance = 1e-9,
+) -> float:
+    """Residual of the energy balance of a chain under base motion, load and actuator, over its damping loss."""
+    from verify.chain.problems import shaken_imbalance
+
+    return shaken_imbalance(segments, tip, tolerance, cache.progress)
+
+
+@quantity("chain.contact_line_error", unit="1", reads=BEAM)
+def contact_line_error(
+    scene: Scene,
+    *,
+    segments: Links,
+    mode: Mode,
+    x: Annotated[Place, Meta(description="m, selects the piece of the line")],
+    wall: Wall = "gregory",
+    grading: Grading = 1.0,
+) -> float:
+    """Slope of the chain's contact line in a mode less the beam's, over the largest slope."""
     from verify.chain.problems import contact_line_error
 
-    if a.x > scene.beam.length:
-        raise InputError(f"x = {a.x!r} lies off the chain: give up to {scene.beam.length!r} m")
-    return contact_line_error(scene.beam, a.mode, a.links, a.x, wall=a.wall, grading=a.grading)
+    return contact_line_error(scene.beam, mode, segments, x, wall=wall, grading=grading)
 
 
-def _ridden(figure: "Callable[[ChainRide], float]") -> "Callable[[Ridden, Scene, Workbench], float]":
-    """One figure of the slider's run on the chain."""
+def _forces(
+    scene: Scene, what: str, amplitude: float | None = None, soft_start: float | None = None
+) -> "tuple[Sequence[PointForce], float]":
+    """(forces, Hz) of a chain from rest. Raises InputError without forces, or for a [motion] of another kind."""
+    from verify.motion.request import soft_start as default_soft_start
 
-    def evaluate(a: Ridden, scene: "Scene", bench: Workbench) -> float:
-        return figure(_ride(a, scene, bench))
+    if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
+        raise InputError(f"drive is missing: {what} takes a [drive] of kind force")
+    if (motion := scene.motion) is not None:
+        soft = default_soft_start("rest", motion.soft_start_periods) if soft_start is None else soft_start
+        values = {"start": motion.start, "modal_damping": motion.modal_damping or 0.0, "soft_start_periods": soft}
+        for (name, value), needed in zip(values.items(), ("rest", 0.0, 0.0), strict=True):
+            if value != needed:
+                raise InputError(
+                    f"motion.{name} = {value!r}: {what} is from rest, undamped, without soft start, give {needed!r}"
+                )
+    elif soft_start:
+        raise InputError(f"soft_start_periods = {soft_start!r}: {what} is without soft start, give 0")
+    forces = scene.forces if amplitude is None else [replace(one, amplitude=amplitude) for one in scene.forces]
+    return forces, scene.drive.frequency_hz
 
-    return evaluate
+
+@quantity("chain.transient_deflection", unit="m")
+def transient_deflection(
+    scene: Scene,
+    cache: "SolutionCache",
+    *,
+    segments: Links,
+    time: Seconds,
+    x: Place,
+    force: ForceAmplitude | None = None,
+    method: Method | None = None,
+    inertia: Annotated[Literal["full", "transverse"], Meta(description="transverse: none along x")] = "full",
+    step: FixedStep | None = None,
+    tolerance: Tolerance | None = None,
+) -> float:
+    """Deflection of the chain at x after a time from rest under the scene's forces."""
+    from verify.chain.problems import transient
+
+    forces, hertz = _forces(scene, "chain.transient_deflection", force)
+    motion = transient(
+        scene.beam,
+        forces,
+        hertz,
+        [time],
+        segments,
+        step=step,
+        method=method or ("rk4" if step is not None else "adaptive"),
+        axial_inertia=inertia == "full",
+        tolerance=tolerance,
+        progress=cache.progress,
+    )
+    return float(motion.deflection([x])[0, 0])
 
 
-def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
-    from msgspec.structs import replace
+@quantity("chain.axial_departure", unit="1")
+def axial_departure(
+    scene: Scene,
+    cache: "SolutionCache",
+    *,
+    segments: Links,
+    force: Annotated[float, Meta(gt=0, description="N, of every force")],
+    time: Seconds = 1e-3,
+    x: Annotated[Place, Meta(description="m from the left end; default mid-span")] | None = None,
+    inertia: Annotated[
+        options.Inertia, Meta(description="transverse: rigid, none along x; elastic: links stretch by EA / l")
+    ] = "full",
+    of: Annotated[Literal["end", "rms"], Meta(description="at that time, or rms until then")] = "end",
+) -> float:
+    """Deflection of the nonlinear chain less the linear one's from rest, over the rms of the linear one's."""
+    from math import ceil
 
-    from verify.chain.from_rest import point_forces
+    import numpy as np
+
+    from verify.chain.departure import SAMPLES, SAMPLES_PER_PERIOD, Driven, departure
+
+    forces, hertz = _forces(scene, "chain.axial_departure")
+    times = np.linspace(0.0, time, max(SAMPLES, ceil(SAMPLES_PER_PERIOD * hertz * time) + 1))
+    place = 0.5 * scene.beam.length if x is None else x
+    driven = Driven(beam=scene.beam, forces=tuple(forces), frequency_hz=hertz, count=segments, x=place, times=times)
+    found = departure(driven, force, inertia, cache.progress)
+    return found.at_end if of == "end" else found.rms
+
+
+class ChainRideOptions(msgspec.Struct, frozen=True, kw_only=True):
+    """Time integration of the nonlinear chain from rest."""
+
+    segments: Links
+    links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
+    time: Time | None = None
+    force: ForceAmplitude | None = None
+    soft_start_periods: SoftStart | None = None
+
+
+def _ride(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, options: ChainSliderOptions) -> "ChainRide":
+    """The run of the scene's slider on the chain. Raises InputError."""
     from verify.chain.ride import ride_from_rest
     from verify.motion.request import STEPS_PER_PERIOD
-    from verify.quantities.simulated import slider_of
 
-    motion, slider = scene.motion, slider_of(a, scene)
-    if motion is not None and a.soft_start_periods is not None:
-        motion = replace(motion, soft_start_periods=a.soft_start_periods)
-    forces = point_forces(replace(scene, motion=motion), "a slider on the nonlinear chain")
-    assert scene.drive is not None
-    time = beforehand.ride_time(a, scene)
-    steps = motion.steps_per_period if motion else STEPS_PER_PERIOD
-    found = ride_from_rest(
-        scene.beam,
-        [replace(force, amplitude=a.force) for force in forces] if a.force is not None else forces,
-        scene.drive.frequency_hz,
-        slider,
-        a.segments,
-        time,
-        step=a.step or 1.0 / (steps * scene.drive.frequency_hz),
-        links=a.links,
-        progress=bench.tell,
-    )
-    bench.n_unkept_motions += 1
+    slider, motion = options.of(scene), scene.motion
+    forces, hertz = _forces(scene, "a slider on the nonlinear chain", by.force, by.soft_start_periods)
+    time = by.time if by.time is not None or motion is None else motion.duration
+    if time is None:
+        raise InputError("time is missing and the scene has no [motion]: give time in seconds")
+    step = options.step or 1.0 / ((motion.steps_per_period if motion else STEPS_PER_PERIOD) * hertz)
+    key: Any = ("chain", scene.beam, tuple(forces), hertz, slider, by.segments, time, step, by.links)
+    if key not in cache.motors:
+        cache.motors[key] = ride_from_rest(
+            scene.beam, forces, hertz, slider, by.segments, time, step=step, links=by.links, progress=cache.progress
+        )
+    found: ChainRide = cache.motors[key]
     return found
 
 
 def _imbalance(run: "ChainRide") -> float:
-    """What the slider's books miss over what friction rubs away."""
     assert run.ledger is not None
     return abs(run.ledger.residual) / run.ledger.rubbed
 
 
-BALANCED = 0.01
-"""Of what friction rubs away: books that miss more are of forces that turn round within a step."""
+def _ride_figure(read: "Callable[[ChainRide], float]") -> Callable[..., float]:
+    def ride_figure(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, slider: ChainSliderOptions) -> float:
+        return read(_ride(scene, cache, by, slider))
+
+    return ride_figure
 
 
-def _largest_friction(run: "ChainRide") -> float:
-    """Raises InputError for one below the law's limit of a run whose books do not close."""
-    slider = run.slider
-    assert slider is not None
-    saturated = run.largest_friction >= (1.0 - 1e-9) * slider.mu * slider.normal_force
-    if not saturated and (missing := _imbalance(run)) > BALANCED:
-        raise InputError(
-            f"step = {run.statistics.step_s:.3g} s: the slider's books miss {100.0 * missing:.2g} % of what is rubbed "
-            "away, so that its largest friction is not known; give a shorter step"
-        )
-    return run.largest_friction
-
-
-CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
-    Quantity(
-        "chain.cantilever_tip",
-        "1",
-        "Tip of a cantilever under a dead transverse force: w/L or 1 - x/L.",
-        TipUnderLoad,
-        "equilibrium",
-        _cantilever_tip,
-    ),
-    Quantity(
-        "chain.rollup_gap",
-        "1",
-        "Distance of the ends over L under an end moment 2 pi EI/L.",
-        RolledUp,
-        "equilibrium",
-        _rollup_gap,
-    ),
-    Quantity(
-        "chain.hanging_frequency",
-        "1",
-        "Omega sqrt(L/g) of a hanging chain of uniform links.",
-        Hanging,
-        "equilibrium",
-        _hanging_frequency,
-    ),
-    Quantity(
-        "chain.turning_frequency",
-        "1",
-        "Omega sqrt(rho A L^4/EI), lead-lag, of a cantilever whose clamp turns.",
-        Turning,
-        "equilibrium",
-        _turning_frequency,
-    ),
-    Quantity(
-        "chain.large_amplitude_frequency",
-        "1",
-        "First frequency between immovable hinges over the linear one.",
-        LargeAmplitude,
-        "in time",
-        _large_amplitude_frequency,
-        needs=beforehand.buildable,
-        kernels=compiled.stepped,
-    ),
-    Quantity(
-        "chain.energy_drift",
-        "1",
-        "Largest change of energy of an undamped chain over its energy.",
-        FreeMotion,
-        "in time",
-        _energy_drift,
-        needs=beforehand.buildable,
-        kernels=compiled.stepped,
-    ),
-    Quantity(
-        "chain.transient_deflection",
-        "m",
-        "Deflection of the chain from rest under the scene's forces.",
-        FromRest,
-        "in time",
-        _transient_deflection,
-        needs=beforehand.pushable,
-        kernels=compiled.transient,
-    ),
-    Quantity(
-        "chain.axial_departure",
-        "1",
-        "Nonlinear chain less the linear one, from rest, over the linear one's rms.",
-        Departing,
-        "in time",
-        _axial_departure,
-        needs=beforehand.buildable,
-        kernels=compiled.departing,
-    ),
-    Quantity(
-        "chain.contact_line_error",
-        "1",
-        "Slope of the contact line on the chain in a mode less the beam's, over the largest slope.",
-        ContactLine,
-        "equilibrium",
-        _contact_line_error,
-        needs=beforehand.buildable,
-    ),
-    *(
-        Quantity(
-            f"chain.slider_{name}",
-            unit,
-            summary,
-            Ridden,
-            "in time",
-            _ridden(figure),
-            needs=beforehand.rideable,
-            kernels=compiled.ridden,
-        )
-        for name, unit, summary, figure in (
-            (
-                "displacement",
-                "m",
-                "Of the scene's slider along +x on the nonlinear chain.",
-                lambda run: run.displacement,
-            ),
-            ("mean_speed", "m/s", "Displacement over time.", lambda run: run.mean_speed),
-            ("largest_friction", "N", "Largest friction force on it.", _largest_friction),
-            ("imbalance", "1", "What the slider's energy ledger misses, over what friction rubs away.", _imbalance),
-        )
-    ),
-)
+RIDE: "dict[str, tuple[str, str, Callable[[ChainRide], float]]]" = {
+    "displacement": ("m", "Displacement of the scene's slider along +x on the chain.", lambda run: run.displacement),
+    "mean_speed": ("m/s", "Displacement of the slider on the chain over time.", lambda run: run.mean_speed),
+    "imbalance": ("1", "Residual of the slider's energy balance on the chain over its friction loss.", _imbalance),
+}
+for _name, (_unit, _text, _read) in RIDE.items():
+    quantity(f"chain.slider_{_name}", unit=_unit, summary=_text)(_ride_figure(_read))

@@ -1,306 +1,191 @@
-"""Named figures of contact in closed form: a driving layer, a mass that leaves the surface, a device that absorbs."""
+"""Quantities of friction and contact laws by themselves: belts, decay, driving layer, bouncing, landing."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated
 
+import msgspec
 from msgspec import Meta
 
+from verify.checks import check_sizes
 from verify.errors import InputError
-from verify.judge.workbench import Workbench
-from verify.models import catalogue
-from verify.models.catalogue import MODELS
-from verify.models.naming import model_meta
-from verify.quantities.cases import drive_frequency
-from verify.quantities.kind import Arguments, AtFrequency, Quantity, Size
+from verify.quantities.base import Scene, quantity
+from verify.quantities.options import Frequency, Mass, Mu, Slope, drive_frequency
+from verify.slider import GRAVITY
 
-if TYPE_CHECKING:
-    from verify.beam import PointForce
-    from verify.device import Device as OnBeam
-    from verify.scenes.scene import Scene
-    from verify.waves.absorber import Ending
+Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
+HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
+SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]
+Compliance = Annotated[float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), tangential; 0 for Coulomb")]
+Stiffness = Annotated[float, Meta(gt=0, description="N/m")]
 
 
-_WHOLE = "of the whole beam, with its other forces and devices; half-infinite unless given"
+@quantity("friction.creep_speed", unit="m/s", reads=())
+def creep_speed(
+    *,
+    mu: Mu,
+    slope: Slope,
+    pull: Annotated[float, Meta(description="external force over mass, m/s^2")],
+    gravity: Gravity = GRAVITY,
+) -> float:
+    """Speed under a constant force below the friction limit, tanh friction."""
+    from verify.motion.rigid_surface import creep_speed
+
+    return creep_speed(mu, slope, pull, gravity)
 
 
-class Layer(Arguments, frozen=True, kw_only=True):
-    """A rigid slider on the crests of a wave, through a layer of springs."""
+class Belt(msgspec.Struct, frozen=True, kw_only=True):
+    """A mass held by a spring on a moving belt, Coulomb friction."""
 
-    reads: ClassVar[tuple[str, ...]] = ()
-    contact_half_angle: Annotated[float, Meta(gt=0, lt=pi, description="of the wave's phase, radians")]
-    epsilon: Annotated[
-        float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), the layer's give along the surface; 0 is Coulomb's")
-    ] = 0.0
+    mass: Mass
+    stiffness: Stiffness
+    static: Annotated[float, Meta(gt=0, description="largest friction at rest, N")]
+    kinetic: Annotated[float, Meta(gt=0, description="friction in sliding, N")]
+    speed: Annotated[float, Meta(gt=0, description="of the belt, m/s")]
 
+    def times(self) -> tuple[float, float]:
+        """(stick, slip) time of a cycle, s."""
+        from verify.motion.rigid_surface import stick_slip_times
 
-class LayerAt(Layer, frozen=True, kw_only=True):
-    """The same at a speed of the slider."""
-
-    speed_ratio: Annotated[float, Meta(description="over the speed of the surface at the crests")]
-
-
-class CoulombLayerAt(Arguments, frozen=True, kw_only=True):
-    """The same without give along the surface."""
-
-    reads: ClassVar[tuple[str, ...]] = ()
-    contact_half_angle: Annotated[float, Meta(gt=0, lt=pi, description="of the wave's phase, radians")]
-    speed_ratio: Annotated[float, Meta(ge=0, lt=1, description="over the speed of the surface at the crests")]
+        return stick_slip_times(self.mass, self.stiffness, self.static, self.kinetic, self.speed)
 
 
-class Shaken(Arguments, frozen=True, kw_only=True):
-    """A mass on a surface that shakes across."""
-
-    reads: ClassVar[tuple[str, ...]] = ()
-    acceleration_ratio: Annotated[
-        float, Meta(gt=1, description="A omega^2 over the acceleration that presses it down, above 1")
-    ]
+@quantity("friction.belt_stick_time", unit="s", reads=())
+def belt_stick_time(belt: Belt) -> float:
+    """Time of a stick-slip cycle in which the mass sticks to the belt."""
+    return belt.times()[0]
 
 
-class Landing(Arguments, frozen=True, kw_only=True):
-    """A mass that lands on a spring beside a dashpot: by its damping ratio, or by all three."""
-
-    reads: ClassVar[tuple[str, ...]] = ()
-    damping_ratio: Annotated[float, Meta(ge=0, description="of the mass on its contact, c/(2 sqrt(k m))")] | None = None
-    mass: Annotated[float, Meta(gt=0, description="that lands, kg")] | None = None
-    stiffness: Annotated[float, Meta(gt=0, description="of the contact's spring, N/m")] | None = None
-    damping: Annotated[float, Meta(ge=0, description="of its dashpot, N s/m")] | None = None
-
-    def __post_init__(self) -> None:
-        parts = {name: getattr(self, name) for name in ("mass", "stiffness", "damping")}
-        missing = [name for name, value in parts.items() if value is None]
-        if self.damping_ratio is not None and len(missing) < len(parts):
-            name = next(name for name in parts if name not in missing)
-            raise InputError(f"{name} = {parts[name]!r}: with damping_ratio it says the same twice, leave it out")
-        if self.damping_ratio is None and missing:
-            raise InputError(f"{missing[0]} is missing: give damping_ratio, or mass, stiffness and damping")
+@quantity("friction.belt_slip_time", unit="s", reads=())
+def belt_slip_time(belt: Belt) -> float:
+    """Time of a stick-slip cycle in which the mass slips."""
+    return belt.times()[1]
 
 
-class Device(AtFrequency, frozen=True, kw_only=True):
-    """A place for a device near the right end."""
+@quantity("friction.coulomb_decrement", unit="m", reads=())
+def coulomb_decrement(
+    *, mass: Mass, stiffness: Stiffness, force: Annotated[float, Meta(gt=0, description="friction, N")]
+) -> float:
+    """Amplitude that an oscillator with Coulomb friction loses in a cycle."""
+    from verify.motion.rigid_surface import coulomb_decrement
 
-    position: Annotated[float, Meta(ge=0, description="metres from the right end")]
-
-
-class Absorbing(Device, frozen=True, kw_only=True):
-    """A device there: by its dashpot and spring, or by its resistance over the matched one's, its spring matched."""
-
-    turning: Annotated[bool, Meta(description="whether it acts against turning there; else across")] = False
-    resistance: Annotated[float, Meta(ge=0, description="of its dashpot, kg/s; N m s turning")] | None = None
-    stiffness: (
-        Annotated[float, Meta(ge=0, description="of its spring, N/m; N m/rad turning; with resistance")] | None
-    ) = None
-    mass: Annotated[float, Meta(ge=0, description="kg; kg m^2 turning; with resistance")] | None = None
-    ratio: Annotated[float, Meta(ge=0, description="of its resistance to the matched one")] | None = None
-    model: Annotated[str, model_meta(_WHOLE, "solve_harmonic")] | None = None
-    count: Size | None = None
-    alone: Annotated[bool, Meta(description="without the scene's other devices; with model")] = False
-
-    def __post_init__(self) -> None:
-        if self.model is not None:
-            catalogue.check_count(self.model, self.count)
-        elif self.count is not None:
-            raise InputError(f"count = {self.count!r}: a half-infinite beam has no parts, give model as well")
-        elif self.alone:
-            raise InputError("alone = True: a half-infinite beam has no other device, give model as well")
-        if (self.ratio is None) == (self.resistance is None):
-            raise InputError(f"ratio = {self.ratio!r} and resistance = {self.resistance!r}: give one of the two")
-        for name in ("stiffness", "mass"):
-            if self.ratio is not None and (value := getattr(self, name)) is not None:
-                raise InputError(f"{name} = {value!r}: with ratio spring and mass are the matched ones, leave it out")
+    return coulomb_decrement(mass, stiffness, force)
 
 
-def _layer_speed(a: Layer, scene: "Scene", bench: Workbench) -> float:
+@quantity("slider.winkler_speed_ratio", unit="1", reads=())
+def winkler_speed_ratio(*, contact_half_angle: HalfAngle, epsilon: Compliance = 0.0) -> float:
+    """No-load speed over crest speed of a rigid slider on a Winkler layer over a wave."""
     from verify.contact.layer import no_load_speed
 
-    return no_load_speed(a.contact_half_angle, a.epsilon)
+    return no_load_speed(contact_half_angle, epsilon)
 
 
-def _layer_force(a: LayerAt, scene: "Scene", bench: Workbench) -> float:
+@quantity("slider.layer_force", unit="1", reads=())
+def layer_force(*, contact_half_angle: HalfAngle, speed_ratio: SpeedRatio, epsilon: Compliance = 0.0) -> float:
+    """Friction force over mu N on a rigid slider on a Winkler layer over a wave."""
     from verify.contact.layer import force
 
-    return force(a.contact_half_angle, a.speed_ratio, a.epsilon)
+    return force(contact_half_angle, speed_ratio, epsilon)
 
 
-def _layer_efficiency(a: CoulombLayerAt, scene: "Scene", bench: Workbench) -> float:
+@quantity("slider.layer_efficiency", unit="1", reads=())
+def layer_efficiency(
+    *,
+    contact_half_angle: HalfAngle,
+    speed_ratio: Annotated[float, Meta(ge=0, lt=1, description="of the slider over the surface at the crests")],
+) -> float:
+    """Power of that slider over power into the layer, Coulomb friction."""
     from verify.contact.layer import efficiency
 
-    return efficiency(a.contact_half_angle, a.speed_ratio)
+    return efficiency(contact_half_angle, speed_ratio)
 
 
-def _landing(a: Shaken, scene: "Scene", bench: Workbench) -> float:
+@quantity("contact.landing_phase", unit="rad", reads=())
+def landing_phase(
+    *, acceleration_ratio: Annotated[float, Meta(gt=1, description="A omega^2 over the acceleration of the preload")]
+) -> float:
+    """Phase of a vibrating surface at the first impact of a mass that has lifted off."""
     from verify.contact.bouncing import landing_phase
 
-    return landing_phase(a.acceleration_ratio)
+    return landing_phase(acceleration_ratio)
 
 
-def _restitution(a: Landing, scene: "Scene", bench: Workbench) -> float:
-    from verify.contact.landing import damping_ratio, restitution
+@quantity("contact.restitution", unit="1", reads=())
+def restitution(
+    *,
+    damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)); or mass, stiffness, damping")]
+    | None = None,
+    mass: Mass | None = None,
+    stiffness: Stiffness | None = None,
+    damping: Annotated[float, Meta(ge=0, description="of the dashpot, N s/m")] | None = None,
+) -> float:
+    """Coefficient of restitution of an impact on a spring and dashpot that only push."""
+    from verify.contact.landing import damping_ratio as ratio_of
+    from verify.contact.landing import restitution
 
-    if a.mass is None or a.stiffness is None or a.damping is None:
-        assert a.damping_ratio is not None
-        return restitution(a.damping_ratio)
-    return restitution(damping_ratio(a.mass, a.stiffness, a.damping))
-
-
-def _ending(a: Device, scene: "Scene", *, turning: bool = False) -> "Ending":
-    """Raises InputError off the beam, and on a support where a device does nothing."""
-    from verify.waves.absorber import ending
-
-    if a.position >= scene.beam.length:
-        raise InputError(f"position = {a.position!r} lies off the beam: give less than {scene.beam.length!r} m")
-    hertz, support = drive_frequency(a, scene), scene.beam.supports[1]
-    return ending(scene.beam, hertz, a.position, support, turning=turning)
-
-
-def _impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
-    return _ending(a, scene).matched
-
-
-def _turning_impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
-    return _ending(a, scene, turning=True).matched
+    if damping_ratio is not None:
+        for name, value in (("mass", mass), ("stiffness", stiffness), ("damping", damping)):
+            if value is not None:
+                raise InputError(f"{name} = {value!r} beside damping_ratio: leave one of them out")
+        return restitution(damping_ratio)
+    if mass is None or stiffness is None or damping is None:
+        raise InputError("damping_ratio is missing: give it, or mass, stiffness and damping")
+    return restitution(ratio_of(mass, stiffness, damping))
 
 
-def _device(a: Absorbing, scene: "Scene", matched: complex) -> complex:
-    """Its impedance, kg/s, where `matched` reflects nothing."""
-    omega = 2.0 * pi * drive_frequency(a, scene)
-    if a.ratio is not None:
-        return complex(a.ratio * matched.real, matched.imag)
-    return complex(a.resistance or 0.0, omega * (a.mass or 0.0) - (a.stiffness or 0.0) / omega)
+class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
+    """A rigid foot of springs over one wavelength at a fixed height over a pure wave."""
+
+    contact_half_angle: HalfAngle
+    speed_ratio: SpeedRatio
+    epsilon: Compliance = 0.0
+    mu: Mu = 0.2
+    steps_per_period: Annotated[int, Meta(ge=4, description="of the wave")] = 256
+    amplitude: Annotated[float, Meta(gt=0, description="of the wave, m")] = 1e-9
+    frequency_hz: Frequency | None = None
+
+    def force(self, scene: Scene, points: int, steps_per_period: int) -> float:
+        """-F/(mu N) of so many springs. Raises InputError where none is in contact."""
+        from verify.motor.on_wave import over_a_wave
+
+        found, _ = over_a_wave(
+            scene.beam,
+            drive_frequency(scene, self.frequency_hz),
+            speed_ratio=self.speed_ratio,
+            contact_half_angle=self.contact_half_angle,
+            epsilon=self.epsilon,
+            mu=self.mu,
+            points=points,
+            steps_per_period=steps_per_period,
+            amplitude=self.amplitude,
+        )
+        if found.normal_force <= 0.0:
+            raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
+        return -found.force / (self.mu * found.normal_force)
 
 
-def _reflection(a: Absorbing, scene: "Scene", bench: Workbench) -> float:
-    from verify.waves.absorber import reflection
-
-    end = _ending(a, scene, turning=a.turning)
-    impedance = _device(a, scene, end.matched)
-    return reflection(impedance, end) if a.model is None else _left_on_beam(a, scene, impedance)
-
-
-def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
-    """The same of a model's whole beam, between its forces and the device, in the middle half."""
-    from verify.device import of_impedance
-    from verify.waves.devices import field_with_devices
-    from verify.waves.driven import measured_alone
-
-    assert a.model is not None
-    model, hertz, (forces, others) = MODELS.named(a.model), drive_frequency(a, scene), _beside(a, scene)
-    if impedance:
-        own = of_impedance(scene.beam.length - a.position, impedance, 2.0 * pi * hertz, turning=a.turning)
-        others = [*others, own]
-    field = field_with_devices(
-        lambda beam, given, hertz: model.solve_harmonic(beam, given, hertz, a.count),
-        scene.beam,
-        forces,
-        hertz,
-        others,
-    )
-    return measured_alone(field, None, "reflection")
+@quantity("slider.wave_force", unit="1", reads=("beam", "drive"))
+def wave_force(
+    scene: Scene,
+    contact: WaveContact,
+    *,
+    points: Annotated[int, Meta(ge=2, description="springs in a wavelength")] = 61,
+) -> float:
+    """Friction force over mu N on a rigid foot of springs over a pure wave, by time integration."""
+    return contact.force(scene, points, contact.steps_per_period)
 
 
-def _beside(a: Absorbing, scene: "Scene") -> "tuple[list[PointForce], list[OnBeam]]":
-    """Forces and devices of the scene beside a device, which stands in the place of what acts where it does.
+@quantity("slider.wave_force_order", unit="1", reads=("beam", "drive"))
+def wave_force_order(
+    scene: Scene,
+    contact: WaveContact,
+    *,
+    counts: Annotated[tuple[int, ...], Meta(min_length=3, description="three or more numbers of springs")],
+) -> float:
+    """Observed order of that force in the number of springs, against the Winkler layer; steps in proportion."""
+    from verify.contact.layer import force
+    from verify.judge.compare import observed_order
 
-    Raises InputError where no force is left, or one of them stands in the middle half.
-    """
-    from verify.waves.measures import middle_half
-    from verify.waves.window import check_window
-
-    beam, at = scene.beam, scene.beam.length - a.position
-    if scene.drive is not None and scene.drive.kind != "force":
-        raise InputError(f"drive.kind = {scene.drive.kind!r}: beside a device forces drive the beam, give 'force'")
-    forces = [force for force in scene.forces if abs(force.position - at) > 1e-9 * beam.length]
-    others = [one for one in scene.devices if not a.alone and abs(one.position - at) > 1e-9 * beam.length]
-    if not forces:
-        raise InputError("drive.force: no force is left beside the device to drive the beam, add one")
-    places = [at, *(force.position for force in forces), *(one.position for one in others if one.across)]
-    turning = [one.position for one in others if one.turning]
-    check_window(beam, places, drive_frequency(a, scene), middle_half(beam), turning)
-    return forces, others
-
-
-def _needs_device(a: Device, scene: "Scene") -> tuple[()]:
-    """Raise InputError where no device can stand."""
-    _ending(a, scene, turning=isinstance(a, Absorbing) and a.turning)
-    if isinstance(a, Absorbing) and a.model is not None:
-        _beside(a, scene)
-    return ()
-
-
-def _needs_turning(a: Device, scene: "Scene") -> tuple[()]:
-    """The same against turning."""
-    _ending(a, scene, turning=True)
-    return ()
-
-
-CONTACT_QUANTITIES: tuple[Quantity[Any], ...] = (
-    Quantity(
-        "slider.winkler_speed_ratio",
-        "1",
-        "No-load speed of a rigid slider on a driving layer of springs, over the speed of the crests.",
-        Layer,
-        "closed form",
-        _layer_speed,
-    ),
-    Quantity(
-        "slider.layer_force",
-        "1",
-        "Force on that slider at a speed, over mu N.",
-        LayerAt,
-        "closed form",
-        _layer_force,
-    ),
-    Quantity(
-        "slider.layer_efficiency",
-        "1",
-        "Power on that slider over power into the layer, with Coulomb's friction.",
-        CoulombLayerAt,
-        "closed form",
-        _layer_efficiency,
-    ),
-    Quantity(
-        "contact.landing_phase",
-        "rad",
-        "Phase of a shaking surface at which a mass that has left it lands first.",
-        Shaken,
-        "closed form",
-        _landing,
-    ),
-    Quantity(
-        "contact.restitution",
-        "1",
-        "Speed after over speed before a landing on a spring beside a dashpot, which press and do not pull.",
-        Landing,
-        "closed form",
-        _restitution,
-    ),
-    Quantity(
-        "wave.absorber_impedance",
-        "kg/s",
-        "Impedance of a device near the right end that reflects nothing: force over velocity.",
-        Device,
-        "harmonic",
-        _impedance,
-        needs=_needs_device,
-        devices=True,
-    ),
-    Quantity(
-        "wave.absorber_turning_impedance",
-        "N m s",
-        "The same of one against turning: couple over speed of turning.",
-        Device,
-        "harmonic",
-        _turning_impedance,
-        needs=_needs_turning,
-        devices=True,
-    ),
-    Quantity(
-        "wave.absorber_reflection",
-        "1",
-        "Gamma that a device leaves of a wave from the left: there on a half-infinite beam, or a model's middle half.",
-        Absorbing,
-        "harmonic",
-        _reflection,
-        needs=_needs_device,
-        devices=True,
-    ),
-)
+    check_sizes("counts", counts)
+    exact = force(contact.contact_half_angle, contact.speed_ratio, contact.epsilon)
+    steps = [round(contact.steps_per_period * n / counts[0]) for n in counts]
+    return observed_order(counts, [contact.force(scene, n, s) - exact for n, s in zip(counts, steps, strict=True)])

@@ -1,382 +1,210 @@
-"""Named figures of modes: frequencies, shapes, their errors and orders, bounds; and of the paper's drive rule."""
+"""Quantities of modes: frequencies, shapes, errors, orders, bounds, required N; the paper's drive rule; buckling."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Literal
 
+from msgspec import Meta
+
+from verify.checks import Relative, check_sizes
 from verify.errors import InputError
-from verify.judge.workbench import Need, Settings, Workbench, check_bracket, for_model
-from verify.models.catalogue import MODELS, bounding
-from verify.models.naming import MEAN
-from verify.quantities.cases import drive_frequency
-from verify.quantities.kind import (
-    AtFrequency,
-    AtSize,
-    BracketAt,
-    DiscreteAtSize,
-    Elements,
-    FirstModes,
-    NeighbourModes,
-    NodeAt,
-    OverSizes,
-    PlateMode,
-    Quantity,
-    ShapeAt,
-    ShapeOf,
-    ShapesOverSizes,
-    StockMode,
-    ToError,
-)
+from verify.judge.bracket import Bracket
+from verify.models.catalogue import MODELS
+from verify.models.naming import MEAN, model_meta
+from verify.quantities import options as opt
+from verify.quantities.base import Place, Scene, quantity
 
 if TYPE_CHECKING:
-    from verify.beam import Beam
-    from verify.scenes.scene import Scene
+    from verify.judge.cache import SolutionCache
+
+BEAM = ("beam",)
+Reading = Annotated[
+    str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default: the model's first")
+]
 
 
-def _solved(
-    model: str, count: int | None, n_modes: int, settings: Settings = (), beam: "Beam | None" = None
-) -> tuple[Need, ...]:
-    """The solves behind one figure; the middle of both takes both. Raises InputError where the exact beam has none."""
-    if count is None:
-        if beam is not None:
-            MODELS.named(model).check(beam, n_modes, 0, **dict(settings))
-        return ()
-    models = bounding() if model == MEAN else (MODELS.named(model),)
-    return tuple(Need(m.name, count, n_modes, for_model(m.name, settings)) for m in models)
+@quantity("mode.frequency", unit="Hz", reads=BEAM)
+def frequency(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
+    """Natural frequency of one mode."""
+    if of.count is None:
+        return cache.exact_hz(of.mode, of.theory)
+    return cache.frequency_hz(of.model, of.count, of.mode, of.settings)
 
 
-def _at_size(a: AtSize | DiscreteAtSize | NodeAt | ShapeOf, scene: "Scene") -> tuple[Need, ...]:
-    return _solved(a.model, a.count, a.mode, a.settings, scene.beam)
+@quantity("mode.frequency_error", unit="1", reads=BEAM)
+def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
+    """Signed error relative to the exact frequency by the same theory; of the exact beam, to Euler-Bernoulli theory."""
+    if of.count is not None:
+        return cache.frequency_error(of.model, of.count, of.mode, of.settings)
+    exact = cache.exact_hz(of.mode)
+    return (cache.exact_hz(of.mode, of.theory) - exact) / exact
 
 
-def _by_dispersion(a: FirstModes, scene: "Scene") -> tuple[Need, ...]:
-    from verify.exact.error_laws import dispersion_frequency_hz
-
-    dispersion_frequency_hz(a.model, scene.beam, a.modes, a.count)
-    return _solved(a.model, a.count, a.modes)
-
-
-def _check_law(a: DiscreteAtSize, beam: "Beam") -> None:
-    """Raise InputError where the leading law is that of other parts, another wall or another theory."""
-    from verify.exact.closed_forms import check_uniform
-    from verify.exact.error_laws import law_of
-
-    law_of(a.model)
-    check_uniform(beam)
-    for name, value in a.settings:
-        if name in ("theory", "grading") or (name == "wall" and "clamped" in beam.supports):
-            raise InputError(
-                f"{name} = {value!r}: the leading law is that of equal parts, Gregory's joints and Euler-Bernoulli's "
-                f"theory, leave {name} out or ask for mode.frequency_error"
-            )
-
-
-def _beside_a_law(a: DiscreteAtSize, scene: "Scene") -> tuple[Need, ...]:
-    _check_law(a, scene.beam)
-    return _at_size(a, scene)
-
-
-def _bracketed(a: BracketAt, scene: "Scene") -> tuple[Need, ...]:
-    check_bracket(scene.beam, a.settings)
-    return _solved(MEAN, a.count, a.mode, a.settings)
-
-
-def _over_sizes(a: OverSizes, scene: "Scene") -> tuple[Need, ...]:
-    return tuple(need for count in a.counts for need in _solved(a.model, count, a.mode, a.settings))
-
-
-def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
-    if a.count is None:
-        return bench.exact_hz(a.mode, a.theory)
-    return bench.frequency_hz(a.model, a.count, a.mode, a.settings)
-
-
-def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
-    if a.count is None:
-        exact = bench.exact_hz(a.mode)
-        return (bench.exact_hz(a.mode, a.theory) - exact) / exact
-    return bench.frequency_error(a.model, a.count, a.mode, a.settings)
-
-
-def _plate_error(a: PlateMode, scene: "Scene", bench: Workbench) -> float:
+@quantity("mode.plate_error", unit="1", reads=BEAM)
+def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
+    """Frequency as a thin plate with free long edges, relative to Euler-Bernoulli theory, less 1."""
     from verify.exact.plate_strip import plate_error
 
-    return plate_error(scene.beam, a.mode)
+    return plate_error(scene.beam, mode)
 
 
-def _on_a_strip(a: PlateMode, scene: "Scene") -> tuple[Need, ...]:
-    from verify.exact.plate_strip import check_strip
+@quantity("mode.law_ratio", unit="1", reads=BEAM)
+def law_ratio(scene: Scene, cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
+    """Frequency error over its leading term, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), mu = beta l."""
+    from verify.exact.closed_forms import check_uniform
+    from verify.exact.error_laws import law_of, leading_error
 
-    check_strip(scene.beam)
-    return ()
-
-
-def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
-    from verify.exact.error_laws import dispersion_frequency_hz
-
-    solved = bench.modes(a.model, a.count, a.modes).frequencies_hz
-    closed = [dispersion_frequency_hz(a.model, scene.beam, n, a.count) for n in range(1, a.modes + 1)]
-    return max(abs(float(f) / exact - 1.0) for f, exact in zip(solved, closed, strict=False))
-
-
-def _law_ratio(a: DiscreteAtSize, scene: "Scene", bench: Workbench) -> float:
-    from verify.exact.error_laws import leading_error
-
-    _check_law(a, scene.beam)
-    law = leading_error(a.model, scene.beam.supports, a.mode, a.count)
-    return bench.frequency_error(a.model, a.count, a.mode, a.settings) / law
+    law_of(of.model)
+    check_uniform(scene.beam)
+    for name, value in of.settings:
+        if name in ("theory", "grading") or (name == "wall" and "clamped" in scene.beam.supports):
+            raise InputError(f"{name} = {value!r}: the leading law has none, leave it out or use mode.frequency_error")
+    law = leading_error(of.model, scene.beam.supports, of.mode, of.count)
+    return cache.frequency_error(of.model, of.count, of.mode, of.settings) / law
 
 
-def _order(a: OverSizes, scene: "Scene", bench: Workbench) -> float:
+@quantity("mode.shape_error", unit="1", reads=BEAM)
+def shape_error(cache: "SolutionCache", of: opt.OneDiscreteMode, *, reading: Reading | None = None) -> float:
+    """Relative L2 error of the mass-normalised deflection at the model's nodes."""
+    return cache.shape_error(of.model, of.count, of.mode, reading, of.settings)
+
+
+@quantity("mode.curvature_error", unit="1", reads=BEAM)
+def curvature_error(cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
+    """Relative L2 error of the curvature at joints or Gauss points."""
+    return cache.curvature_error(of.model, of.count, of.mode, of.settings)
+
+
+def _shape(scene: Scene, cache: "SolutionCache", of: opt.OneMode, x: float, derivative: int) -> float:
+    from verify.models.places import places
+
+    at = places("x", x, scene.beam.length).ravel()
+    return cache.shape_at(of.model, of.count, of.mode, at, derivative, of.settings)
+
+
+@quantity("mode.deflection", unit="1/sqrt(kg)", reads=BEAM)
+def deflection(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
+    """Deflection of a mode of modal mass 1 kg at x, positive at the first displacement from the left end."""
+    return _shape(scene, cache, of, x, 0)
+
+
+@quantity("mode.slope", unit="1/(m sqrt(kg))", reads=BEAM)
+def slope(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
+    """Slope of the deflection of a mode of modal mass 1 kg at x."""
+    return _shape(scene, cache, of, x, 1)
+
+
+@quantity("mode.node_position", unit="m", reads=BEAM)
+def node_position(
+    cache: "SolutionCache",
+    of: opt.OneMode,
+    *,
+    node: Annotated[int, Meta(ge=1, description="number of the node from the left, ends not counted")] = 1,
+) -> float:
+    """Position of a node of a mode, from the left end."""
+    positions = cache.node_positions(of.model, of.count, of.mode, of.settings)
+    if node > len(positions):
+        raise InputError(f"node = {node}: mode {of.mode} has {len(positions)} nodes between the ends, give fewer")
+    return float(positions[node - 1])
+
+
+@quantity("mode.order", unit="1", reads=BEAM)
+def order(
+    scene: Scene,
+    cache: "SolutionCache",
+    options: opt.ModelOptions,
+    *,
+    model: Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", sized=True, mean=True)],
+    mode: opt.Mode,
+    counts: opt.Sizes,
+) -> float:
+    """Observed order of the frequency error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
 
-    due = None if a.model == MEAN else MODELS.named(a.model).order(scene.beam, **dict(a.settings))
-    errors = [bench.frequency_error(a.model, n, a.mode, a.settings) for n in a.counts]
-    return settled_order(a.counts, errors, due)
+    check_sizes("counts", counts)
+    expected = None
+    if model != MEAN:
+        opt.check_settings(model, options.settings, "modal")
+        expected = MODELS.named(model).order(scene.beam, **dict(options.settings))
+    return settled_order(counts, [cache.frequency_error(model, n, mode, options.settings) for n in counts], expected)
 
 
-def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
+@quantity("mode.shape_order", unit="1", reads=BEAM)
+def shape_order(
+    cache: "SolutionCache",
+    options: opt.ModelOptions,
+    *,
+    model: opt.DiscreteModel,
+    mode: opt.Mode,
+    counts: opt.Sizes,
+    reading: Reading | None = None,
+) -> float:
+    """Observed order of the shape error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
 
-    errors = [bench.shape_error(a.model, n, a.mode, a.reading, a.settings) for n in a.counts]
-    return settled_order(a.counts, errors)
+    check_sizes("counts", counts)
+    settings = opt.check_settings(model, options.settings, "modal")
+    return settled_order(counts, [cache.shape_error(model, n, mode, reading, settings) for n in counts])
 
 
-def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
+@quantity("mode.bracket", unit="Hz", reads=BEAM)
+def bracket(cache: "SolutionCache", options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
+    """Two-sided bound on the exact frequency: segments below, Hermite elements above."""
+    return cache.bracket(mode, count, options.settings)
+
+
+@quantity("mode.count_needed", unit="1", reads=BEAM)
+def count_needed(
+    cache: "SolutionCache",
+    options: opt.ModelOptions,
+    *,
+    model: opt.DiscreteModel,
+    mode: opt.Mode,
+    error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
+    of: Annotated[
+        Literal["enough", "least"], Meta(description="N from which all larger ones suffice, or the least N that does")
+    ] = "enough",
+) -> float:
+    """Number of segments or elements for a frequency error of at most `error`."""
     from verify.judge.sizing import enough_from
 
-    found = enough_from(bench, a.model, a.mode, a.error, a.settings)
-    return found.smaller if a.of == "least" and found.smaller is not None else found.count
+    found = enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal"))
+    return found.smaller if of == "least" and found.smaller is not None else found.count
 
 
-def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
-    from verify.judge.several import count_guess
-    from verify.judge.sizing import check_reachable
-
-    check_reachable(scene.beam, a.model, a.settings)
-    guess = count_guess(a.model, scene.beam, a.mode, a.error)
-    while not _taken(a, scene, guess):  # what so few parts refuse
-        guess *= 2
-    return _solved(a.model, guess, a.mode, a.settings)
-
-
-def _taken(a: ToError, scene: "Scene", count: int) -> bool:
-    try:
-        MODELS.named(a.model).check(scene.beam, a.mode, count, **dict(a.settings))
-    except InputError:
-        return False
-    return True
-
-
-def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:
-    positions = bench.node_positions(a.model, a.count, a.mode, a.settings)
-    if a.node > len(positions):
-        raise InputError(f"node = {a.node}: mode {a.mode} has {len(positions)} nodes between the ends")
-    return float(positions[a.node - 1])
-
-
-def _shape(derivative: int) -> Callable[[ShapeOf, "Scene", Workbench], float]:
-    """A derivative of a mass-normalised shape at a place."""
-
-    def evaluate(a: ShapeOf, scene: "Scene", bench: Workbench) -> float:
-        from verify.models.places import places
-
-        at = places("x", a.x, scene.beam.length).ravel()
-        return bench.shape_at(a.model, a.count, a.mode, at, derivative, a.settings)
-
-    return evaluate
-
-
-def _beside_stock(a: StockMode, scene: "Scene") -> tuple[Need, ...]:
-    from verify.elements.stock import check_stock
-
-    check_stock(scene.beam, a.mode, a.count)
-    return _solved("fem", a.count, a.mode)
-
-
-def _assembled(a: Elements, scene: "Scene") -> tuple[Need, ...]:
-    MODELS.named("fem").check(scene.beam, 1, a.count, grading=a.grading)
-    return ()
-
-
-def _stock_difference(a: StockMode, scene: "Scene", bench: Workbench) -> float:
+@quantity("mode.stock_difference", unit="1", reads=BEAM)
+def stock_difference(scene: Scene, cache: "SolutionCache", *, mode: opt.Mode, count: opt.Size) -> float:
+    """Frequency by scikit-fem's own Hermite element and solver relative to that of our elements, less 1."""
     from verify.elements.stock import stock_frequency_hz
 
-    return stock_frequency_hz(scene.beam, a.mode, a.count) / bench.frequency_hz("fem", a.count, a.mode) - 1.0
+    return stock_frequency_hz(scene.beam, mode, count) / cache.frequency_hz("fem", count, mode) - 1.0
 
 
-def _stiffness_difference(a: Elements, scene: "Scene", bench: Workbench) -> float:
-    from verify.elements.pencil import factor_difference
-
-    _assembled(a, scene)
-    return factor_difference(scene.beam, a.count, a.grading)
-
-
-def _rule_frequency(a: NeighbourModes, scene: "Scene", bench: Workbench) -> float:
+@quantity("drive.rule_frequency", unit="Hz", reads=BEAM)
+def rule_frequency(
+    scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
+) -> float:
+    """Root mean square of two neighbouring natural frequencies, where both respond equally."""
     from verify.exact.closed_forms import rule_frequency_hz
 
-    return rule_frequency_hz(scene.beam, a.mode - 1, a.mode)
+    return rule_frequency_hz(scene.beam, mode - 1, mode)
 
 
-def _quarter_wavelength(a: AtFrequency, scene: "Scene", bench: Workbench) -> float:
+@quantity("drive.quarter_wavelength", unit="m", reads=("beam", "drive"))
+def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
+    """A quarter of the bending wavelength: the distance of a force from its end of the beam."""
     from verify.exact.closed_forms import quarter_wavelength
 
-    return quarter_wavelength(scene.beam, drive_frequency(a, scene))
+    return quarter_wavelength(scene.beam, opt.drive_frequency(scene, frequency_hz))
 
 
-MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
-    Quantity("mode.frequency", "Hz", "Frequency of one mode.", AtSize, "modes", _frequency, needs=_at_size),
-    Quantity(
-        "mode.frequency_error",
-        "1",
-        "Signed error relative to the exact frequency by the same theory; of a theory itself, to Euler-Bernoulli's.",
-        AtSize,
-        "modes",
-        _frequency_error,
-        needs=_at_size,
-    ),
-    Quantity(
-        "mode.plate_error",
-        "1",
-        "Frequency as a thin plate with free long edges relative to Euler-Bernoulli's, less one: bending across.",
-        PlateMode,
-        "closed form",
-        _plate_error,
-        needs=_on_a_strip,
-    ),
-    Quantity(
-        "mode.dispersion_error",
-        "1",
-        "Largest deviation of the solver from the model's own exact dispersion.",
-        FirstModes,
-        "modes",
-        _dispersion_error,
-        needs=_by_dispersion,
-    ),
-    Quantity(
-        "mode.law_ratio",
-        "1",
-        "Frequency error over its leading law, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), which is for N beyond 200 c.",
-        DiscreteAtSize,
-        "modes",
-        _law_ratio,
-        needs=_beside_a_law,
-    ),
-    Quantity(
-        "mode.shape_error",
-        "1",
-        "Relative L2 error of the mass-normalised deflection at the model's nodes.",
-        ShapeAt,
-        "modes",
-        lambda a, s, bench: bench.shape_error(a.model, a.count, a.mode, a.reading, a.settings),
-        needs=_at_size,
-    ),
-    Quantity(
-        "mode.curvature_error",
-        "1",
-        "Relative L2 error of the curvature at joints or Gauss points.",
-        DiscreteAtSize,
-        "modes",
-        lambda a, s, bench: bench.curvature_error(a.model, a.count, a.mode, a.settings),
-        needs=_at_size,
-    ),
-    Quantity(
-        "mode.deflection",
-        "1/sqrt(kg)",
-        "Deflection of a mode of modal mass 1 kg at a place, positive where the beam first moves off its left end.",
-        ShapeOf,
-        "modes",
-        _shape(0),
-        needs=_at_size,
-    ),
-    Quantity(
-        "mode.slope",
-        "1/(m sqrt(kg))",
-        "Slope of that deflection at a place.",
-        ShapeOf,
-        "modes",
-        _shape(1),
-        needs=_at_size,
-    ),
-    Quantity(
-        "mode.node_position",
-        "m",
-        "Where a mode stands still, from the left end.",
-        NodeAt,
-        "modes",
-        _node_position,
-        needs=_at_size,
-    ),
-    Quantity(
-        "mode.order",
-        "1",
-        "Observed order of the frequency error over sizes, refused where it is not settled between them.",
-        OverSizes,
-        "modes",
-        _order,
-        needs=_over_sizes,
-    ),
-    Quantity(
-        "mode.shape_order",
-        "1",
-        "Observed order of the shape error over sizes, refused where it is not settled between them.",
-        ShapesOverSizes,
-        "modes",
-        _shape_order,
-        needs=_over_sizes,
-    ),
-    Quantity(
-        "mode.bracket",
-        "Hz",
-        "Two-sided bound on the exact frequency: segments below, Hermite above.",
-        BracketAt,
-        "modes",
-        lambda a, s, bench: bench.bracket(a.mode, a.count, a.settings),
-        needs=_bracketed,
-    ),
-    Quantity(
-        "mode.count_needed",
-        "1",
-        "Segments or elements from which on the frequency error stays within `error`, as far as larger ones were "
-        "looked through, or the least that happen to.",
-        ToError,
-        "modes",
-        _count_needed,
-        needs=_count_guess,
-        searches=True,
-    ),
-    Quantity(
-        "mode.stock_difference",
-        "1",
-        "Frequency by stock scikit-fem, its own Hermite element and solve, relative to that of our elements.",
-        StockMode,
-        "modes",
-        _stock_difference,
-        needs=_beside_stock,
-    ),
-    Quantity(
-        "mode.stiffness_difference",
-        "1",
-        "Largest entry of the elements' factored stiffness minus scikit-fem's assembled one, over sqrt(K_ii K_jj).",
-        Elements,
-        "matrices",
-        _stiffness_difference,
-        needs=_assembled,
-        models=("fem",),
-    ),
-    Quantity(
-        "drive.rule_frequency",
-        "Hz",
-        "Root mean square of two exact neighbours: where both answer alike.",
-        NeighbourModes,
-        "closed form",
-        _rule_frequency,
-    ),
-    Quantity(
-        "drive.quarter_wavelength",
-        "m",
-        "A quarter of the bending wavelength: a force's distance from its end.",
-        AtFrequency,
-        "closed form",
-        _quarter_wavelength,
-    ),
-)
+@quantity("beam.buckling_load", unit="N", reads=BEAM)
+def buckling_load(
+    scene: Scene,
+    options: opt.ModelOptions,
+    *,
+    model: Annotated[str, model_meta("which model", "buckling_load")],
+    count: opt.Size | None = None,
+) -> float:
+    """Compression at first buckling, whatever axial force the beam itself has."""
+    opt.check_count(model, count)
+    settings = opt.check_settings(model, options.settings, "buckling")
+    return MODELS.named(model).buckling_load(scene.beam, count, **dict(settings))

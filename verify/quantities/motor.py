@@ -1,272 +1,236 @@
-"""Named figures of a motor: a slider that may leave the beam, held at a speed, without load, under way."""
+"""Quantities of a motor: a slider that may leave the beam, held at a speed, without load, from rest."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+import msgspec
+from msgspec import Meta
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.judge.workbench import Workbench
-from verify.quantities import compiled
-from verify.quantities.cases import drive_forces, drive_frequency
-from verify.quantities.kind import Quantity
-from verify.quantities.motor_arguments import AtSpeedOf, ForceAt, FreeRun, Held, Motor, OfRun, UnderWay, slider_on_feet
+from verify.quantities import options as opt
+from verify.quantities.base import Scene, quantity
+from verify.quantities.slider import SliderValues, changed_slider
+from verify.slider import Slider
 
 if TYPE_CHECKING:
+    from verify.judge.cache import SolutionCache
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed, Reading
-    from verify.scenes.scene import Scene
+    from verify.motor.result import MotorRun
+
+Periods = Annotated[int, Meta(ge=24, description="of the drive, at most, until the means converge")]
+Speed = Annotated[float, Meta(description="of the slider along +x, m/s")]
 
 
-def motor_case(a: Motor, scene: "Scene") -> "MotorCase":
-    """The motor that arguments and a scene describe. Raises InputError."""
+class MotorOptions(opt.DriveOptions, frozen=True, kw_only=True):
+    """Drive and model of a motor's steady beam."""
+
+    model: opt.TimeModel = "segment"
+    count: opt.Size | None = None
+    force: opt.ForceAmplitude | None = None
+    modal_damping: opt.ModalDamping | None = None
+    steps_per_period: Annotated[int, Meta(ge=4, description="at least; more where the contact is stiff")] = 61
+
+
+class FeetOptions(SliderValues, frozen=True, kw_only=True):
+    """The slider of a motor and its feet, by default the scene's."""
+
+    stiffness: Annotated[float, Meta(gt=0, description="of each foot's contact, N/m")] | None = None
+    damping: Annotated[float, Meta(ge=0, description="of each foot's contact, N s/m")] | None = None
+    tangential_stiffness: Annotated[float, Meta(gt=0, description="of each foot's contact, N/m")] | None = None
+    restitution: Annotated[float, Meta(ge=0, le=1, description="of a hard contact")] | None = None
+    points: Annotated[int, Meta(ge=1, description="of every foot")] | None = None
+    foot_length: Annotated[float, Meta(gt=0, description="of every foot, m")] | None = None
+
+    def of(self, scene: Scene) -> Slider:
+        """The scene's slider with these values. Raises InputError where there is none, or one without contact."""
+        if scene.slider is None or (contact := scene.slider.contact) is None:
+            raise InputError("slider.contact is missing: add [slider] with mass, mu and [slider.contact] to the scene")
+        given = {name: value for name, value in msgspec.structs.asdict(self).items() if value is not None}
+        feet, names = scene.slider.foot, ("stiffness", "damping", "tangential_stiffness", "restitution")
+        contact = replace(contact, **{name: given.pop(name) for name in names if name in given})
+        if shape := {name: given.pop(key) for name, key in FOOT.items() if key in given}:
+            feet = tuple(replace(foot, **shape) for foot in scene.slider.feet)
+        layered = contact.layer_stiffness is not None or contact.layer_tangential_stiffness is not None
+        if self.foot_length is not None and (contact.hard or (not layered and any(foot.points == 1 for foot in feet))):
+            remedy = "leave it out" if contact.hard else "give points as well"
+            raise InputError(f"foot_length = {self.foot_length!r} of a foot with one point of contact: {remedy}")
+        return changed_slider(replace(scene.slider, contact=contact, foot=feet), given)
+
+
+FOOT = {"points": "points", "length": "foot_length"}
+
+
+def motor_case(scene: Scene, motor: MotorOptions, feet: FeetOptions) -> "MotorCase":
+    """The motor of a scene with these options. Raises InputError."""
     from verify.motor.case import MotorCase
-    from verify.quantities.simulated import check_forced
-
-    check_forced(scene, "a motor")
-    forces = drive_forces(a, scene)
-    return MotorCase(
-        beam=scene.beam,
-        forces=forces if a.force is None else tuple(replace(one, amplitude=a.force) for one in forces),
-        frequency_hz=drive_frequency(a, scene),
-        slider=slider_on_feet(a, scene),
-        model=a.model,
-        count=a.count,
-        modal_damping=a.modal_damping,
-        steps_per_period=a.steps_per_period,
-    )
-
-
-def _needs(a: Motor, scene: "Scene") -> tuple[()]:
-    """Raise InputError for a motor that is not run."""
     from verify.motor.combine import check_combines
-    from verify.motor.feet import check_on_beam
 
-    case = motor_case(a, scene)
+    opt.check_count(motor.model, motor.count)
+    opt.check_forces(scene, "a motor")
+    case = MotorCase(
+        beam=scene.beam,
+        forces=motor.forces(scene, motor.force),
+        frequency_hz=motor.frequency(scene),
+        slider=feet.of(scene),
+        model=motor.model,
+        count=motor.count,
+        modal_damping=motor.modal_damping,
+        steps_per_period=motor.steps_per_period,
+    )
     check_combines(case.model, case.start, case.slider)
-    check_on_beam(case.slider, case.beam, case.slider.start_on(case.beam))
-    return ()
+    return case
 
 
-def _held(a: Held, scene: "Scene", bench: Workbench) -> "AtSpeed":
-    """The motor at the speed that is asked for, solved once."""
+def _held(
+    cache: "SolutionCache", case: "MotorCase", speed: float, periods: int, readings: "tuple[Reading, ...]"
+) -> "AtSpeed":
+    """The motor at a held speed. Raises InputError where one of the readings has not converged."""
     from verify.motor.figures import at_speed
 
-    case, speed = motor_case(a, scene), float(getattr(a, "speed", 0.0))
-    key = ("motor", case, speed, a.periods)
-    if key not in bench.motors:
-        bench.motors[key] = at_speed(case, speed, periods=a.periods)
-    found: AtSpeed = bench.motors[key]
+    key = ("held", case, speed, periods)
+    if key not in cache.motors:
+        cache.motors[key] = at_speed(case, speed, periods=periods)
+    found: AtSpeed = cache.motors[key]
+    if not found.settled(*readings):
+        missing = " and ".join(one for one in readings if one in found.unsettled)
+        raise InputError(
+            f"periods = {periods!r}: at {speed:.6g} m/s {missing} has not converged (friction {found.force:.4g} +- "
+            f"{found.spread:.1g} N), give more periods, slider.contact.damping or slider.preload"
+        )
     return found
-
-
-def _of_held(figure: "Callable[[AtSpeed], float]", *readings: "Reading") -> "Callable[[Held, Scene, Workbench], float]":
-    """A figure that stands on some readings. Raises InputError where one of them has not settled."""
-
-    def evaluate(a: Held, scene: "Scene", bench: Workbench) -> float:
-        from verify.motor.withheld import not_settled
-
-        found = _held(a, scene, bench)
-        if not found.settled(*readings):
-            raise InputError(not_settled(motor_case(a, scene), found, readings, a.periods))
-        return figure(found)
-
-    return evaluate
 
 
 def _efficiency(found: "AtSpeed") -> float:
-    """Raises InputError where the surface gives nothing along the beam, or does no work on the load."""
     if found.efficiency is None:
-        why = "the load drives the slider" if found.given > 0.0 else "the slider drives the surface"
-        raise InputError(f"speed = {found.speed!r} m/s: there {why}, give a speed in between")
+        raise InputError(f"speed = {found.speed!r} m/s: no power from the surface to the load, give one between")
     return found.efficiency
 
 
-def _no_load(a: Held, scene: "Scene", bench: Workbench) -> float:
+HELD: "dict[str, tuple[str, str, Callable[[AtSpeed], float], tuple[Reading, ...]]]" = {
+    "force_speed": ("N", "Mean friction force on the slider held at a speed.", lambda at: at.force, ("force",)),
+    "power": ("W", "Mean mechanical power of the slider held at a speed.", lambda at: at.power, ("force",)),
+    "efficiency": ("1", "That power over the power of the surface along the beam.", _efficiency, ("force", "powers")),
+    "normal_mean": ("N", "Mean normal force on the slider.", lambda at: at.normal_force, ("normal force",)),
+    "contact_share": ("1", "Share of points and time in contact.", lambda at: at.contact_share, ("shares",)),
+    "stuck_share": ("1", "Share of points and time that stick.", lambda at: at.stuck_share, ("shares",)),
+    "wear_power": ("W", "Power lost in friction and tangential compliance.", lambda at: at.rubbed, ("powers",)),
+}
+
+
+def _held_figure(read: "Callable[[AtSpeed], float]", readings: "tuple[Reading, ...]") -> Callable[..., float]:
+    def held_figure(
+        scene: Scene,
+        cache: "SolutionCache",
+        motor: MotorOptions,
+        feet: FeetOptions,
+        *,
+        speed: Speed = 0.0,
+        periods: Periods = 46_080,
+    ) -> float:
+        return read(_held(cache, motor_case(scene, motor, feet), speed, periods, readings))
+
+    return held_figure
+
+
+for _name, (_unit, _text, _read, _readings) in HELD.items():
+    quantity(f"slider.{_name}", unit=_unit, summary=_text)(_held_figure(_read, _readings))
+
+
+@quantity("slider.stall_force", unit="N")
+def stall_force(
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, *, periods: Periods = 46_080
+) -> float:
+    """Mean friction force on the slider held still."""
+    return _held(cache, motor_case(scene, motor, feet), 0.0, periods, ("force",)).force
+
+
+@quantity("slider.no_load_speed", unit="m/s")
+def no_load_speed(scene: Scene, motor: MotorOptions, feet: FeetOptions, *, periods: Periods = 46_080) -> float:
+    """Speed along +x at which the mean friction force on the slider vanishes."""
     from verify.motor.figures import no_load
 
-    return no_load(motor_case(a, scene), periods=a.periods).speed
+    return no_load(motor_case(scene, motor, feet), periods=periods).speed
 
 
-def _free_speed(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
-    """Raises InputError where the run has no steady end."""
-    from verify.motor.figures import comes_to_speed, crest_speed, mean_speed, pushed_on
+class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
+    """The slider free, from rest."""
 
-    run, case = _free(a, scene, bench), motor_case(a, scene)
-    speed, spread = mean_speed(run, a.last)
-    crests = crest_speed(case)
-    if not comes_to_speed(run, a.last, crests):
-        carried = float(run.normal_force[-a.last :].mean())
+    periods: Annotated[int, Meta(ge=2, description="of the drive")] = 2000
+    pull: Annotated[float, Meta(description="external force on the slider along +x, N")] | None = None
+
+    def run(self, cache: "SolutionCache", case: "MotorCase") -> "MotorRun":
+        """The run, sampled once a period. Raises InputError where it stops before its end."""
+        key = ("free", case, self.periods)
+        if key not in cache.motors:
+            cache.motors[key] = case.run(self.periods * case.period, samples=self.periods + 1)
+        run: MotorRun = cache.motors[key]
+        if run.statistics.interrupted:
+            raise KeyboardInterrupt
+        if not run.statistics.finished:
+            raise InputError(
+                f"periods = {self.periods!r}: the slider {run.statistics.stopped} after {run.state.time:.6g} s, give "
+                "fewer, or another slider_position"
+            )
+        return run
+
+    def case(self, scene: Scene, motor: MotorOptions, feet: FeetOptions) -> "MotorCase":
+        """The motor with this external force."""
+        case = motor_case(scene, motor, feet)
+        return case if self.pull is None else replace(case, slider=replace(case.slider, pull=self.pull))
+
+
+Last = Annotated[int, Meta(ge=2, description="periods of the mean at the end")]
+
+
+def _free_speed(cache: "SolutionCache", case: "MotorCase", free: FreeRun, last: int) -> "tuple[MotorRun, float, float]":
+    """(run, mean speed at its end, difference of that end's halves). Raises InputError without a steady end."""
+    from verify.motor.figures import comes_to_speed, crest_speed, mean_speed
+
+    if last >= free.periods:
+        raise InputError(f"last = {last!r} of periods = {free.periods!r}: give fewer")
+    run = free.run(cache, case)
+    speed, spread = mean_speed(run, last)
+    if not comes_to_speed(run, last, crest_speed(case)):
         raise InputError(
-            f"periods = {a.periods!r} with last = {a.last!r}: the free run has no steady end, its halves differ by "
-            f"{spread:.2g} m/s where crests run at {crests:.3g} m/s, {pushed_on(run, a.last):.2g} of mu N push it on, "
-            f"and {carried:.3g} N are carried of {case.slider.normal_force:.3g} N: give more of both, or more "
-            "slider.preload"
+            f"periods = {free.periods!r} with last = {last!r}: the free run has no steady end, the halves of its mean "
+            f"{speed:.3g} m/s differ by {spread:.2g} m/s, give more of both, or more slider.preload"
         )
-    return speed
+    return run, speed, spread
 
 
-def _free(a: FreeRun, scene: "Scene", bench: Workbench) -> Any:
-    """The free run, sampled once a period, solved once. Raises InputError where it does not reach its end."""
-    case = motor_case(a, scene)
-    key = ("motor free", case, a.periods)
-    if key not in bench.motors:
-        bench.motors[key] = case.run(a.periods * case.period, samples=a.periods + 1, patient=False)
-    run = bench.motors[key]
-    if run.statistics.interrupted:
-        raise KeyboardInterrupt
-    if not run.statistics.finished:
+@quantity("slider.free_speed", unit="m/s")
+def free_speed(
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, free: FreeRun, *, last: Last = 200
+) -> float:
+    """Mean speed of the free slider at the end of a run from rest."""
+    return _free_speed(cache, free.case(scene, motor, feet), free, last)[1]
+
+
+@quantity("slider.start_time", unit="s")
+def start_time(
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, free: FreeRun, *, last: Last = 200
+) -> float:
+    """Time from rest until the free slider has made 1 - 1/e of the change to its final speed."""
+    from verify.motor.figures import started_of
+
+    run, speed, spread = _free_speed(cache, free.case(scene, motor, feet), free, last)
+    if abs(speed - float(run.speed[0])) <= spread:
         raise InputError(
-            f"the slider {run.statistics.stopped} after {run.state.time:.6g} s: ask for fewer periods, or put it "
-            "elsewhere"
-        )
-    return run
-
-
-def _start_time(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
-    """Raises InputError where it is not under way by then."""
-    from verify.motor.figures import mean_speed, started_of
-
-    run, speed = _free(a, scene, bench), _free_speed(a, scene, bench)
-    spread, first = mean_speed(run, a.last)[1], float(run.speed[0])
-    if abs(speed - first) <= spread:
-        gives = run.slider is not None and run.slider.contact is not None and run.slider.contact.tangential_stiffness
-        other = ", or its contact another tangential_stiffness" if gives else ""
-        raise InputError(
-            f"periods = {a.periods!r} with last = {a.last!r}: the slider begins at {first:.6g} m/s and comes to "
-            f"{speed:.2g} m/s, the same within the {spread:.2g} m/s by which halves of its end differ: no way takes a "
-            f"time; give slider.speed another start{other}"
+            f"periods = {free.periods!r}: the speed at the start, {run.speed[0]:.6g} m/s, equals that at the end "
+            f"within {spread:.2g} m/s, give slider.speed another value"
         )
     found = started_of(run, speed)
     if found is None:
-        raise InputError(f"periods = {a.periods!r}: the slider is not under way by then, give more")
+        raise InputError(f"periods = {free.periods!r}: the slider does not reach its speed in these, give more")
     return found
 
 
-def _booked(a: OfRun, scene: "Scene", bench: Workbench) -> float:
-    books = _free(a, scene, bench).ledger
-    return float(getattr(books, a.of) / (abs(books.across) + abs(books.along)))
-
-
-MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
-    Quantity(
-        "slider.stall_force",
-        "N",
-        "Mean friction on a slider that may leave the beam, held still.",
-        Held,
-        "in time",
-        _of_held(lambda found: found.force, "force"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.force_speed",
-        "N",
-        "The same at a speed.",
-        ForceAt,
-        "in time",
-        _of_held(lambda found: found.force, "force"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.normal_mean",
-        "N",
-        "Mean normal force on that slider.",
-        AtSpeedOf,
-        "in time",
-        _of_held(lambda found: found.normal_force, "normal force"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.contact_share",
-        "1",
-        "Share of its points and of time that touch.",
-        AtSpeedOf,
-        "in time",
-        _of_held(lambda found: found.contact_share, "shares"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.stuck_share",
-        "1",
-        "Share of its points and of time that stick.",
-        AtSpeedOf,
-        "in time",
-        _of_held(lambda found: found.stuck_share, "shares"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.power",
-        "W",
-        "Mean power on that slider at a speed.",
-        ForceAt,
-        "in time",
-        _of_held(lambda found: found.power, "force"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.efficiency",
-        "1",
-        "That power over what the surface gives along the beam.",
-        ForceAt,
-        "in time",
-        _of_held(_efficiency, "force", "powers"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.wear_power",
-        "W",
-        "What friction takes at a speed, and what gives way along the surface.",
-        AtSpeedOf,
-        "in time",
-        _of_held(lambda found: found.rubbed, "powers"),
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.no_load_speed",
-        "m/s",
-        "Speed along +x at which the mean friction on that slider is nought.",
-        Held,
-        "in time",
-        _no_load,
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.free_speed",
-        "m/s",
-        "Mean speed of that slider at the end of a free run.",
-        UnderWay,
-        "in time",
-        _free_speed,
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.start_time",
-        "s",
-        "Until 1 - 1/e of the way from its first speed to that one is made.",
-        UnderWay,
-        "in time",
-        _start_time,
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-    Quantity(
-        "slider.contact_energy",
-        "1",
-        "A line of the books of that run over the work of the surface.",
-        OfRun,
-        "in time",
-        _booked,
-        needs=_needs,
-        kernels=compiled.motor,
-    ),
-)
+@quantity("slider.contact_imbalance", unit="1")
+def contact_imbalance(
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, free: FreeRun
+) -> float:
+    """Residual of the free run's energy balance over the work of the surface."""
+    balance: Any = free.run(cache, free.case(scene, motor, feet)).ledger
+    return float(abs(balance.residual) / (abs(balance.across) + abs(balance.along)))

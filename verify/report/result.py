@@ -87,16 +87,32 @@ class Table:
         return "".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |\n" for line in lines)
 
     def print(self, console: "Console") -> None:
-        """Print it with rich; cells fold where the terminal is narrow."""
+        """Print it with rich. Text wraps; numbers do not: where they are too wide the columns go in several blocks."""
         from rich.table import Table as RichTable
 
-        grid = RichTable(title=self.title or None, title_justify="left", box=None, pad_edge=False)
-        for index, heading in enumerate(self.headings()):
-            words = any(isinstance(row[index], str) for row in self.rows)
-            grid.add_column(heading, justify="left" if words else "right", overflow="fold")
-        for row in self.text_rows():
-            grid.add_row(*row)
-        console.print(grid)
+        headings, rows, n = self.headings(), self.text_rows(), range(len(self.columns))
+        words = [any(isinstance(row[i], str) for row in self.rows) for i in n]
+        widths = [max((len(row[i]) for row in rows), default=0) for i in n]
+        least = [max(min(widths[i], 18) if words[i] else widths[i], *map(len, headings[i].split())) + 2 for i in n]
+        keys = [0]  # leading columns that name a row stand in every block
+        while (i := len(keys)) < len(n) and 2 * sum(least[: i + 1]) < console.width:
+            if any(isinstance(row[i], float) for row in self.rows):
+                break
+            keys.append(i)
+        blocks = [list(keys)]
+        for i in n[len(keys) :]:
+            if sum(least[j] for j in blocks[-1]) + least[i] > console.width + 2 and len(blocks[-1]) > len(keys):
+                blocks.append(list(keys))
+            blocks[-1].append(i)
+        for block in blocks:
+            grid = RichTable(title=self.title or None, title_justify="left", box=None, pad_edge=False)
+            for i in block:
+                grid.add_column(
+                    headings[i], justify="left" if words[i] else "right", no_wrap=not words[i], overflow="fold"
+                )
+            for row in rows:
+                grid.add_row(*(row[i] for i in block))
+            console.print(grid)
         for note in self.notes:
             console.print(note)
 
@@ -111,7 +127,7 @@ class Figure:
     """What is shown, under which condition: a fixed text."""
     draw: Callable[["Axes"], None]
     """Draws on the axes of a single chart, labels with units included."""
-    size: tuple[float, float] = (6.4, 4.0)
+    size: tuple[float, float] = (5.4, 3.5)
     """Inches."""
 
 
@@ -146,12 +162,15 @@ class Result:
         data: dict[str, Any] = plain(self.data)
         return {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | data
 
-    def print(self, console: "Console") -> None:
-        """Print summary, tables and warnings."""
+    def print(self, console: "Console", most_rows: int | None = None) -> None:
+        """Print summary, tables and warnings; of tables with more than `most_rows` rows the title alone."""
         if self.summary:
             console.print(self.summary)
         for table in self.tables:
-            table.print(console)
+            if most_rows is not None and len(table.rows) > most_rows:
+                console.print(f"{table.title}: {len(table.rows)} rows, see the report or --json", style="dim")
+            else:
+                table.print(console)
         for warning in self.warnings:
             console.print(f"warning: {warning}", style="yellow")
 

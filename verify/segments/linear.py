@@ -1,6 +1,6 @@
 """Finite segments: rigid links and joint springs, linearised about the straight chain. Modes and harmonic field."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from functools import lru_cache, partial
 from math import pi, sqrt
 from typing import Any
@@ -13,13 +13,15 @@ from verify.checks import MOST_DASHPOT, check_number, check_whole, check_word
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
-from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
-from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
+from verify.models.driven_pencil import check_dampings, harmonic_response, modal_receptance, name_resonance
+from verify.models.eigen import Eigenpairs, check_size, lowest
 from verify.models.fields import HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed, within
 from verify.models.response import forced_response
+from verify.models.sweeps import FIELD as FREQUENCIES
+from verify.models.sweeps import HarmonicSweep, swept_frequencies, swept_modes
 from verify.models.theory import check_theory
 from verify.options import ATTACHMENTS, LOADS, READINGS, THEORIES, Attachment, Joints, Load, Reading, Theory, Wall
 from verify.segments.assembly import build_chain, chain_pencil, check_set_up
@@ -32,7 +34,6 @@ from verify.segments.reading import (
     line_through,
     link_middles,
     link_slopes,
-    spline_at,
 )
 
 _FEWEST_MENDED = 6
@@ -142,7 +143,6 @@ def check(
 
 
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
-    frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / chain.unit**2
     vectors = pairs.vectors * (leading_sign(chain, pairs.vectors) / sqrt(beam.mass_per_length * chain.unit))
     raw = joint_positions(chain, vectors)
 
@@ -159,7 +159,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
         model="segment",
         count=chain.n_segments,
         length=beam.length,
-        frequencies_hz=frequencies,
+        frequencies_hz=_frequencies(beam, chain, pairs.values),
         shapes=shapes,
         nodes=nodes,
         readings={"corrected": corrected, "raw": lambda: raw},
@@ -169,6 +169,11 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
         curvatures=curvatures,
         method=pairs.method,
     )
+
+
+def _frequencies(beam: Beam, chain: Chain, values: Array) -> Array:
+    """Hz, of eigenvalues in the chain's units."""
+    return np.asarray(np.sqrt(values) * (beam.wave_constant / (2.0 * pi)) / chain.unit**2)
 
 
 def leading_sign(chain: Chain, free: Array) -> Array:
@@ -204,42 +209,124 @@ def solve_harmonic(
     force or ground: the modes would couple.
     """
     forces = as_forces(forces)
+    check_drive(beam, forces, frequency_hz)
+    settings = settings_of(wall, joints, grading, theory, attachment)
+    driven = (load, reading, modal_damping, joint_dashpot)
+    return _fields(beam, forces, np.array([frequency_hz]), n_segments, driven, settings).field(0)
+
+
+@as_typed
+def sweep_harmonic(
+    beam: Beam,
+    forces: Forces,
+    frequencies_hz: Numbers,
+    n_segments: int,
+    *,
+    load: Load = "reciprocal",
+    reading: Reading = "corrected",
+    modal_damping: float = 0.0,
+    joint_dashpot: float = 0.0,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
+) -> HarmonicSweep:
+    """The steady fields of `solve_harmonic` at many frequencies, to rounding.
+
+    Raises InputError as `solve_harmonic` does, by index: of several resonances the first.
+    """
+    forces = as_forces(forces)
     settings = settings_of(wall, joints, grading, theory, attachment)
     check(beam, 1, n_segments, **settings)
-    check_drive(beam, forces, frequency_hz)
-    check_settings(load, reading, modal_damping, joint_dashpot)
-    chain, pencil = driven(beam, n_segments, settings)
-    omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * chain.unit**4
+    frequencies = swept_frequencies(beam, forces, frequencies_hz, 2 * n_segments)
+    driven = (load, reading, modal_damping, joint_dashpot)
+    return _fields(beam, forces, frequencies, n_segments, driven, settings, FREQUENCIES)
+
+
+def _fields(
+    beam: Beam,
+    forces: tuple[PointForce, ...],
+    frequencies: Array,
+    n_segments: int,
+    driven: tuple[Load, Reading, float, float],
+    settings: dict[str, Any],
+    field: str = "",
+) -> HarmonicSweep:
+    """The fields at frequencies, (n,); `field` names them in messages by index."""
+    load, reading, modal_damping, joint_dashpot = driven
+    check(beam, 1, n_segments, **settings)
+    check_word("load", load, LOADS)
+    check_word("reading", reading, READINGS)
+    check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
+    check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0, at_most=MOST_DASHPOT)
     check_dampings(beam, modal_damping)
-    loads = force_loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
-    stiffness = damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
-    undamped = not (beam.loss_factor or modal_damping or joint_dashpot)
-    free = damped_response(pencil, probed(pencil, loads) if undamped else loads, omega2, stiffness, modal_damping)
-    if undamped:
+    chain, pencil = _driven(beam, n_segments, settings)
+    omega2 = (2.0 * pi * frequencies / beam.wave_constant) ** 2 * chain.unit**4
+
+    def refuse(index: int) -> None:
+        named = f"{field}[{index}]" if field else "frequency_hz"
         solve = partial(solve_modes, **settings)
-        refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments, free)
-        free = free[:, :1]
-    turned = swept_turns(chain, free, reading)
-    return HarmonicField(
-        theory=theory,
+        name_resonance("segment", beam, pencil, float(frequencies[index]), solve, n_segments, named)
+
+    total = sum(phasor(force) * joint_weights(chain, force.position, load) for force in forces)
+    loads = np.zeros((pencil.n, 1), dtype=complex)  # of which the free joints come first
+    on_joints = np.asarray(total, dtype=complex)[free_joints(chain)]
+    loads[: len(on_joints), 0] = on_joints * (chain.unit**3 / beam.bending_stiffness)
+    if joint_dashpot:
+        each = [damped(beam, chain, pencil, 2.0 * pi * float(f) * joint_dashpot) for f in frequencies]
+        stiffness: ComplexArray = np.array(each)
+    else:
+        stiffness = damped(beam, chain, pencil, 0.0)
+    undamped = not (beam.loss_factor or modal_damping or joint_dashpot)
+    free = harmonic_response(pencil, loads, omega2, stiffness, modal_damping, refuse if undamped else None)
+    return HarmonicSweep(
+        theory=settings["theory"],
         model="segment",
         count=n_segments,
         beam=beam,
-        frequency_hz=frequency_hz,
-        forces=tuple(forces),
+        frequencies_hz=frequencies,
+        forces=forces,
         shapes=_field_shapes(chain, free, reading),
-        turned=None if turned is None else lambda x, derivative: turned(x, derivative)[0],
+        turned=_field_turns(chain, free, reading),
     )
 
 
+@as_typed
+def sweep_modes(
+    beams: Iterable[Beam],
+    n_modes: int,
+    n_segments: int,
+    *,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
+) -> Array:
+    """Frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
+
+    Raises InputError as `solve_modes` does, naming the beam by its index.
+    """
+    check_set_up(n_segments, wall, joints, attachment)
+    settings = settings_of(wall, joints, grading, theory, attachment)
+
+    def solve(beam: Beam) -> Array:
+        check(beam, n_modes, n_segments, **settings)
+        chain = build_chain(beam, n_segments, **settings)
+        return _frequencies(beam, chain, lowest(chain_pencil(chain), n_modes).values)
+
+    return swept_modes(beams, n_modes, solve)
+
+
 KEPT = 4000
-"""Links up to which a chain is kept for the next frequency."""
+"""Links up to which a chain is cached for the next frequency."""
 
 
-def driven(beam: Beam, n_segments: int, settings: dict[str, Any]) -> tuple[Chain, FactoredPencil]:
-    """The chain of a beam and its pencil, which know no loss; small ones are kept."""
+def _driven(beam: Beam, n_segments: int, settings: dict[str, Any]) -> tuple[Chain, FactoredPencil]:
+    """The chain of a beam and its pencil, which know no loss; small ones are cached."""
     bare = replace(beam, loss_factor=0.0) if beam.loss_factor else beam
-    return (_kept if n_segments < KEPT else _made)(bare, n_segments, tuple(settings.items()))
+    return (_cached if n_segments < KEPT else _made)(bare, n_segments, tuple(settings.items()))
 
 
 def _made(beam: Beam, n_segments: int, settings: tuple[tuple[str, Any], ...]) -> tuple[Chain, FactoredPencil]:
@@ -247,7 +334,7 @@ def _made(beam: Beam, n_segments: int, settings: tuple[tuple[str, Any], ...]) ->
     return chain, chain_pencil(chain)
 
 
-_kept = lru_cache(maxsize=16)(_made)
+_cached = lru_cache(maxsize=16)(_made)
 
 
 def damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:
@@ -262,40 +349,19 @@ def damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) ->
     return np.asarray(lossy, dtype=complex)
 
 
-def check_settings(load: str, reading: str, zeta: float, dashpot: float) -> None:
-    """Raise InputError for a load or a reading that is not known, or a damping that is none."""
-    check_word("load", load, LOADS)
-    check_word("reading", reading, READINGS)
-    check_number("modal_damping", zeta, "0 means none", at_least=0, below=1)
-    check_number("joint_dashpot", dashpot, "N m s, 0 means none", at_least=0, at_most=MOST_DASHPOT)
-
-
-def force_loads(chain: Chain, forces: Sequence[PointForce], rule: str, n: int) -> ComplexArray:
-    """The forces on the n unknowns, (n, 1), newton: on the free joints, which come first."""
-    total = sum(phasor(force) * joint_weights(chain, force.position, rule) for force in forces)
-    joints = np.asarray(total, dtype=complex)[free_joints(chain)]
-    return np.append(joints, np.zeros(n - len(joints)))[:, None]
-
-
-def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
-    """The field between the joints; free is (n, 1) complex."""
-    every = swept_shapes(chain, free, reading)
-    return lambda x, derivative: every(x, derivative)[0]
-
-
-def swept_turns(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray] | None:
+def _field_turns(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray] | None:
     """Turns of the section of the unknowns (n, k) complex: (x, derivative) -> (k, len(x)); None where nothing slips."""
     if chain.slips is None:
         return None
     if reading == "links":
-        shapes = swept_shapes(chain, free, reading)
+        shapes = _field_shapes(chain, free, reading)
         return lambda x, derivative: shapes(x, derivative + 1)
     from verify.segments.turned import section_turns
 
     return section_turns(chain, free, reading == "corrected")
 
 
-def swept_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
+def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
     """Fields between the joints of the unknowns (n, k) complex: (x, derivative) -> (k, len(x))."""
     if reading == "links":
         columns = free.T[:, :, None]
@@ -356,7 +422,7 @@ def unit_responses(
     positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     settings = settings_of("gregory", joints, 1.0, theory, attachment)
     check(beam, 1, n_segments, **settings)
-    chain, pencil = driven(beam, n_segments, settings)
+    chain, pencil = _driven(beam, n_segments, settings)
     weights = np.zeros((pencil.n, len(positions)))
     loads = [joint_weights(chain, p, "reciprocal")[free_joints(chain)] for p in positions]
     weights[: len(loads[0]) if loads else 0] = np.array(loads).T
@@ -373,18 +439,4 @@ def unit_responses(
 
 def _read_at(chain: Chain, free: Array, x: Array) -> Array:
     """The corrected reading of the unknowns (n, k) at x, (k, len(x))."""
-    return spline_at(chain, joint_readings(chain, free), x, 0)
-
-
-def method(
-    beam: Beam,
-    n_modes: int,
-    n_segments: int,
-    theory: Theory = "euler-bernoulli",
-    attachment: Attachment = "reciprocal",
-    joints: Joints = "series",
-) -> str:
-    """How `solve_modes` will find its eigenvalues, in words."""
-    mended = joints == "tensioned" and theory == "rayleigh"
-    uneven = theory == "timoshenko" or mended or bool(set(beam.added) - {"section"})
-    return method_name(unknowns(beam, n_segments, theory, attachment), n_modes, uneven)
+    return line_through(chain, lambda: joint_readings(chain, free))(x, 0)

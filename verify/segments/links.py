@@ -16,7 +16,6 @@ from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.models.division import Parts
 from verify.models.inverse import first_bending
-from verify.models.pencil import on_diagonals
 
 FIELD = "n_segments"
 
@@ -215,9 +214,11 @@ def joint_angles(chain: Chain, free: Array) -> Array:
 
 def strain_matrix(chain: Chain) -> Any:
     """B of `joint_angles` as a sparse array (m, n)."""
+    from scipy.sparse import diags_array
+
     n = chain.n_segments
-    slopes = on_diagonals({0: -1.0 / chain.lengths, 1: 1.0 / chain.lengths}, (n, n + 1))
-    joints = on_diagonals({0: np.ones(n), -1: -np.ones(n)}, (n + 1, n)).tocsr()
+    slopes = diags_array([-1.0 / chain.lengths, 1.0 / chain.lengths], offsets=[0, 1], shape=(n, n + 1)).tocsc()
+    joints = diags_array([np.ones(n), -np.ones(n)], offsets=[0, -1], shape=(n + 1, n)).tocsr()
     left, right = chain.walls
     rows = slice(0 if left else 1, n + 1 if right else n)
     return joints[rows] @ slopes[:, free_joints(chain)]
@@ -246,7 +247,9 @@ def mass_matrix(chain: Chain, *, dense: bool = False) -> Any:
     diagonal, off = diagonal[free], shared[free.start : free.stop - 1]
     if dense:
         return np.diag(diagonal) + np.diag(off, 1) + np.diag(off, -1)
-    return on_diagonals({-1: off, 0: diagonal, 1: off})
+    from scipy.sparse import diags_array
+
+    return diags_array([off, diagonal, off], offsets=[-1, 0, 1]).tocsc()
 
 
 def with_ends(chain: Chain, free: Any) -> Any:

@@ -33,7 +33,7 @@ import msgspec
 import numpy as np
 
 from verify.models.arrays import Array, ComplexArray
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.segments.crowded import felt_together
 from verify.segments.links import Chain, right_of, stiffness_at_joints
 
@@ -291,13 +291,13 @@ def _strain(chain: Chain, placed: _Placed, free: Array) -> Array:
 
 def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
     """`positions`, `middles`, `turns` and `end_turns` over the unknowns, sparse arrays where those are many."""
-    from scipy.sparse import csr_array
+    from scipy.sparse import csr_array, diags_array
 
     n, total, free = chain.n_segments, n_unknowns(chain), _n_free(chain)
     if total <= DENSE_UNKNOWNS:  # sparse ones take ten times as long to make
         each = np.eye(total)
         return positions(chain, each), middles(chain, each), turns(chain, each), end_turns(chain, each)
-    joints = on_diagonals({-int(chain.held[0]): np.ones(free)}, (n + 1, free)).tocsr()
+    joints = diags_array(np.ones(free), offsets=-int(chain.held[0]), shape=(n + 1, free)).tocsr()
     joints.resize((n + 1, total))
     ends = csr_array(
         (np.ones(len(_turning(chain))), (_turning(chain), range(free, free + len(_turning(chain))))), (2, total)
@@ -307,7 +307,7 @@ def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
     parts = csr_array((_shares(chain)[there] * roots, (there, range(first, first + len(there)))), (n + 1, total))
     before, after = slice(0, n), slice(1, n + 1)
     centres = 0.5 * (joints[after] + joints[before]) + 0.5 * (parts[before] - parts[after])
-    tilts = on_diagonals({0: 1.0 / chain.lengths}) @ (joints[after] - joints[before] - parts[after] - parts[before])
+    tilts = diags_array(1.0 / chain.lengths) @ (joints[after] - joints[before] - parts[after] - parts[before])
     return joints, centres, tilts.tocsr(), ends
 
 
@@ -332,20 +332,22 @@ def _over_slips(chain: Chain, masses: Array) -> Array:
 
 def _strain_matrix(chain: Chain, placed: _Placed) -> Any:
     """B of `_strain` as a sparse array (m, n)."""
-    from scipy.sparse import csc_array, vstack
+    from scipy.sparse import csc_array, diags_array, vstack
 
     total, slipping = n_unknowns(chain), _n_slips(chain)
     if total <= DENSE_UNKNOWNS:
         return csc_array(_strain(chain, placed, np.eye(total)))
     joints, centres, tilts, ends = _maps(chain)
     bent = _bends(tilts, ends)[np.flatnonzero(_jointed(chain))]
-    slipped = on_diagonals({total - slipping: np.ones(slipping)}, (slipping, total))
+    slipped = diags_array(np.ones(slipping), offsets=total - slipping, shape=(slipping, total))
     resisted = _resisted(placed, joints, centres, tilts, placed.own)
     return vstack([bent, slipped, *resisted, ends[_held_turns(chain)[0]]]).tocsc()
 
 
 def _mass(chain: Chain, placed: _Placed) -> Any:
     """M, dense where unknowns are few."""
+    from scipy.sparse import diags_array
+
     joints, centres, tilts, ends = _maps(chain)
     mass = _squares(centres, chain.masses) + _squares(tilts, chain.inertias)
     if any(chain.end_inertias):
@@ -353,7 +355,7 @@ def _mass(chain: Chain, placed: _Placed) -> Any:
     if chain.joint_inertias is not None:
         mass = mass - _squares(_bends(tilts, ends), chain.joint_inertias)
     if chain.slip_masses is not None:
-        mass = mass - on_diagonals({0: _over_slips(chain, chain.slip_masses)})
+        mass = mass - diags_array(_over_slips(chain, chain.slip_masses))
     masses, rotary = _of_bodies(chain)
     if masses.any():
         mass = mass + _squares(placed.felt @ joints + placed.own, masses)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.spline import Spline, natural_or_flat
+from verify.models.spline import natural_or_flat
 from verify.segments.links import Chain, plain_curvatures, with_ends
 
 
@@ -110,22 +110,16 @@ def corrected_reading(chain: Chain, joints: Array) -> Array:
     return np.asarray(joints + squares / 24.0 * node_curvatures(chain, joints))
 
 
-def spline(chain: Chain, values: Array) -> Spline:
+def spline(chain: Chain, values: Array) -> Any:
     """Cubic C2 spline through a value at every joint, (k, N + 1): no moment at pinned and free ends, no slope at walls.
 
-    A `models.spline.Spline` over metres. Elastic ends, and those that shear bends or turns, go on as the last two links
-    do.
+    Over metres. Elastic ends, and those that shear bends or turns, go on as the last two links do.
     """
     ends = [1 if wall else 2 for wall in chain.walls]
     if any(chain.elastic) or chain.slips is not None:
         known = (s == "guided" or (s == "pinned" and not e) for s, e in zip(chain.supports, chain.elastic, strict=True))
         ends = [end if there else 0 for there, end in zip(known, ends, strict=True)]
     return natural_or_flat(chain.nodes, values, (ends[0], ends[1]))
-
-
-def spline_at(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
-    """That spline or a derivative of it at x, (k, len(x))."""
-    return line_through(chain, lambda: values)(x, derivative)
 
 
 def line_through(chain: Chain, values: Callable[[], Array]) -> Callable[[Array, int], Array]:

@@ -13,12 +13,9 @@ from verify.errors import InputError, ResonanceError
 from verify.judge.compare import relative_error, settled_order
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.models.eigen import field_seconds
 from verify.models.fields import HarmonicField, phasor
-from verify.models.ordered import distinct
 from verify.models.search import Least, least_over
 from verify.models.sweeps import HarmonicSweep
-from verify.patience import check_work
 from verify.waves.case import DrivenCase
 from verify.waves.found import WaveMeasures
 from verify.waves.imposed import driven_field
@@ -38,7 +35,7 @@ from verify.waves.measures import (
 from verify.waves.window import check_window
 
 if TYPE_CHECKING:
-    from verify.judge.workbench import Workbench
+    from verify.judge.cache import SolutionCache
 
 Window: TypeAlias = tuple[float, float]
 
@@ -54,13 +51,11 @@ class Operation(msgspec.Struct, frozen=True, kw_only=True):
     """m/s for the scene's forces."""
 
 
-SEARCHED = 70
-"""Driven fields behind a best frequency: a grid of 41, the rest by Brent's method."""
 SEARCH_SPAN = 0.015
 """Around the drive's frequency, relative."""
 
 
-def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
+def driven(case: DrivenCase, bench: "SolutionCache") -> HarmonicField:
     """The field of a case, its solves kept on the bench. Raises InputError."""
     model = MODELS.named(case.model)
 
@@ -68,7 +63,6 @@ def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
         key = (case.model, case.count, case.beam, frequency, tuple(forces), case.settings)
         if key not in bench.fields:
             bench.fields[key] = model.solve_harmonic(case.beam, forces, frequency, case.count, **dict(case.settings))
-            bench.n_fields += 1
         return bench.fields[key]
 
     case.check_devices()
@@ -80,7 +74,7 @@ def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     return field
 
 
-def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
+def _with_devices(case: DrivenCase, bench: "SolutionCache") -> HarmonicField:
     """The same with devices on the beam. Raises InputError."""
     from verify.waves.devices import field_with_devices
 
@@ -90,7 +84,6 @@ def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     model, settings = MODELS.named(case.model), dict(case.settings)
 
     def solve(beam: Beam, forces: Sequence[PointForce], frequency: float) -> HarmonicField:
-        bench.n_fields += 1
         return model.solve_harmonic(beam, forces, frequency, case.count, **settings)
 
     found = field_with_devices(solve, case.beam, case.forces, case.frequency_hz, case.devices)
@@ -98,24 +91,13 @@ def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     return found
 
 
-def swept(case: DrivenCase, frequencies: Array, bench: "Workbench") -> HarmonicSweep:
+def swept(case: DrivenCase, frequencies: Array, bench: "SolutionCache") -> HarmonicSweep:
     """The fields of a case under forces at many frequencies, kept on the bench. Raises InputError."""
     key = (case.model, case.count, case.beam, frequencies.tobytes(), case.forces, case.settings)
     if key not in bench.sweeps:
         solve = MODELS.named(case.model).sweep_harmonic
         bench.sweeps[key] = solve(case.beam, case.forces, frequencies, case.count, **dict(case.settings))
-        bench.n_fields += len(frequencies)
     return bench.sweeps[key]
-
-
-def check_fields(beam: Beam, name: str, counts: Sequence[int | None], times: int = 1) -> None:
-    """Raise InputError where driven fields of a model of parts at all sizes, so many times, would take too long."""
-    sizes = [count for count in counts if count is not None]
-    if not sizes:
-        return
-    model, laden = MODELS.named(name), bool(set(beam.added) - {"section"})
-    seconds = times * sum(field_seconds(model.unknowns(beam, count), laden) for count in sizes)
-    check_work("count", max(sizes), seconds, f"lower it, {times * len(sizes)} driven fields are asked for")
 
 
 def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMeasures:
@@ -181,7 +163,7 @@ def _cell_edges(field: HarmonicField, end: float) -> Array:
     of_forces, beam = [force.position for force in field.forces], field.beam
     places = np.array([*of_forces, *(m.position for m in beam.mass), *(s.position for s in beam.spring)])
     cells = max(int(end * field.wavenumber.real), 8)
-    return distinct(np.concatenate([np.linspace(0.0, end, cells), places[places < end]]))
+    return np.unique(np.concatenate([np.linspace(0.0, end, cells), places[places < end]]))
 
 
 def _lost(field: HarmonicField, x: Array, weights: Array) -> float:
@@ -197,7 +179,7 @@ def _lost(field: HarmonicField, x: Array, weights: Array) -> float:
     return lost
 
 
-def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: "Workbench") -> float:
+def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: "SolutionCache") -> float:
     """The frequency within `span` of the drive's at which the reflection is least.
 
     Raises InputError where the reflection still falls at the edge of the search or the wave stands everywhere.
@@ -211,10 +193,9 @@ def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: 
     return found.x
 
 
-def quietest_drive(case: DrivenCase, span: float, window: Window | None, bench: "Workbench") -> Least:
+def quietest_drive(case: DrivenCase, span: float, window: Window | None, bench: "SolutionCache") -> Least:
     """Where within `span` of the drive's frequency the reflection is least. Raises InputError where the wave stands."""
     centre = case.frequency_hz
-    check_fields(case.beam, case.model, (case.count,), SEARCHED)
 
     def reflection(frequency: float) -> float:
         try:
@@ -265,11 +246,10 @@ def wave_order(
     counts: Sequence[int],
     window: Window | None,
     of: Literal["standing_wave_ratio", "axis_ratio", "deflection"],
-    bench: "Workbench",
+    bench: "SolutionCache",
 ) -> float:
     """The observed order of a discrete model's figure towards the exact field's of its theory. Raises InputError."""
     places = window or middle_half(case.beam)
-    check_fields(case.beam, case.model, counts)
 
     def figure(one: DrivenCase) -> complex:
         field = driven(one, bench)

@@ -1,9 +1,9 @@
 """What is found of a wave: the two waves in a window, and all measures of them (`waves.measures` finds them)."""
 
+import msgspec
 import numpy as np
 
 from verify.errors import StandingError
-from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 
 STANDING = 1e-12
@@ -22,7 +22,7 @@ def standing_wave_ratios(gammas: Array) -> Array:
     return np.where(travels, (1.0 + gammas) / np.where(travels, 1.0 - gammas, 1.0), np.inf)
 
 
-class TwoWaves(Value, frozen=True, eq=False, kw_only=True):
+class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
 
     wavenumber: complex
@@ -59,7 +59,7 @@ class TwoWaves(Value, frozen=True, eq=False, kw_only=True):
             )
 
 
-class WaveMeasures(Value, frozen=True, eq=False, kw_only=True):
+class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """What kind of wave a field carries in a window, and what the surface does there."""
 
     window: tuple[float, float]

@@ -1,0 +1,123 @@
+"""A gate's band is judged from every side; a value that cannot be judged fails with its reason."""
+
+from math import inf, nan
+
+import pytest
+
+from verify import Beam
+from verify.errors import InputError
+from verify.judge.bracket import Bracket
+from verify.judge.cache import SolutionCache
+from verify.quantities.base import QUANTITIES, quantity
+from verify.scene.convert import convert
+from verify.scene.gates import run_gate
+from verify.scene.model import Complex, Gate, Scene
+
+SCENE = Scene(name="strip", beam=Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0))
+
+
+def judged(value, **band):
+    """The result of a gate on a quantity that has this value."""
+    quantity("test.value", unit="m", reads=())(lambda scene, cache: value)
+    try:
+        gate = Gate(id="g", quantity="test.value", why="test", **band)
+        return run_gate(gate, SCENE, SolutionCache(SCENE.beam))
+    finally:
+        del QUANTITIES["test.value"]
+
+
+@pytest.mark.parametrize(
+    ("value", "band", "passed", "fraction"),
+    [
+        (10.4, {"expect": 10.0, "within": 0.5}, True, 0.8),
+        (9.4, {"expect": 10.0, "within": 0.5}, False, 1.2),
+        (10.6, {"expect": 10.0, "within": 0.5}, False, 1.2),
+        (2.0, {"at_most": 8.0}, True, 0.25),
+        (8.1, {"at_most": 8.0}, False, 8.1 / 8.0),
+        (10.0, {"at_least": 8.0}, True, 0.8),
+        (7.0, {"at_least": 8.0}, False, 8.0 / 7.0),
+        (7.0, {"at_least": 6.0, "at_most": 10.0}, True, 0.5),
+        (-5.0, {"at_most": 0.0}, True, None),
+        (Bracket(9.0, 12.0), {"expect": 10.0}, True, 1 / 3),
+        (Bracket(9.0, 12.0), {"expect": 12.0}, False, 1.0),
+        (Bracket(9.0, 12.0), {"expect": 8.0}, False, 2.5 / 1.5),
+        (3.0 + 4.4j, {"expect": Complex(3.0, 4.0), "within": 0.5}, True, 0.8),
+        (3.4 + 4.4j, {"expect": Complex(3.0, 4.0), "within": 0.5}, False, 0.8 * 2**0.5),
+    ],
+)
+def test_band_is_judged_from_every_side(value, band, passed, fraction):
+    result = judged(value, **band)
+    assert result.passed is passed
+    assert bool(result.reason) is not passed
+    assert result.unit == "m"
+    assert result.fraction == (None if fraction is None else pytest.approx(fraction))
+
+
+@pytest.mark.parametrize(
+    ("value", "band"),
+    [
+        (nan, {"expect": 10.0, "within": 0.5}),
+        (inf, {"at_least": 1.0}),
+        (1 + 2j, {"expect": 1.0, "within": 9.0}),
+        (1.0, {"expect": Complex(1.0, 0.0), "within": 9.0}),
+        (complex(nan, 1.0), {"expect": Complex(1.0, 0.0), "within": 9.0}),
+        (10.0, {"expect": 10.0}),
+        (Bracket(9.0, 12.0), {"expect": 10.0, "within": 5.0}),
+        (Bracket(9.0, 12.0), {"at_most": 50.0}),
+    ],
+)
+def test_value_that_cannot_be_judged_fails(value, band):
+    result = judged(value, **band)
+    assert result.passed is False
+    assert result.reason
+
+
+def test_gate_that_cannot_be_evaluated_fails():
+    gate = Gate(id="g", quantity="mode.frequency", arguments={"model": "fem", "mode": 9}, at_most=1.0, why="test")
+    result = run_gate(gate, SCENE, SolutionCache(SCENE.beam))
+    assert result.passed is False
+    assert result.reason.startswith("cannot be evaluated: count")
+
+
+def test_defect_in_a_quantity_is_a_failed_gate():
+    @quantity("test.broken", unit="1", reads=())
+    def broken(scene, cache):
+        raise ZeroDivisionError("by nothing")
+
+    try:
+        gate = Gate(id="g", quantity="test.broken", at_most=1.0, why="test")
+        result = run_gate(gate, SCENE, SolutionCache(SCENE.beam))
+    finally:
+        del QUANTITIES["test.broken"]
+    assert result.passed is False
+    assert "ZeroDivisionError: by nothing" in result.reason
+
+
+@pytest.mark.parametrize(
+    ("band", "message"),
+    [
+        ({}, "give expect with within, or at_least, at_most"),
+        ({"expect": 1.0, "at_most": 2.0}, "give expect with within, or at_least, at_most"),
+        ({"within": 1.0, "at_most": 2.0}, "together with expect"),
+        ({"expect": 1.0, "within": 0.0}, "above 0"),
+        ({"expect": 1.0, "within": -1.0}, "above 0"),
+        ({"expect": nan, "within": 1.0}, "expect = nan"),
+        ({"expect": {"re": inf, "im": 0.5}, "within": 1.0}, "expect.re = inf"),
+        ({"at_least": 3.0, "at_most": 2.0}, "exchange them"),
+        ({"expect": 1.0, "within": 0.5, "why": ""}, "why"),
+        ({"expect": 1.0, "within": "1%"}, "within = '1%': give a number"),
+    ],
+)
+def test_gate_without_a_clear_band_is_refused(band, message):
+    with pytest.raises(InputError, match=message):
+        convert({"id": "g", "quantity": "mode.frequency", "why": "test", **band}, Gate, "gate.g")
+
+
+def test_band_as_text():
+    def text(**band):
+        return judged(1.0, **band).expected
+
+    assert text(expect=-0.25, within=1e-3) == "-0.25 ± 0.001"
+    assert text(expect=Complex(1.5, -2.0), within=0.5) == "1.5 -2.0i ± 0.5"
+    assert text(expect=3.5) == "contains 3.5"
+    assert text(at_least=1.0, at_most=2.5) == "at least 1, at most 2.5"

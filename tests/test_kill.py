@@ -1,0 +1,69 @@
+"""Runs that are ended at any moment: files whole or absent, and the next run does not notice."""
+
+import os
+import signal
+import subprocess
+import sys
+from random import Random
+from time import sleep
+
+import pytest
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals")
+SCENE = """
+name = "mine"
+beam = { length = 0.61, width = 0.03, thickness = 0.002, youngs_modulus = 71e9, density = 2710.0 }
+[spectrum]
+modes = 5
+count = 12
+[[gate]]
+id = "first"
+quantity = "mode.frequency"
+arguments = { model = "segment", mode = 1, count = 12 }
+at_least = 1.0
+why = "It is solved."
+"""
+
+
+def started(folder, *words):
+    command = [sys.executable, "-m", "verify", *words]
+    return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=os.environ)
+
+
+def check_whole(folder):
+    """Every page under `reports` is complete."""
+    pages = [page for page in folder.rglob("[!.]*.html") if not any(p.startswith(".") for p in page.parts)]
+    assert all(page.read_text("utf-8").rstrip().endswith("</html>") for page in pages)
+
+
+def test_killed_run_leaves_no_half_file(tmp_path):
+    (tmp_path / "mine.toml").write_text(SCENE)
+    draw = Random(3)
+    for how in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+        process = started(tmp_path, "run", "mine.toml")
+        sleep(draw.uniform(0.1, 2.5))
+        process.send_signal(how)
+        process.communicate(timeout=120)
+        check_whole(tmp_path / "reports")
+    process = started(tmp_path, "run", "mine.toml")
+    out, err = process.communicate(timeout=120)
+    assert (process.returncode, err) == (0, b""), out
+    assert (tmp_path / "reports").is_dir()
+    check_whole(tmp_path / "reports")
+
+
+def test_interrupted_command_ends_with_status_130(tmp_path):
+    process = started(tmp_path, "run", "paper-slider")
+    sleep(2.5)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=120)
+    assert process.returncode in (0, 130, -signal.SIGINT), (out, err)
+    assert b"Traceback" not in err or err.endswith(b"KeyboardInterrupt\n")
+
+
+def test_broken_pipe_ends_with_status_141(tmp_path):
+    process = started(tmp_path, "quantities")
+    process.stdout.close()
+    err = process.stderr.read()
+    assert process.wait(timeout=120) in (0, 141)
+    assert b"Traceback" not in err

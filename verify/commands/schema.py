@@ -1,0 +1,60 @@
+"""`verify schema`: the keys of a scene file."""
+
+from pathlib import Path
+
+import click
+
+from verify.commands.shared import console, print_json
+from verify.errors import printable
+
+
+@click.command()
+@click.argument("section", required=False)
+@click.option("--json", "as_json", is_flag=True, help="Print the JSON Schema.")
+@click.option("--to", "path", metavar="FILE", help="Write the JSON Schema to FILE, for TOML editors.")
+def schema(section: str | None, as_json: bool, path: str | None) -> None:
+    """List the keys of a SECTION of a scene file with type, default and meaning; without SECTION the sections.
+
+    Editors of TOML complete and check a scene whose first line is `#:schema ./verify.schema.json`.
+    Example: `verify schema beam.spring`, `verify schema --to verify.schema.json`
+    """
+    from verify.files import write_whole
+    from verify.report.result import Column, Table, to_json
+    from verify.scene.schema import TOP, scene_schema, sections
+
+    if as_json:
+        print_json(scene_schema(section or TOP))
+    elif path is not None:
+        write_whole(Path(path), to_json(scene_schema(section or TOP)), "--to")
+        click.echo(printable(f"wrote {path}"))
+    elif section is None:
+        rows = [(name, (kind.__doc__ or "").split("\n\n")[0]) for name, kind in sections().items()]
+        Table("", [Column("section"), Column("meaning")], rows).print(console())
+    else:
+        wanted = scene_schema(section)
+        required = wanted.get("required", ())
+        keys = [
+            (
+                key,
+                _type(one),
+                "required" if key in required else str(one.get("default", "")),
+                one.get("description", ""),
+            )
+            for key, one in wanted["properties"].items()
+        ]
+        columns = [Column(name) for name in ("key", "type", "default", "meaning")]
+        Table(section, columns, keys).print(console())
+
+
+def _type(one: dict[str, object]) -> str:
+    for arms in ("anyOf", "allOf"):
+        if isinstance(one.get(arms), list):
+            return " | ".join(_type(arm) for arm in one[arms])  # type: ignore[attr-defined]
+    if "enum" in one:
+        return " | ".join(map(str, one["enum"]))  # type: ignore[call-overload]
+    if "$ref" in one:
+        return "table"
+    if one.get("type") == "array":
+        items = one.get("items")
+        return f"list of {_type(items)}" if isinstance(items, dict) else "list"
+    return str(one.get("type", "any"))

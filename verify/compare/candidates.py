@@ -1,0 +1,152 @@
+"""The candidate discretisations of a beam: wall rule, mass model, theory, and their frequencies at N parts."""
+
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import product
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam
+from verify.compare.discrete import DiscreteBeam
+from verify.errors import InputError
+from verify.judge.variants import has_wall, told_by_lever
+from verify.models.arrays import Array
+from verify.models.catalogue import MODELS
+from verify.options import THEORIES, WALLS
+
+EXACT, CHAIN, ELEMENTS = "analytic", "segment", "fem"
+EULER = "euler-bernoulli"
+LABELS = {
+    EXACT: "exact beam",
+    "links": "rigid links",
+    "points": "rigid links with point masses",
+    "joints": "links with mass lumped at the joints",
+    "rod": "Cosserat rod with mass lumped at the nodes",
+    "consistent": "Hermite elements, consistent mass",
+    "lumped": "Hermite elements, lumped mass",
+    "lumped-rotary": "Hermite elements, lumped mass and rotary inertia m l^2/24",
+    "hrz": "Hermite elements, HRZ-lumped mass",
+    "linear": "linear Timoshenko elements, consistent mass",
+    "linear-lumped": "linear Timoshenko elements, lumped mass",
+    "half": "2EI/l at the wall",
+    "gregory": "Gregory's weights at the wall",
+    "welded": "half a link welded to the wall",
+    "third-order": "weights 5/12, 13/12 at the wall",
+    "five-joint": "five-joint weights at the wall",
+    "full": "EI/l at the wall",
+    "rigid": "first link fixed to the wall",
+    "stiff": "4EI/l at the wall",
+    "printed": "Eq. (1) as printed",
+    "tensioned": "joints corrected for tension",
+    "lever": "attachments on their rigid link",
+    "rayleigh": "Rayleigh",
+    "timoshenko": "Timoshenko",
+}
+"""Of models, mass, walls, joints, attachments and theories."""
+ORDERS = {"half": 2, "welded": 2, "third-order": 3, "full": 1, "rigid": 1, "stiff": 1}
+"""Highest order of convergence by wall rule; 4 of others."""
+
+
+class Candidate(msgspec.Struct, frozen=True, kw_only=True):
+    """One discretisation, N apart."""
+
+    model: str
+    """analytic, segment or fem."""
+    mass: str = ""
+    """Of a chain: links, points, joints, rod; of elements: consistent, lumped, lumped-rotary, hrz, linear(-lumped)."""
+    wall: str | None = None
+    """Rule of a chain at a clamped end; None without one."""
+    joints: str = "series"
+    attachment: str = "reciprocal"
+    theory: str = EULER
+
+    @property
+    def sized(self) -> bool:
+        """Whether it has N parts."""
+        return self.model != EXACT
+
+    @property
+    def label(self) -> str:
+        """Its name in tables."""
+        words = [self.mass or self.model, self.wall, self.joints, self.attachment]
+        return ", ".join(LABELS[w] for w in [*words, self.theory] if w in LABELS)
+
+    @property
+    def packaged(self) -> bool:
+        """Whether it is a model of `verify`."""
+        return not self.sized or self.mass == "consistent" or (self.mass == "links" and self.wall in (None, *WALLS))
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """Keywords of the `verify` model."""
+        given = {"wall": self.wall, "joints": self.joints, "attachment": self.attachment, "theory": self.theory}
+        usual = ("series", "reciprocal", EULER, None)
+        return {name: value for name, value in given.items() if value not in usual}  # type: ignore[misc]
+
+    def order(self, beam: Beam) -> int | None:
+        """Order of convergence of its frequencies on a beam; None where it is not known."""
+        if not self.sized:
+            return None
+        if self.model == ELEMENTS:
+            even = "free" not in beam.supports and not beam.stepped and self.theory == EULER
+            return 4 if self.mass == "consistent" or (self.mass == "lumped" and even) else 2
+        rules = {"joints": self.joints, "theory": EULER if self.mass == "rod" else self.theory}
+        known = MODELS[CHAIN].order(beam, **rules, attachment=self.attachment)
+        highest = min(ORDERS.get(self.wall or "", 4), 4 if self.mass == "links" else 2)
+        return None if known is None else min(known, highest)
+
+
+def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
+    """All candidates for a beam, or the exact beam and those of a kind: 'segments' or 'elements'."""
+    chains = _chains(beam) if kind != "elements" else ()
+    masses = ("consistent", "lumped", "lumped-rotary", "hrz") if kind != "segments" else ()
+    linear = ("linear", "linear-lumped") if masses else ()
+    return (
+        *chains,
+        *(Candidate(model=ELEMENTS, mass=mass, theory=theory) for mass, theory in product(masses, THEORIES)),
+        *(Candidate(model=ELEMENTS, mass=mass, theory="timoshenko") for mass in linear),
+        *(Candidate(model=EXACT, theory=theory) for theory in THEORIES),
+    )
+
+
+def _chains(beam: Beam) -> Iterator[Candidate]:
+    """Rigid links by all rules; other mass models by the common wall rules."""
+    clamped = "clamped" in beam.supports
+    others = ("full", "rigid", "stiff") if clamped else ()
+    walls = ("half", *(w for w in WALLS if w != "half"), *others) if clamped or has_wall(beam) else (None,)
+    rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
+    for joints, wall, theory in product(rules, walls, THEORIES):
+        if (wall == "welded" and (theory != EULER or not clamped)) or (wall in others and theory == "timoshenko"):
+            continue
+        yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=theory)
+    common: tuple[str | None, ...] = ("half", "gregory", "full", "rigid") if clamped else (None,)
+    if told_by_lever(beam):
+        for joints, wall in product(rules, [wall for wall in common if wall not in others]):
+            yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, attachment="lever")
+    for mass, wall in product(("points", "joints"), common):
+        yield Candidate(model=CHAIN, mass=mass, wall=wall)
+    for wall in common:
+        if wall != "gregory":
+            yield Candidate(model=CHAIN, mass="rod", wall=wall, theory="timoshenko")
+
+
+@lru_cache(maxsize=20_000)
+def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes: int) -> Array:
+    """Its first elastic frequencies, (n_modes or fewer,), Hz; cached, not to be written to. Raises InputError."""
+    if not candidate.sized or count is None:
+        return np.asarray(MODELS[EXACT].solve_modes(beam, n_modes, None, **candidate.settings).frequencies_hz)
+    if candidate.packaged:
+        model = MODELS[candidate.model]
+        if count < model.fewest:
+            return np.empty(0)
+        available = min(n_modes, model.n_elastic(beam, count), model.n_elastic(beam, count, **candidate.settings))
+        if available < 1:
+            return np.empty(0)
+        return np.asarray(model.solve_modes(beam, available, count, **candidate.settings).frequencies_hz)
+    line = DiscreteBeam(beam, count, candidate.theory)
+    if candidate.model == ELEMENTS:
+        return line.elements_hz(n_modes, candidate.mass)
+    if candidate.mass == "rod":
+        return line.rod_hz(n_modes, candidate.wall or "half")
+    return line.chain_hz(n_modes, candidate.mass, candidate.wall or "half")

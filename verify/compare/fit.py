@@ -1,0 +1,342 @@
+"""Candidates ranked by the rms difference of log frequencies, and possible faults of the list tested by the same rms."""
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from math import hypot, log, pi
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam
+from verify.compare.candidates import EXACT, Candidate, frequencies_hz
+from verify.compare.clamp import clamp_effect, clamped_ends, fit_clamp
+from verify.errors import InputError
+from verify.judge.variants import falls_within
+from verify.models.arrays import Array, Indices
+
+FLOOR = 1e-9
+"""Relative difference that eigenvalue solvers leave."""
+TOLERANCE = 1e-3
+"""Largest relative difference of a frequency from the candidate that a list is said to be of."""
+AMBIGUOUS = 2.0
+"""Factor of rms within which candidates or faults are alternatives."""
+EFFECT = 0.05
+"""A fitted fault leaves at most so much of what it changes."""
+SIZES = (2, 1000)
+"""N, where the user does not say it."""
+UNEVEN = 400
+"""The largest N, where errors do not fall smoothly."""
+FEWEST = 3
+"""Entries below which a fitted fault is no evidence."""
+REFINED = 5
+"""Candidates solved around their best interpolated N."""
+UNITS = {"rad/s": 2 * pi, "mHz": 1e3, "1/min": 60.0, "divided by 2 pi": 0.5 / pi, "kHz": 1e-3, "1/60 Hz": 1 / 60}
+COST = {"none": 0.0, "unit": 5.0, "count": 5.0, "missing": 6.0, "extra": 6.0, "factor": 9.0, "clamp": 9.0}
+"""Of faults, in natural logarithms of likelihood."""
+FITTED = ("count", "missing", "extra", "factor", "clamp")
+"""Faults with a fitted parameter."""
+
+
+class Fault(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A possible fault of a list, or none."""
+
+    kind: str
+    """A key of COST."""
+    entries: Indices
+    """(k,), from 0, of the list, which are modes."""
+    modes: Indices
+    """(k,), from 0."""
+    label: str = ""
+    """Unit, mode, entry or ends."""
+    factor: float | None = 1.0
+    """Of all frequencies; None: fitted."""
+    ends: tuple[str, ...] = ()
+    """Compliant clamped ends."""
+
+
+class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A candidate beside a list read with a fault."""
+
+    candidate: Candidate
+    count: int | None
+    fault: Fault
+    parameter: float
+    """The factor, or the clamp's k_r L/EI."""
+    differences: Array
+    """(k,), relative, of the list without its fault from the candidate."""
+    effect: float
+    """Rms of what the fault changes in log frequency."""
+    rms: float
+    """Of the differences beyond the rounding of the list."""
+    largest: float
+    """Of the same."""
+
+
+class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A list and what it is compared with."""
+
+    beam: Beam
+    logs: Array
+    """(n,), of frequencies in Hz."""
+    rounding: Array
+    """(n,), relative."""
+    members: tuple[Candidate, ...]
+    entries: Indices
+    """(k,), from 0: those of known mode."""
+    modes: Indices
+    """(k,), from 0."""
+    ordered: bool
+    """Whether the order alone says which mode an entry is."""
+    count: int | None
+
+    @property
+    def n_modes(self) -> int:
+        """Highest mode, and one more that may be missing."""
+        return int(self.modes.max()) + 2
+
+    @property
+    def floor(self) -> float:
+        """Rms below which the digits of the list say nothing."""
+        return max(FLOOR, float(np.median(self.rounding)))
+
+    def fitted(self, fit: Fit) -> int:
+        """Number of fitted parameters."""
+        return (fit.fault.kind in FITTED) + (fit.candidate.sized and self.count is None)
+
+    def score(self, fit: Fit) -> float:
+        """Minus log likelihood with noise of unknown size, and the cost of the fault."""
+        return len(self.logs) * log(hypot(fit.rms, self.floor)) + COST[fit.fault.kind]
+
+    def accepts(self, fit: Fit) -> bool:
+        """Whether a fit is evidence: small differences, entries beyond what was fitted, a fault that explains."""
+        sharp = self.floor <= 1e-8 and fit.rms <= FLOOR
+        enough = len(fit.differences) - self.fitted(fit) >= 2 or sharp
+        explains = fit.fault.kind not in ("factor", "clamp") or fit.rms <= EFFECT * fit.effect
+        return fit.largest <= TOLERANCE and enough and explains
+
+    def near(self, fit: Fit, best: Fit) -> bool:
+        """Whether two fits are within the factor of ambiguity."""
+        return hypot(fit.rms, self.floor) <= AMBIGUOUS * hypot(best.rms, self.floor)
+
+
+class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What a list is."""
+
+    status: str
+    """identified, ambiguous, exact (no division visible), few (frequencies) or unknown."""
+    ranking: tuple[Fit, ...]
+    """Candidates with the best fault, the best first."""
+    equivalent: tuple[Fit, ...]
+    """Of these, those with the same frequencies as the best."""
+    alternatives: tuple[Fit, ...]
+    """Of these, and of other faults, those within a factor of two of its rms."""
+    tested: tuple[Fit, ...]
+    """The best fit of every kind of fault that was tested, the likeliest first."""
+
+    @property
+    def best(self) -> Fit:
+        """The best."""
+        return self.ranking[0]
+
+
+def identify(data: Data) -> Identification:
+    """Rank all candidates by the likeliest fault of the list. Raises InputError where none has so many modes."""
+    plain = Fault(kind="none", entries=data.entries, modes=data.modes)
+    tested = {"none": _best(data, [plain])}
+    if not tested["none"]:
+        raise InputError(f"count = {data.count}: no candidate of so few parts has {data.n_modes - 1} modes, raise count")
+    if tested["none"][0].rms > data.floor:
+        faults = list(_faults(data))
+        tested |= {kind: _best(data, [one for one in faults if one.kind == kind]) for kind in {f.kind for f in faults}}
+    accepted = [one for fits in tested.values() for one in fits[:1] if data.accepts(one)]
+    likeliest = min(accepted or tested["none"][:1], key=data.score)
+    ranking = _best(data, [likeliest.fault], every=True)
+    best = ranking[0]
+    equal = [one for one in ranking[1:] if _same(one, best)]
+    close = [one for one in ranking[1:] if one not in equal and data.near(one, best)]
+    rivals = []
+    for kind, fits in tested.items():
+        rival = (f for f in fits if data.accepts(f) and data.near(f, best) and data.fitted(f) <= data.fitted(best))
+        rivals += [one for one in [next(rival, None)] if one is not None and kind != best.fault.kind]
+    if not data.accepts(best):
+        status = "unknown" if best.largest > TOLERANCE else "few"
+    elif best.candidate.sized and not rivals and any(not one.candidate.sized for one in close):
+        status = "exact"
+    else:
+        status = "ambiguous" if close or rivals else "identified"
+    return Identification(
+        status=status,
+        ranking=tuple(ranking),
+        equivalent=tuple(equal),
+        alternatives=(*close, *rivals),
+        tested=tuple(sorted((fits[0] for fits in tested.values() if fits), key=data.score)),
+    )
+
+
+def _faults(data: Data) -> Iterator[Fault]:
+    """All that are tested."""
+    entries, modes, n = data.entries, data.modes, len(data.logs)
+    for label, factor in UNITS.items():
+        yield Fault(kind="unit", entries=entries, modes=modes, label=label, factor=factor)
+    if data.count is not None:
+        yield Fault(kind="count", entries=entries, modes=modes)
+    if len(entries) < FEWEST:
+        return
+    yield Fault(kind="factor", entries=entries, modes=modes, factor=None)
+    for ends in clamped_ends(data.beam):
+        yield Fault(kind="clamp", entries=entries, modes=modes, label=" and ".join(ends), ends=ends)
+    for i in range(n if data.ordered else 0):
+        yield Fault(kind="missing", entries=entries, modes=np.delete(np.arange(n + 1), i), label=f"mode {i + 1}")
+        yield Fault(kind="extra", entries=np.delete(entries, i), modes=modes[:-1], label=f"entry {i + 1}")
+
+
+def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[Fit]:
+    """The best fits of all candidates and faults, the best first: those solved, or `every` candidate's."""
+    order = {candidate: i for i, candidate in enumerate(data.members)}
+
+    def rank(fits: list[Fit]) -> list[Fit]:
+        return sorted(fits, key=lambda one: (max(one.rms, FLOOR), order[one.candidate]))
+
+    scanned = rank([fit for one in data.members for fault in faults if (fit := _scanned(data, one, fault)) is not None])
+    exact = [one for one in scanned[REFINED:] if not one.candidate.sized][:1]
+    refined = [fit for one in [*scanned[:REFINED], *exact] if (fit := _refined(data, one)) is not None]
+    if every:
+        solved = {one.candidate for one in refined}
+        refined += [fit for one in scanned if one.candidate not in solved and (fit := _solved(data, one)) is not None]
+    ranked = rank(refined)
+    first = [one for one in ranked if _same(one, ranked[0])]  # of equal frequencies the first of the members
+    return [*sorted(first, key=lambda one: order[one.candidate]), *ranked[len(first) :]]
+
+
+def _same(one: Fit, other: Fit) -> bool:
+    """Whether two candidates have the same frequencies, to rounding."""
+    return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
+
+
+def _scanned(data: Data, candidate: Candidate, fault: Fault) -> Fit | None:
+    """The fit at the best size, by interpolated frequencies where no size is said; None without so many modes."""
+    counts = (data.count,)
+    if fault.kind == "count" and data.count is not None:
+        near = {2 * data.count, data.count // 2, *range(data.count - 2, data.count + 3)} - {data.count}
+        counts = tuple(sorted(size for size in near if size >= SIZES[0]))
+    sizes, table = spectrum(data.beam, candidate, data.n_modes, counts if candidate.sized else (None,))
+    raw = data.logs[fault.entries] - table[:, fault.modes]
+    if fault.kind == "count" and not candidate.sized:
+        return None
+    parameters = np.full(len(raw), fault.factor or 1.0)
+    if fault.ends:
+        if not candidate.packaged or candidate.attachment == "lever" or candidate.wall == "welded":
+            return None
+        try:
+            stiffnesses, effect = clamp_effect(data.beam, fault.ends, data.n_modes)
+        except InputError:
+            return None
+        left = raw[:, None, :] - effect[:, fault.modes]
+        at = np.argmin(np.sum(left**2, axis=2), axis=1)
+        parameters, removed = stiffnesses[at], effect[at][:, fault.modes]
+    elif fault.factor is None:
+        removed = np.repeat(np.median(raw, axis=1)[:, None], raw.shape[1], axis=1)
+        parameters = np.exp(removed[:, 0])
+    else:
+        removed = np.full(raw.shape, log(fault.factor))
+    squares = np.mean((raw - removed) ** 2, axis=1)
+    if not np.isfinite(squares).any():
+        return None
+    best = int(np.nanargmin(squares))
+    size = int(sizes[best]) if candidate.sized else None
+    return _fit(data, candidate, size, fault, float(parameters[best]), raw[best] - removed[best], removed[best])
+
+
+def _fit(
+    data: Data, candidate: Candidate, size: int | None, fault: Fault, parameter: float, left: Array, removed: Array
+) -> Fit:
+    beyond = np.maximum(abs(left) - data.rounding[fault.entries], 0.0)
+    return Fit(
+        candidate=candidate,
+        count=size,
+        fault=fault,
+        parameter=parameter,
+        differences=np.expm1(left),
+        effect=float(np.sqrt(np.mean(removed**2))),
+        rms=float(np.sqrt(np.mean(beyond**2))),
+        largest=float(beyond.max()),
+    )
+
+
+def _refined(data: Data, fit: Fit) -> Fit | None:
+    """The fit at the best size near an interpolated one; at the best of all where errors do not fall smoothly."""
+    best = _solved(data, fit)
+    if best is None or fit.count is None or data.count is not None:
+        return best
+    if falls_within(data.beam):
+        for size in range(SIZES[0], UNEVEN):
+            other = _solved(data, msgspec.structs.replace(fit, count=size))
+            best = other if other is not None and other.rms < best.rms else best
+            if best.rms <= data.floor:
+                break
+        return best
+    for step in (1, -1):
+        while True:
+            other = _solved(data, msgspec.structs.replace(best, count=best.count + step))
+            if other is None or other.rms >= best.rms:
+                break
+            best = other
+    return best
+
+
+def _solved(data: Data, fit: Fit) -> Fit | None:
+    """A fit with the candidate's own frequencies at its size; None where there is no such model."""
+    if not fit.fault.ends:
+        if data.count is not None or fit.count is None:
+            return fit
+        alone = msgspec.structs.replace(data, count=fit.count)
+        return _scanned(alone, fit.candidate, fit.fault)
+    logs, modes = data.logs[fit.fault.entries], fit.fault.modes
+    try:
+        found = fit_clamp(data.beam, fit.fault.ends, fit.parameter, fit.candidate, fit.count, logs, modes)
+    except InputError:
+        return None
+    removed = np.full(len(logs), fit.effect)
+    return _fit(data, fit.candidate, fit.count, fit.fault, found[0], found[1], removed)
+
+
+@lru_cache(maxsize=5000)
+def spectrum(
+    beam: Beam, candidate: Candidate, n_modes: int, counts: tuple[int | None, ...]
+) -> tuple[Indices, Array]:
+    """(N (r,), log of the frequencies (r, n_modes), NaN for modes that it has not); (None,): of all SIZES.
+
+    All sizes are interpolated in 1/N between some that are solved and the exact beam of the same theory; where a step
+    or an attachment inside a part lets errors fall unevenly, those that are solved stand alone.
+    """
+    table: dict[int, Array] = {}
+
+    def solve(size: int | None) -> Array:
+        try:
+            found = frequencies_hz(candidate, beam, size, n_modes)
+        except InputError:
+            found = np.empty(0)
+        return np.append(np.log(found), np.full(n_modes - len(found), np.nan))
+
+    if not candidate.sized or counts != (None,):
+        sizes = np.array([count or 0 for count in counts])
+        return sizes, np.array([solve(count) for count in counts])
+    uneven, size = falls_within(beam), max(SIZES[0], n_modes // 2)
+    while size < (UNEVEN if uneven else 12 * n_modes):
+        table[size] = solve(size)
+        size = max(size + 1, round(size * (1.3 if size < 3 * n_modes else 1.5)))
+    knots, solved = np.array(list(table)), np.array(list(table.values()))
+    if uneven or np.isnan(solved).all():
+        return knots, solved
+    from scipy.interpolate import CubicSpline
+
+    exact = Candidate(model=EXACT, theory=candidate.theory)
+    limit = np.log(frequencies_hz(exact, beam, None, n_modes))
+    sizes, logs = np.arange(*SIZES), np.full((SIZES[1] - SIZES[0], n_modes), np.nan)
+    for mode in range(n_modes):
+        known = np.isfinite(solved[:, mode])
+        if known.sum() > 2:
+            x, y = np.append(0.0, 1.0 / knots[known][::-1]), np.append(limit[mode], solved[known, mode][::-1])
+            inside = sizes >= knots[known][0]
+            logs[inside, mode] = CubicSpline(x, y)(1.0 / sizes[inside])
+    return sizes, logs

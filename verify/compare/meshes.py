@@ -1,0 +1,144 @@
+"""Mode shapes of a beam on a solid, shell or line mesh in any format of meshio: averaged over the cross-sections."""
+
+import io
+import re
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from verify.compare.reading import FrequencyList, ModeShapes, checked_shapes, listed
+from verify.errors import InputError, one_line
+from verify.files import exists
+from verify.models.arrays import Array
+
+UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}
+"""Of length, in a metre."""
+SAME = 1e-6
+"""Of the length: points nearer along the beam are of one cross-section."""
+SLENDER, ACROSS, LENGTH = 0.5, 0.5, 1e-3
+"""Thickness over length at most; share of a shape's squares across the thickness; error of the length."""
+_RADIANS = re.compile(r"rad|omega", re.IGNORECASE)
+_FREQUENCY = re.compile(r"hz|hertz|freq|rad|omega", re.IGNORECASE)
+
+
+class MeshShapes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Shapes along a beam from a mesh."""
+
+    source: str
+    shapes: ModeShapes
+    names: tuple[str, ...]
+    frequencies: FrequencyList | None
+    """One for each shape, if the mesh has them."""
+    notes: tuple[str, ...]
+    """Arrays left out, and the mesh."""
+
+
+def read_mesh(path: Path, length: float) -> MeshShapes:
+    """Deflections across the thickness of a beam of this length, m, from vectors or numbers at the points of a mesh.
+
+    The axis is the longest direction, the thickness the thinnest. Field data named after Hz or rad/s, or the times of an
+    xdmf series, are frequencies. Raises InputError.
+    """
+    source = f"file = {str(path)!r}"
+    if not exists(path, "file"):
+        raise InputError(f"{source} does not exist: give a mesh, for instance a .vtu")
+    points, arrays, field = _series(path) or _mesh(path, source)
+    if len(points) < 3 or not np.isfinite(points).all():
+        raise InputError(f"{source} has {len(points)} points, or infinite ones: give three or more along the beam")
+    real = {name: v.astype(float) for name, v in arrays.items() if v.dtype.kind == "f" and len(v) == len(points)}
+    vectors = {name: v[:, :3] for name, v in real.items() if v.ndim == 2 and v.shape[1] > 1}
+    vectors = vectors or {name: v.reshape(len(v), -1) for name, v in real.items() if v[0].size == 1}
+    if not vectors or not all(np.isfinite(v).all() for v in vectors.values()):
+        raise InputError(f"{source} has no finite vectors or numbers at its points: write the modes as point data")
+    sizes = np.ptp(points, axis=0)
+    along = int(np.argmax(sizes))
+    across, wide = _thickness(sizes, along, list(vectors.values()))
+    if max(sizes[across], sizes[wide]) > SLENDER * sizes[along]:
+        raise InputError(f"{source} is {sizes[along]:.4g} long and {sizes[wide]:.4g} wide: give the mesh of a beam")
+    unit = next((u for u, factor in UNITS.items() if abs(sizes[along] / (factor * length) - 1.0) < LENGTH), None)
+    if unit is None:
+        raise InputError(f"{source} is {sizes[along]:.6g} long, the beam {length!r} m: set beam.length to that of the mesh")
+    x = points[:, along] - points[:, along].min()
+    order = np.argsort(x, kind="stable")
+    station = np.empty(len(x), dtype=int)
+    station[order] = np.append(0, np.cumsum(np.diff(x[order]) > SAME * x.max()))
+    counts = np.bincount(station)
+    places = np.bincount(station, weights=x) / counts
+    places[[0, -1]] = 0.0, x.max()
+    names, values, notes = [], [], [f"{len(points)} points in {unit}, {len(places)} cross-sections along {'xyz'[along]}."]
+    for name, vector in vectors.items():
+        means = np.array([np.bincount(station, weights=part) / counts for part in vector.T])
+        column = min(across, len(means) - 1)
+        squares = (means[:, station] ** 2).sum(axis=1)
+        if squares[column] > ACROSS * (vector**2).sum():
+            names.append(name)
+            values.append(means[column])
+        else:
+            notes.append(f"{name} does not bend the beam across its thickness: left out.")
+    if not names:
+        raise InputError(f"{source} has no shape that bends the beam across its thickness: write bending modes")
+    shapes = ModeShapes(x=places * (length / places[-1]), values=np.array(values))
+    chosen = [list(vectors).index(name) for name in names]
+    frequencies = _frequencies(field, len(vectors), chosen, source)
+    return MeshShapes(
+        source=source,
+        shapes=checked_shapes(shapes, length, source),
+        names=tuple(names),
+        frequencies=frequencies,
+        notes=tuple(notes),
+    )
+
+
+def _thickness(sizes: Array, along: int, vectors: list[Array]) -> tuple[int, int]:
+    """(axis of the thickness, of the width): the thinner first; of equal ones that in which more moves."""
+    others = sorted((axis for axis in range(len(sizes)) if axis != along), key=lambda axis: sizes[axis])
+    if len(others) == 2 and sizes[others[1]] <= 1.01 * sizes[others[0]] and vectors[0].shape[1] == 3:
+        moved = sum((v**2).sum(axis=0) / (v**2).sum() for v in vectors if v.any())
+        others.sort(key=lambda axis: -float(np.asarray(moved)[axis]))
+    return others[0], others[-1]
+
+
+def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    """(points, arrays at them, field data) by meshio, which prints and exits on failure. Raises InputError."""
+    import meshio
+
+    said = io.StringIO()
+    try:
+        with redirect_stdout(said), redirect_stderr(said):
+            mesh = meshio.read(path)
+    except (Exception, SystemExit) as error:  # forty readers fail in as many ways
+        why = one_line(str(error) or said.getvalue())[:200]
+        raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
+    arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
+    return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
+
+
+def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:
+    """The same of an xdmf series with a mode in each step and its frequency in Hz as time; None of other files."""
+    import meshio
+
+    if path.suffix.lower() != ".xdmf":
+        return None
+    try:
+        with meshio.xdmf.TimeSeriesReader(path) as reader:
+            points, _ = reader.read_points_cells()
+            steps = [reader.read_data(i)[:2] for i in range(reader.num_steps)]
+    except Exception:  # not a series
+        return None
+    arrays = {f"step_{i}": np.asarray(next(iter(data.values()))) for i, (_, data) in enumerate(steps, start=1)}
+    times = np.array([float(time) for time, _ in steps])
+    return np.asarray(points, dtype=float), arrays, {"hz": times} if (np.diff(times, prepend=0.0) > 0.0).all() else {}
+
+
+def _frequencies(field: dict[str, Any], n: int, chosen: list[int], source: str) -> FrequencyList | None:
+    """Frequencies of the chosen shapes from field data; None without any. Raises InputError for another number."""
+    name = next((name for name in field if _FREQUENCY.search(name)), None)
+    if name is None:
+        return None
+    values = np.asarray(field[name], dtype=float).ravel()
+    if len(values) != n:
+        raise InputError(f"{source}: field data {name!r} has {len(values)} values for {n} shapes: give one for each")
+    return listed(source, values[chosen].tolist(), unit="rad/s" if _RADIANS.search(name) else "Hz")

@@ -1,0 +1,41 @@
+"""Numba options of all kernels: `jit` for a kernel called from Python, `inline` for one called by kernels alone.
+
+Kernels allocate nothing, so numba's reference counting is off (`_nrt`), which doubles the speed of a motor run.
+
+Numba's cache checks the file of the entry point alone, while all that it calls is compiled into it. The cache folder
+therefore carries a digest of all kernel modules. It stands in `NUMBA_CACHE_DIR` where that is set, else beside this
+file; where neither is writable, numba's user-wide cache or none is used.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, TypeVar
+
+from numba import config, njit
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+_PACKAGE = Path(__file__).parent
+_SOURCES = sorted({*_PACKAGE.glob("*/*kernels.py"), *_PACKAGE.glob("*/*records.py"), Path(__file__)})
+_DIGEST = sha256(b"".join(source.read_bytes() for source in _SOURCES)).hexdigest()[:16]
+_CACHE = Path(config.CACHE_DIR or _PACKAGE / "__pycache__") / f"kernels-{_DIGEST}"  # type: ignore[attr-defined]
+FAST = {"reassoc", "contract", "nsz"}
+"""`fastmath` of sums over modes, whose order is free."""
+
+inline = partial(njit, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
+def jit(function: Any = None, **options: Any) -> Any:
+    """Compile a kernel at its first call and cache it on disk: `@jit` or `@jit(fastmath=FAST)`."""
+    if function is None:
+        return partial(jit, **options)
+    options = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, **options}
+    before = config.CACHE_DIR  # type: ignore[attr-defined]
+    config.CACHE_DIR = str(_CACHE)  # type: ignore[attr-defined]  # numba reads it where a function is decorated
+    try:
+        return njit(cache=True, **options)(function)
+    except RuntimeError:  # no folder is writable
+        return njit(**options)(function)
+    finally:
+        config.CACHE_DIR = before  # type: ignore[attr-defined]

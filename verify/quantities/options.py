@@ -1,0 +1,158 @@
+"""Annotated argument types and the option groups that several quantities share."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+import msgspec
+from msgspec import Meta
+from msgspec.structs import replace
+
+from verify import options
+from verify.beam import PointForce, check_frequency
+from verify.checks import Relative
+from verify.errors import InputError
+from verify.models import catalogue
+from verify.models.catalogue import MODELS
+from verify.models.naming import MEAN, model_meta
+from verify.quantities.base import Place, Scene
+
+if TYPE_CHECKING:
+    from verify.judge.cache import Settings
+
+Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]
+Size = Annotated[int, Meta(ge=1, description="N, segments or elements; not for model = analytic")]
+Sizes = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(description="three or more N, 20,40,80")]
+AnyModel = Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", mean=True)]
+ModesModel = Annotated[str, model_meta("which model", "solve_modes")]
+DiscreteModel = Annotated[str, model_meta("which discrete model", "solve_modes", sized=True)]
+FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
+DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
+UnitModel = Annotated[str, model_meta("which model", "unit_responses")]
+TimeModel = Annotated[str, model_meta("which model", "time_basis")]
+Frequency = Annotated[float, Meta(gt=0, description="Hz; default: the scene's drive")]
+ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
+Theory = Annotated[options.Theory, Meta(description="beam theory")]
+Wall = Annotated[options.Wall, Meta(description="joint at a clamped end; half: k = 2EI/l")]
+Joints = Annotated[options.Joints, Meta(description="joint stiffness of Eq. (1)")]
+Attachment = Annotated[options.Attachment, Meta(description="point masses and springs on segments")]
+Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
+SoftStart = Annotated[float, Meta(ge=0, description="periods over which the forces grow; default: the scene's")]
+ForceAmplitude = Annotated[float, Meta(ge=0, description="of every force, N; default: the scene's")]
+Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
+Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
+Mass = Annotated[float, Meta(gt=0, description="kg")]
+Preload = Annotated[float, Meta(ge=0, description="normal force in addition to the weight, N")]
+
+
+def check_count(model: str, count: int | None) -> None:
+    """Raise InputError for a discrete model without `count`, or the exact beam with one."""
+    if model != MEAN:
+        catalogue.check_count(model, count)
+    elif count is None:
+        raise InputError(f"count is missing: give the number of segments or elements for model = {MEAN}")
+
+
+def check_settings(model: str, chosen: "Settings", kind: str) -> "Settings":
+    """The settings. Raises InputError for one that the model lacks; `kind` is modal, field or buckling."""
+    known = getattr(MODELS.named(model), f"{kind}_settings")
+    for name, value in chosen:
+        if name not in known:
+            able = [m.name for m in MODELS.values() if name in getattr(m, f"{kind}_settings")]
+            raise InputError(f"{name} = {value!r} is for model = {' or '.join(able) or 'none'}, not for {model}")
+    return chosen
+
+
+class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
+    """Settings of the discrete models."""
+
+    wall: Wall = "gregory"
+    joints: Joints = "series"
+    grading: Grading = 1.0
+    theory: Theory = "euler-bernoulli"
+    attachment: Attachment = "reciprocal"
+
+    @property
+    def settings(self) -> "Settings":
+        """Those other than their defaults."""
+        return not_default(self, without=("model", "mode", "count"))
+
+
+class OneMode(ModelOptions, frozen=True, kw_only=True):
+    """One mode of one model."""
+
+    model: ModesModel
+    mode: Mode
+    count: Size | None = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+        if self.model != MEAN:
+            check_settings(self.model, self.settings, "modal")
+
+
+class OneModeOrMean(OneMode, frozen=True, kw_only=True):
+    """One mode of one model or of the mean of segment and fem."""
+
+    model: AnyModel
+
+
+class OneDiscreteMode(OneMode, frozen=True, kw_only=True):
+    """One mode of one discrete model."""
+
+    model: DiscreteModel
+    count: Size
+
+
+class DriveOptions(msgspec.Struct, frozen=True, kw_only=True):
+    """The drive, by default the scene's."""
+
+    frequency_hz: Frequency | None = None
+    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
+    position: Annotated[Place, Meta(description="m, d of the first force, L - d of the second")] | None = None
+
+    def frequency(self, scene: Scene) -> float:
+        """Hz. Raises InputError where neither argument nor drive has it."""
+        return drive_frequency(scene, self.frequency_hz)
+
+    def forces(self, scene: Scene, amplitude: float | None = None) -> tuple[PointForce, ...]:
+        """The scene's forces with these positions, phase and amplitude (N). Raises InputError."""
+        forces = list(scene.forces)
+        if not forces:
+            raise InputError("drive.force is missing: add force = [{ position = ... }] to [drive]")
+        if (self.position is not None or self.phase_deg is not None) and len(forces) != 2:
+            name = "position" if self.position is not None else "phase_deg"
+            raise InputError(f"{name} is for two forces and the scene has {len(forces)}: leave it out")
+        if self.position is not None:
+            positions = (self.position, scene.beam.length - self.position)
+            forces = [replace(force, position=x) for force, x in zip(forces, positions, strict=True)]
+        if self.phase_deg is not None:
+            forces[1] = replace(forces[1], phase_deg=self.phase_deg)
+        if amplitude is not None:
+            forces = [replace(force, amplitude=amplitude) for force in forces]
+        return tuple(forces)
+
+
+def drive_frequency(scene: Scene, frequency_hz: float | None = None) -> float:
+    """`frequency_hz`, else the drive's, Hz. Raises InputError where neither has it, or beyond beam theory."""
+    found = frequency_hz if frequency_hz is not None else scene.drive.frequency_hz if scene.drive else None
+    if found is None:
+        raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")
+    check_frequency("frequency_hz", float(found), scene.beam)
+    return float(found)
+
+
+def check_forces(scene: Scene, what: str) -> None:
+    """Raise InputError for a drive by displacements, where `what` takes forces."""
+    if scene.drive is not None and scene.drive.kind != "force":
+        raise InputError(f"drive.kind = {scene.drive.kind!r}: {what} takes imposed forces, give kind = 'force'")
+
+
+def given(values: Any, names: Sequence[str]) -> dict[str, Any]:
+    """Those fields of an option group that are not None."""
+    return {name: value for name in names if (value := getattr(values, name)) is not None}
+
+
+def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> "Settings":
+    """(name, value) of the fields of an option group that differ from their defaults, but for those of `without`."""
+    fields = [field for field in msgspec.structs.fields(type(group)) if field.name not in without]
+    return tuple((f.name, getattr(group, f.name)) for f in fields if getattr(group, f.name) != f.default)

@@ -1,0 +1,162 @@
+"""HTML pages: one file each, with charts inside, that needs no network and no script."""
+
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from verify.report.plotting import figure_files, figure_svg, movie_image
+from verify.report.result import Figure, Movie, Result, Table
+from verify.report.summary import environment, expected, gates_table, skipped_table, value_text, verdict, worst_gate
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+    from verify.scene.run import RunResult
+
+LONG = 30
+"""Rows beyond which a table is folded."""
+DENSE = 6
+"""Columns beyond which a table has small print."""
+WIDE, NARROW = 40, 22
+"""Characters of a column of text beyond which it wraps early, and below which it does not wrap."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a page under one heading."""
+
+    id: str
+    title: str
+    paragraphs: Sequence[str] = ()
+    warnings: Sequence[str] = ()
+    figures: Sequence[Figure] = ()
+    movies: Sequence[Movie] = ()
+    tables: Sequence[Table] = ()
+    links: Mapping[str, str] = field(default_factory=dict)
+    """Addresses by the text of a table cell that becomes a link."""
+    code: str = ""
+    folded: bool = False
+
+
+def write_page(run: "RunResult", path: Path, command: str = "") -> None:
+    """Write the report of a run, whole or not at all. Raises InputError where the file cannot be written."""
+    from verify.files import write_whole
+
+    write_whole(path, run_page(run, command), "report")
+
+
+def run_page(run: "RunResult", command: str = "") -> str:
+    """The report of a run as HTML."""
+    from verify.report.beam_drawing import beam_figure
+
+    scene = run.scene
+    studies = [_study_section(run, name, result) for name, result in run.results.items()]
+    summaries = [(section.title, section.id, section.paragraphs[0]) for section in studies if section.paragraphs]
+    sections = [Section("gates", "Gates", tables=[gates_table(run)])] if run.gates else []
+    sections += studies
+    if run.skipped:
+        sections.append(Section("skipped", "Not run", tables=[skipped_table(run)]))
+    sections.append(Section("inputs", "Inputs", code=_inputs(scene), folded=True))
+    worst = worst_gate(run)
+    return render(
+        name=scene.name,
+        title=scene.title or scene.name,
+        subtitle=scene.description,
+        passed=run.passed,
+        verdict=verdict(run),
+        seconds=run.seconds,
+        problems=[f"{one.gate.id}: {one.reason}" for one in run.failed],
+        warnings=list(dict.fromkeys(getattr(run, "warnings", ()))),
+        drawings=[figure_svg(beam_figure(scene, width)) for width in (8.4, 4.2)],
+        drawing_caption=beam_figure(scene).caption,
+        summaries=summaries,
+        worst=None if worst is None else (worst, value_text(worst.value), expected(worst.gate)),
+        sections=sections,
+        command=command,
+    )
+
+
+def _study_section(run: "RunResult", name: str, result: Result) -> Section:
+    study = run.scene.studies.get(name)
+    title = getattr(study, "title", "") or name.replace("_", " ").capitalize()
+    figures = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.figures]
+    movies = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.movies]
+    summary = [result.summary] if result.summary else []
+    return Section(name, title, summary, result.warnings, figures, movies, result.tables)
+
+
+def _inputs(scene: Any) -> str:
+    from verify.report.result import to_json
+
+    return to_json(scene)
+
+
+def render(name: str, sections: Sequence[Section], **values: Any) -> str:
+    """A page of sections below a verdict; `values` are the template's other variables."""
+    shown = [
+        {
+            "id": section.id,
+            "section": section,
+            "figures": [_figure(figure, name) for figure in section.figures],
+            "movies": [_movie(movie, name) for movie in section.movies],
+            "tables": [_table(table, section.links) for table in section.tables],
+        }
+        for section in sections
+    ]
+    return _template().render(name=name, sections=shown, environment=environment(), css=_css(), **values)
+
+
+@lru_cache
+def _template() -> "Template":
+    from jinja2 import Environment, FileSystemLoader
+
+    loader = FileSystemLoader(Path(__file__).parent)
+    return Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True).get_template(
+        "page.html.j2"
+    )
+
+
+def _css() -> str:
+    return Path(__file__).with_name("page.css").read_text("utf-8")
+
+
+def data_uri(kind: str, content: str | bytes) -> str:
+    """Content as an address that a page carries with it."""
+    raw = content.encode() if isinstance(content, str) else content
+    return f"data:{kind};base64,{b64encode(raw).decode()}"
+
+
+def _figure(figure: Figure, page: str) -> dict[str, Any]:
+    svg, csv, png = figure_files(figure)
+    links = {"CSV": data_uri("text/csv", csv), "SVG": data_uri("image/svg+xml", svg), "PNG": data_uri("image/png", png)}
+    return {"figure": figure, "svg": svg, "file": f"{page}-{figure.id}", "links": links}
+
+
+def _movie(movie: Movie, page: str) -> dict[str, Any]:
+    moving, still = (data_uri("image/webp", image) for image in movie_image(movie))
+    return {"movie": movie, "moving": moving, "still": still, "file": f"{page}-{movie.id}"}
+
+
+def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:
+    headings, texts, n = table.headings(), table.text_rows(), range(len(table.columns))
+    words = [any(isinstance(row[i], str) for row in table.rows) for i in n]
+    widths = [max((len(row[i]) for row in texts), default=0) for i in n]
+    kinds = ["n" if not words[i] else "long" if widths[i] > WIDE else "short" if widths[i] < NARROW else "" for i in n]
+
+    def cell(i: int, value: Any, text: str) -> dict[str, Any]:
+        kind = {"pass": "pass", "FAIL": "fail", "cannot run": "fail"}.get(text, kinds[i])
+        bar = float(value) if table.columns[i].name == "of tolerance" and value is not None else None
+        return {"text": text, "kind": kind, "heading": headings[i], "bar": bar, "link": links.get(text)}
+
+    stacked = " stack" if len(n) > DENSE or "long" in kinds else ""
+    return {
+        "table": table,
+        "headings": [(headings[i], "" if words[i] else "n") for i in n],
+        "rows": [[cell(i, row[i], text[i]) for i in n] for row, text in zip(table.rows, texts, strict=True)],
+        "folded": len(table.rows) > LONG,
+        "kind": f"{' dense' * (len(n) > DENSE)}{' whole' * (len(table.rows) < 12)}{stacked}",
+        "csv": data_uri("text/csv", table.csv()),
+    }

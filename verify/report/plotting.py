@@ -1,0 +1,204 @@
+"""Charts as SVG, PNG and CSV, movies as animated images: colours and style for both, in one place.
+
+Studies draw on the `Axes` that they receive, in `MODEL_COLORS` and the colour cycle. Colours of text, axes and paper
+are placeholders that `figure_svg` turns into CSS variables, so that one SVG serves light and dark pages.
+"""
+
+import csv
+import io
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from itertools import count
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as MatplotlibFigure
+
+    from verify.report.result import Figure, Movie
+
+MODEL_COLORS = {"analytic": "#7d8590", "segment": "#2f80ed", "fem": "#d96c05", "mean": "#2a9d5c"}
+"""Colour of each model, the same in all charts; every one has a contrast of 3:1 on white and on dark."""
+CYCLE = ("#8f5bd1", "#cc3f76", "#008f8f", "#a67c00", "#9a6a45", "#5f7fa8", "#4f9a34", "#b3559f")
+"""Colours of lines that belong to no model."""
+INK, GRID, PAPER, EVEN = "#010203", "#d0d4da", "#fefdfc", "#7f8388"
+"""Text and axes, grid, background of legends; ink of movies, which reads on light and on dark."""
+VARIABLES = {INK: "currentColor", "#000000": "currentColor", GRID: f"var(--grid, {GRID})", PAPER: "var(--card, #fff)"}
+NO_METADATA = {"Creator": None, "Date": None, "Format": None, "Type": None}
+
+
+@contextmanager
+def style(ink: str = INK, salt: str = "verify") -> Iterator[None]:
+    """Matplotlib's settings for all charts, within the context."""
+    import matplotlib as mpl
+    from cycler import cycler
+
+    settings: Any = dict.fromkeys(
+        ("axes.edgecolor", "axes.labelcolor", "text.color", "xtick.color", "ytick.color"), ink
+    )
+    settings |= {"axes.facecolor": "none", "figure.facecolor": "none", "savefig.facecolor": "none"}
+    settings |= {"axes.prop_cycle": cycler(color=CYCLE), "axes.grid": True, "grid.linewidth": 0.6}
+    settings |= {"grid.color": GRID} if ink == INK else {"grid.color": ink, "grid.alpha": 0.3}
+    settings |= {"axes.spines.top": False, "axes.spines.right": False, "axes.titlesize": 10.0, "font.size": 10.0}
+    settings |= {
+        "legend.facecolor": PAPER,
+        "legend.edgecolor": "none",
+        "legend.framealpha": 0.8,
+        "legend.fontsize": 9.0,
+    }
+    settings |= {"lines.linewidth": 1.6, "lines.markersize": 4.5, "legend.fontsize": 9.0}
+    settings |= {
+        "axes.formatter.limits": (-4, 5),
+        "axes.formatter.useoffset": False,
+        "svg.fonttype": "none",
+        "svg.hashsalt": salt,
+    }
+    with mpl.rc_context(settings):
+        yield
+
+
+def slope_guide(ax: "Axes", slope: float, at: tuple[float, float], decades: float = 0.7) -> None:
+    """Draw a dashed line of this slope from `at` on logarithmic axes, with the order as its label."""
+    x, y = at
+    far = x * 10.0**decades
+    ends = [y, y * (far / x) ** slope]
+    ax.plot([x, far], ends, color=INK, linestyle=(0, (4, 3)), linewidth=1.0, alpha=0.7, gid="guide")
+    middle = (x * 10.0 ** (decades / 2), y * 10.0 ** (slope * decades / 2))
+    ax.annotate(f"order {abs(slope):g}", middle, (5, 5), textcoords="offset points", fontsize=8.5)
+
+
+def drawn(figure: "Figure") -> "MatplotlibFigure":
+    """The chart as a matplotlib figure; call it and save it within `style`."""
+    from matplotlib.figure import Figure as MatplotlibFigure
+
+    canvas = MatplotlibFigure(figsize=figure.size, layout="constrained")
+    figure.draw(canvas.subplots())
+    for ax in canvas.axes:
+        ax.set_axisbelow(True)
+        for mesh in ax.collections:
+            mesh.set_rasterized(type(mesh).__name__ == "QuadMesh")
+    return canvas
+
+
+def figure_svg(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> str:
+    """An SVG element for a page or a file.
+
+    Text and axes follow `currentColor`, the grid `--grid`, legends `--card`. Its ids begin with the figure's id, so
+    that several stand on one page. Its role is img, its accessible name the title and caption. `canvas` is the chart
+    where it is `drawn` already.
+    """
+    from html import escape
+
+    out = io.StringIO()
+    with style(salt=figure.id):
+        (canvas or drawn(figure)).savefig(out, format="svg", metadata=NO_METADATA)
+    svg = out.getvalue()
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, count=1, flags=re.DOTALL)
+    svg = re.sub(r'<g id="[^"]*"', "<g", svg)
+    svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{figure.id}-", svg)
+    svg = re.sub(r"'DejaVu Sans'[^;\"]*", "'DejaVu Sans', Verdana, sans-serif", svg)
+    for colour, variable in VARIABLES.items():
+        svg = svg.replace(colour, variable)
+    name = escape(f"{figure.title}. {figure.caption}", quote=True)
+    return svg.replace("<svg ", f'<svg role="img" aria-label="{name}" stroke-linejoin="round" ', 1)
+
+
+def figure_png(figure: "Figure", dpi: float = 160.0, canvas: "MatplotlibFigure | None" = None) -> bytes:
+    """The chart in black on white."""
+    out = io.BytesIO()
+    with style():
+        (canvas or drawn(figure)).savefig(out, format="png", dpi=dpi, facecolor="white", metadata={"Software": None})
+    return out.getvalue()
+
+
+def figure_csv(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> str:
+    """The plotted data in the units of the axes: series, x, y, and the value of a map.
+
+    Lines over data coordinates, scattered points, bars and meshes count; guides (`gid="guide"`) do not.
+    """
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    with style():
+        axes = (canvas or drawn(figure)).axes
+        writer.writerow(["series", axes[0].get_xlabel() or "x", axes[0].get_ylabel() or "y", "value"])
+        for ax in axes:
+            if ax.get_label() != "<colorbar>":
+                writer.writerows(_points(ax))
+    return out.getvalue()
+
+
+def figure_files(figure: "Figure") -> tuple[str, str, bytes]:
+    """(SVG, CSV, PNG) of a chart that is drawn once."""
+    with style():
+        canvas = drawn(figure)
+    svg = figure_svg(figure, canvas)
+    canvas.set_layout_engine("none")  # the positions are fixed now
+    return svg, figure_csv(figure, canvas), figure_png(figure, 110.0, canvas)
+
+
+def _points(ax: Any) -> Iterator[Sequence[Any]]:
+    def series(artist: Any) -> str:
+        label = str(artist.get_label())
+        return "" if label.startswith("_") else label
+
+    for line in ax.lines:
+        if line.get_gid() != "guide" and line.get_transform() == ax.transData:
+            yield from ((series(line), float(x), float(y), "") for x, y in zip(*line.get_data(orig=False), strict=True))
+    for bars in (one for one in ax.containers if hasattr(one, "orientation") and hasattr(one, "patches")):
+        lying = bars.orientation == "horizontal"
+        names = [text.get_text() for text in (ax.get_yticklabels() if lying else ax.get_xticklabels())]
+        for bar, name in zip(bars.patches, names if len(names) == len(bars.patches) else count(), strict=False):
+            yield series(bars), *((bar.get_width(), name) if lying else (name, bar.get_height())), ""
+    for one in ax.collections:
+        if hasattr(one, "get_coordinates"):  # a mesh: its values stand at cell centres, or at corners where shaded
+            places, values = one.get_coordinates(), one.get_array()
+            if values.size != places[..., 0].size:
+                places = 0.25 * (places[1:, 1:] + places[:-1, 1:] + places[1:, :-1] + places[:-1, :-1])
+            for (x, y), value in zip(places.reshape(-1, 2), values.reshape(-1), strict=True):
+                yield series(one), float(x), float(y), float(value)
+        elif type(one).__name__ == "PathCollection":
+            yield from ((series(one), float(x), float(y), "") for x, y in one.get_offsets())
+
+
+def movie_frames(movie: "Movie", dpi: float = 100.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:
+    """The movie's pictures (pillow, RGBA) and the milliseconds that each is shown."""
+    from matplotlib.animation import AbstractMovieWriter
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure as MatplotlibFigure
+    from numpy import asarray
+    from PIL import Image
+
+    frames: list[Any] = []
+
+    class Collector(AbstractMovieWriter):
+        def setup(self, fig: Any, outfile: Any, dpi: Any = None) -> None:
+            super().setup(fig, "frames", dpi)
+
+        def grab_frame(self, **settings: Any) -> None:
+            canvas.figure.set_layout_engine("none")  # the layout of the first frame serves all
+            frames.append(Image.fromarray(asarray(canvas.buffer_rgba()).copy()))
+
+        def finish(self) -> None:
+            pass
+
+    with style(ink):
+        canvas: Any = FigureCanvasAgg(
+            MatplotlibFigure(figsize=(5.4, 3.2), dpi=dpi, layout="constrained", facecolor=paper)
+        )
+        animation: Any = movie.animate(canvas.figure)
+        interval = float(animation.event_source.interval)
+        animation.save("frames", writer=Collector(), savefig_kwargs={"facecolor": paper})
+    return frames, interval
+
+
+def movie_image(movie: "Movie") -> tuple[bytes, bytes]:
+    """The movie for a page: (animated WebP that repeats, its first frame as WebP), transparent, for light and dark."""
+    frames, interval = movie_frames(movie)
+    moving, still = io.BytesIO(), io.BytesIO()
+    frames[0].save(still, format="webp", quality=80)
+    frames[0].save(
+        moving, format="webp", save_all=True, append_images=frames[1:], duration=interval, loop=0, quality=70, method=2
+    )
+    return moving.getvalue(), still.getvalue()

@@ -1,0 +1,114 @@
+"""What a run says in short: its verdict, its gates as a table, and everything as plain data."""
+
+from datetime import UTC, datetime
+from math import ceil, log10
+from typing import TYPE_CHECKING, Any
+
+from verify.report.result import MISSING, Column, Table, plain
+
+if TYPE_CHECKING:
+    from verify.scene.gates import GateResult
+    from verify.scene.run import RunResult
+
+VERDICTS = {True: "pass", False: "FAIL", None: "skipped"}
+
+
+def verdict(run: "RunResult") -> str:
+    """One line: how many of the gates that apply pass."""
+    judged = [gate for gate in run.gates if gate.passed is not None]
+    if not judged:
+        return "No gate applies"
+    return f"{len(run.failed)} of {len(judged)} gates failed" if run.failed else f"All {len(judged)} gates passed"
+
+
+def worst_gate(run: "RunResult") -> "GateResult | None":
+    """The gate that uses most of its tolerance, among those that have one."""
+    gates = [gate for gate in run.gates if gate.passed is not None and gate.fraction is not None]
+    return max(gates, key=lambda gate: gate.fraction or 0.0, default=None)
+
+
+def expected(gate: Any) -> str:
+    """The acceptance criterion of a gate in the digits that its tolerance needs: '4469.9 ± 0.5', 'at least 0.9'."""
+    if gate.expect is not None:
+        if gate.within is None:
+            return f"contains {value_text(gate.expect, '.9g')}"
+        size = abs(complex(gate.expect.re, gate.expect.im)) if hasattr(gate.expect, "re") else abs(gate.expect)
+        digits = max(ceil(log10(size / gate.within)), 1) + 2 if size else 3
+        return f"{value_text(gate.expect, f'.{digits}g')} ± {gate.within:g}"
+    sides = (("at least", gate.at_least), ("at most", gate.at_most))
+    return ", ".join(f"{side} {limit:g}" for side, limit in sides if limit is not None)
+
+
+def value_text(value: Any, form: str = ".7g") -> str:
+    """A measured value: a number, a complex number, or a bracket as 'lower to upper'."""
+    if value is None:
+        return MISSING
+    if hasattr(value, "lower"):
+        return f"{value.lower:{form}} to {value.upper:{form}}"
+    if hasattr(value, "re"):
+        value = complex(value.re, value.im)
+    if isinstance(value, complex):
+        return f"{value.real:{form}} {'+-'[value.imag < 0]} {abs(value.imag):{form}}i"
+    return format(value, form)
+
+
+def gates_table(run: "RunResult") -> Table:
+    """All gates, failed ones first."""
+    gates = sorted(run.gates, key=lambda gate: gate.passed is not False)
+    rows = [
+        (
+            VERDICTS[one.passed],
+            one.gate.id,
+            " ".join([one.gate.quantity, *(f"{key}={value}" for key, value in one.gate.arguments.items())]),
+            expected(one.gate),
+            value_text(one.value),
+            "" if one.unit == "1" else one.unit,
+            one.fraction,
+            one.reason or one.gate.why,
+        )
+        for one in gates
+    ]
+    columns = [Column(name) for name in ("verdict", "gate", "quantity", "expected", "measured", "unit")]
+    return Table("Gates", [*columns, Column("of tolerance", format=".3g", percent=True), Column("why")], rows)
+
+
+def skipped_table(run: "RunResult") -> Table:
+    """Sections and gates that were not run, with the reason."""
+    return Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
+
+
+def environment() -> dict[str, str]:
+    """Versions, machine and date."""
+    import platform
+    from importlib.metadata import version
+
+    from verify import __version__
+
+    packages = ("numpy", "scipy", "numba", "scikit-fem", "matplotlib")
+    values = {"date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"), "verify": __version__}
+    values |= {"Python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
+    return values | {name: version(name) for name in packages}
+
+
+def run_data(run: "RunResult", command: str = "") -> dict[str, Any]:
+    """Everything for JSON: verdict, gates, results, skipped parts, the scene's values, environment, command."""
+    gates = [
+        {"id": one.gate.id, "quantity": one.gate.quantity, "arguments": plain(one.gate.arguments)}
+        | {"expected": expected(one.gate), "value": plain(one.value), "unit": one.unit, "passed": one.passed}
+        | {"fraction": plain(one.fraction), "reason": one.reason, "why": one.gate.why}
+        for one in run.gates
+    ]
+    scene = plain(run.scene)
+    scene.pop("gate", None)
+    return {
+        "scene": run.scene.name,
+        "passed": run.passed,
+        "verdict": verdict(run),
+        "seconds": run.seconds,
+        "gates": gates,
+        "results": {name: result.to_dict() for name, result in run.results.items()},
+        "skipped": [{"what": one.what, "why": one.why} for one in run.skipped],
+        "inputs": scene,
+        "environment": environment(),
+        "command": command,
+    }

@@ -1,0 +1,165 @@
+"""Plain data (TOML tables, command-line words) converted to types: all errors at once, one sentence each."""
+
+import re
+from collections.abc import Iterator
+from math import isfinite
+from types import UnionType
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
+
+import msgspec
+
+from verify.checks import RELATIVE
+from verify.errors import InputError, near_name, raise_all, shown
+
+T = TypeVar("T")
+
+LONGEST_RANGE = 10_000
+_WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/*^]")
+_PLAIN = {
+    "int": "a whole number",
+    "float": "a number",
+    "str": "a word",
+    "bool": "true or false",
+    "array": "a list",
+    "object": "a table",
+}
+
+
+def convert(data: Any, kind: type[T], where: str = "") -> T:
+    """`data` (plain dicts, lists, numbers, strings) as a value of `kind`; `where` is the field's name in messages.
+
+    Raises InputError with one sentence for each unknown key, missing key and wrong value.
+    """
+    try:
+        return msgspec.convert(data, kind, strict=True)
+    except msgspec.ValidationError as error:
+        raise_all(list(_errors(data, kind, where)))
+        raise InputError(f"{where or 'scene'}: {error}") from None
+
+
+def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
+    """A sentence for every error; values that are right by themselves are checked together last."""
+    table = table_of(kind)
+    lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
+    inside: list[str] = []
+    if table is not None and isinstance(data, dict):
+        inside = list(_table_errors(data, table, where))
+    elif lists is not None and isinstance(data, list):
+        for i, one in enumerate(data):
+            named = isinstance(one, dict) and isinstance(one.get("id"), str) and one["id"]
+            entry = lists[0] if lists[-1] is Ellipsis else lists[min(i, len(lists) - 1)]
+            inside += _errors(one, entry, f"{where}.{named}" if named else f"{where}[{i}]")
+    if inside:
+        yield from inside
+        return
+    try:
+        msgspec.convert(data, kind, strict=True)
+    except msgspec.ValidationError as error:
+        if isinstance(error.__cause__, InputError):
+            yield from error.__cause__.sentences
+        else:
+            yield f"{where} = {shown(data)}: {_remedy(str(error), data, kind)}"
+
+
+def _table_errors(data: dict[str, Any], table: type[msgspec.Struct], where: str) -> Iterator[str]:
+    """Errors key by key. A missing key may be a misspelt one: it is named where no key is unknown."""
+    fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
+    for key, value in data.items():
+        name = f"{where}.{key}".lstrip(".")
+        if key in fields:
+            yield from _errors(value, fields[key].type, name)
+        else:
+            yield f"{name} is not a known key: {near_name(str(key), tuple(fields))}"
+    if not set(data) - set(fields):
+        for key, field in fields.items():
+            if field.required and key not in data:
+                yield f"{f'{where}.{key}'.lstrip('.')} is missing: give it a value"
+
+
+def _remedy(message: str, value: Any, kind: Any) -> str:
+    """The end of a sentence, from msgspec's message and what is often meant by such a value."""
+    words = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is Literal), ())
+    if message.startswith("Invalid enum value"):
+        return f"it is not known, {near_name(str(value), tuple(map(str, words)))}"
+    if message.startswith("Number out of range"):
+        return "write a large number as 1e30"
+    expects_number = message.startswith(("Expected `float", "Expected `int"))
+    if expects_number and isinstance(value, list):
+        return "give one number, with a point before its decimals"
+    if expects_number and isinstance(value, str) and _WITH_UNIT.match(value):
+        return "give a number alone, in SI units: 0.08 for 80 mm"
+    text = message.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", "")
+    return re.sub(r"`(\w[\w |]*)`", lambda m: " or ".join(_PLAIN.get(w, w) for w in m[1].split(" | ")), text)
+
+
+def arms_of(kind: Any) -> tuple[Any, ...]:
+    """The members of a union, without annotations."""
+    if hasattr(kind, "__metadata__"):
+        return arms_of(get_args(kind)[0])
+    if get_origin(kind) in (Union, UnionType):
+        return tuple(arm for one in get_args(kind) for arm in arms_of(one))
+    return (kind,)
+
+
+def metas_of(kind: Any) -> list[msgspec.Meta]:
+    """The annotations of a type and of the members of its union; those of list entries are left out."""
+    if hasattr(kind, "__metadata__"):
+        return [*kind.__metadata__, *metas_of(get_args(kind)[0])]
+    return [meta for arm in get_args(kind) for meta in metas_of(arm)] if get_origin(kind) in (Union, UnionType) else []
+
+
+def table_of(kind: Any) -> type[msgspec.Struct] | None:
+    """The struct among the members of a union."""
+    return next((arm for arm in arms_of(kind) if isinstance(arm, type) and issubclass(arm, msgspec.Struct)), None)
+
+
+def entry_of(kind: Any) -> Any:
+    """The type of the entries of a list of any length; None for any other type."""
+    parts = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), ())
+    return parts[0] if len(parts) == 2 and parts[1] is Ellipsis else None
+
+
+def literal(text: str, field: str) -> Any:
+    """A TOML literal; a bare word is a string, values with commas between them are a list. Raises InputError."""
+    import tomllib
+
+    if any("\ud800" <= character <= "\udfff" for character in text):
+        raise InputError(f"{field} = {shown(text)} is not text in UTF-8: type it again")
+    number = re.fullmatch(r"[+-]?(\d+\.|\.\d+)([eE][+-]?\d+)?", text)  # no TOML, but often typed
+    try:
+        value = float(text) if number else tomllib.loads(f"value = {text}")["value"]
+    except (ValueError, KeyError, RecursionError):
+        lists = "," in text and not text.lstrip().startswith(("[", "{", '"', "'"))
+        return [literal(part.strip(), field) for part in text.split(",") if part.strip()] if lists else text
+    if isinstance(value, float) and not isfinite(value):
+        raise InputError(f"{field} = {text}: give a finite number")
+    return value
+
+
+def typed(text: str, kind: Any, field: str) -> Any:
+    """A command-line word by its type: lists of whole numbers as 1-3,7 or 10-50:10, relative numbers as 0.1%.
+
+    What does not fit stays as it is; `convert` then refuses it. Raises InputError for an empty or a long range.
+    """
+    value = literal(text, field)
+    entry = entry_of(kind)
+    if entry is not None and int in arms_of(entry):
+        parts = value if isinstance(value, list) else [value]
+        return [one for part in parts for one in _spelt_out(part, field)]
+    relative = any((meta.extra or {}).get(RELATIVE) for meta in metas_of(kind))
+    if relative and isinstance(value, str) and value.endswith("%"):
+        number = literal(value[:-1].strip(), field)
+        return number / 100.0 if isinstance(number, float | int) else value
+    return value
+
+
+def _spelt_out(part: Any, field: str) -> list[Any]:
+    """'10-50:10' as whole numbers, anything else as its only entry."""
+    if (found := re.fullmatch(r"\s*(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?\s*", str(part))) is None:
+        return [part]
+    start, end, step = int(found[1]), int(found[2]), int(found[3] or 1)
+    if end < start or step == 0 or (end - start) // step >= LONGEST_RANGE:
+        raise InputError(
+            f"{field} = {shown(part)}: write a range upwards and of at most {LONGEST_RANGE} numbers, 1-5 or 10-50:10"
+        )
+    return list(range(start, end + 1, step))

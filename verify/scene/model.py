@@ -1,0 +1,283 @@
+"""The types of a scene file: drive, gates, claims, and the scene with its studies. Values, no numerics."""
+
+from collections.abc import Iterator
+from math import inf
+from typing import Annotated, Any, Literal, TypeAlias
+
+import msgspec
+from msgspec import Meta
+
+from verify.beam import Beam, PointForce, check_frequency
+from verify.checks import check_number
+from verify.device import Device, check_moved
+from verify.errors import InputError, raise_all
+from verify.options import DriveKind, Reference
+from verify.slider import Slider
+
+Id: TypeAlias = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+
+
+class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A point force, positioned from one end of the beam."""
+
+    position: float
+    """Distance from the end that `measured_from` names, m."""
+    measured_from: Literal["left", "right"] = "left"
+    """End of the beam from which `position` is measured."""
+    amplitude: float = 1.0
+    """N, or m where the drive imposes displacements."""
+    phase_deg: float = 0.0
+    """Phase of cos(omega t + phase), degrees."""
+
+    def on(self, beam: Beam) -> PointForce:
+        """The force in the beam's coordinate. Raises InputError for a position off the beam."""
+        x = _from_left("drive.force.position", self.position, self.measured_from, beam)
+        return PointForce(position=x, amplitude=self.amplitude, phase_deg=self.phase_deg)
+
+
+class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A device, positioned from one end of the beam."""
+
+    measured_from: Literal["left", "right"] = "left"
+    """End of the beam from which `position` is measured."""
+
+    def on(self, beam: Beam) -> Device:
+        """The device in the beam's coordinate. Raises InputError off the beam or on a support."""
+        own = {name: getattr(self, name) for name in Device.__struct_fields__}
+        own["position"] = _from_left("drive.device.position", self.position, self.measured_from, beam)
+        device = Device(**own)
+        device.check_on(beam)
+        return device
+
+
+def _from_left(field: str, position: float, side: str, beam: Beam) -> float:
+    """Distance from the left end of a position measured from one end. Raises InputError off the beam."""
+    check_number(field, position, "metres")
+    if not 0 <= position <= beam.length:
+        raise InputError(f"{field} = {position!r} lies off the beam: give a position between 0 and {beam.length!r} m")
+    return position if side == "left" else beam.length - position
+
+
+class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Harmonic excitation at one frequency: point forces, or displacements imposed at points."""
+
+    frequency_hz: float
+    """Hz."""
+    kind: DriveKind = "force"
+    """Meaning of the amplitudes: N, or m. The paper does not say; its frequency rule fits forces."""
+    force: tuple[SceneForce, ...] = ()
+    """Point forces, or imposed displacements."""
+    device: tuple[SceneDevice, ...] = ()
+    """Impedances on the beam beside the forces, absorbing or driving: in the steady state only."""
+
+    def __post_init__(self) -> None:
+        check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)
+        if self.device and self.kind != "force":
+            raise InputError(f"drive.kind = {self.kind!r}: with a drive.device the drive is by forces, give 'force'")
+
+
+class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A complex expected value, { re, im }."""
+
+    re: float
+    """Real part, in the quantity's unit."""
+    im: float
+    """Imaginary part, in the quantity's unit."""
+
+    def __post_init__(self) -> None:
+        check_number("expect.re", self.re, "in the quantity's unit")
+        check_number("expect.im", self.im, "in the quantity's unit")
+
+
+class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An acceptance criterion: a quantity and the band in which its value has to lie.
+
+    `expect` with `within` is a two-sided band, for a complex `expect = { re, im }` a disc; `at_least` and `at_most`
+    bound one side each; a bracket (`mode.bracket`) takes `expect` alone, the value that it has to contain. Raises
+    InputError where the band is none of these.
+    """
+
+    id: Id
+    """Letters, digits, _ and -; the name in `--set gate.ID.within=...` and in pytest."""
+    quantity: str
+    """Name of the quantity, see `verify quantities`."""
+    arguments: dict[str, Any] = {}
+    """Arguments of the quantity by name."""
+    expect: float | Complex | None = None
+    """Expected value, in the quantity's unit; { re, im } for a complex one."""
+    within: float | None = None
+    """Half the width of the band, or the radius of the disc, in the quantity's unit."""
+    at_least: float | None = None
+    """Lower limit."""
+    at_most: float | None = None
+    """Upper limit."""
+    reference: Reference | None = None
+    """Kind of the reference for the expected value."""
+    why: Annotated[str, Meta(min_length=1)]
+    """Source of the expected value: equation, publication or derivation, and its accuracy where it matters."""
+
+    def __post_init__(self) -> None:
+        _check_limits(f"gate.{self.id}", self)
+        if self.within is not None and (self.expect is None or self.within <= 0):
+            raise InputError(f"gate.{self.id}.within = {self.within!r}: give it above 0 and together with expect")
+        bounded = self.at_least is not None or self.at_most is not None
+        if bounded == (self.expect is not None):
+            raise InputError(f"gate.{self.id}.expect: give expect with within, or at_least, at_most")
+
+
+Sign = Literal["negative", "positive"]
+
+
+class Claim(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A published statement as a quantity of this package. It is compared with the computed value and is no gate.
+
+    `value` is a number with a `tolerance`, or a sign; `at_least` and `at_most` bound one side each. Raises InputError
+    where it is none of these.
+    """
+
+    id: Id
+    """Letters, digits, _ and -."""
+    source: Annotated[str, Meta(min_length=1)]
+    """Author, place and wording of the statement."""
+    quantity: str
+    """Name of the quantity, see `verify quantities`."""
+    arguments: dict[str, Any] = {}
+    """Arguments of the quantity by name. A quantity of the slider without any is computed on the scene's own run."""
+    value: float | Sign | None = None
+    """Published number, or its sign."""
+    tolerance: float | None = None
+    """Half the last printed digit, or the reading error of a figure."""
+    at_least: float | None = None
+    """Lower limit."""
+    at_most: float | None = None
+    """Upper limit."""
+    read: Literal["stated", "figure", "follows"]
+    """Whether the source states it, shows it in a figure, or implies it."""
+
+    def __post_init__(self) -> None:
+        _check_limits(f"claim.{self.id}", self)
+        if (self.number is None) != (self.tolerance is None) or (self.tolerance is not None and self.tolerance <= 0):
+            raise InputError(
+                f"claim.{self.id}.tolerance = {self.tolerance!r}: give one above 0 with a number as value, none with a "
+                "sign or a limit"
+            )
+        bounded = self.at_least is not None or self.at_most is not None
+        if bounded == (self.value is not None):
+            raise InputError(f"claim.{self.id}.value: give value, or at_least, at_most")
+
+    @property
+    def number(self) -> float | None:
+        """The published number; None for a sign or a limit."""
+        return float(self.value) if isinstance(self.value, float | int) else None
+
+    @property
+    def expected(self) -> str:
+        """'-0.015 ± 0.0005', 'negative', 'at least 0.02, at most 0.03'."""
+        if self.value is not None:
+            return self.value if isinstance(self.value, str) else f"{self.value:g} ± {self.tolerance:g}"
+        return limits_as_text(self.at_least, self.at_most)
+
+    def agrees(self, computed: float) -> bool:
+        """Whether a computed value agrees with the statement; NaN never does."""
+        if isinstance(self.value, str):
+            return computed < 0.0 if self.value == "negative" else computed > 0.0
+        if self.value is not None and self.tolerance is not None:
+            return abs(computed - self.value) <= self.tolerance
+        low = -inf if self.at_least is None else self.at_least
+        return low <= computed <= (inf if self.at_most is None else self.at_most)
+
+
+def _check_limits(field: str, one: Gate | Claim) -> None:
+    """Raise InputError for a limit that is not finite, and for limits in the wrong order."""
+    for name in ("expect", "value", "within", "tolerance", "at_least", "at_most"):
+        if isinstance(value := getattr(one, name, None), float | int):
+            check_number(f"{field}.{name}", value, "in the quantity's unit")
+    if one.at_least is not None and one.at_most is not None and one.at_least > one.at_most:
+        raise InputError(f"{field}.at_least = {one.at_least!r} is above at_most = {one.at_most!r}: exchange them")
+
+
+def limits_as_text(at_least: float | None, at_most: float | None) -> str:
+    """'at least 0.02, at most 0.03'."""
+    given = (("at least", at_least), ("at most", at_most))
+    return ", ".join(f"{side} {value:g}" for side, value in given if value is not None)
+
+
+class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What exists, what is published about it, and which gates and studies run. Raises InputError.
+
+    In a scene file the sections of studies stand beside these keys: [spectrum], [motor], ... (see `verify schema`).
+    """
+
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
+    """Name of the scene and of its reports."""
+    title: str = ""
+    """Heading of its report."""
+    description: str = ""
+    """Text below the heading."""
+    beam: Beam
+    """The beam."""
+    drive: Drive | None = None
+    """Harmonic excitation."""
+    slider: Slider | None = None
+    """Slider on the beam."""
+    claim: tuple[Claim, ...] = ()
+    """Published statements, compared with computed values."""
+    gate: tuple[Gate, ...] = ()
+    """Acceptance criteria."""
+    studies: dict[str, Any] = {}
+    """Studies by the names of their sections; in a file they stand at the top level."""
+
+    def __post_init__(self) -> None:
+        raise_all(list(self._errors()))
+
+    def _errors(self) -> Iterator[str]:
+        """A sentence for every inconsistency between parts that are right by themselves."""
+        from verify.studies.base import studies_of
+
+        for table, entries in (("gate", self.gate), ("claim", self.claim)):
+            ids = [one.id for one in entries]
+            for one in dict.fromkeys(ids):
+                if ids.count(one) > 1:
+                    yield f"{table}.{one} occurs twice: give every {table} its own id"
+        try:
+            self._check_drive_and_slider()
+        except InputError as error:
+            yield from error.sentences
+            return
+        for name, study in (self.studies | dict(studies_of(self))).items():
+            if self.devices and name in self.studies and not study.devices:
+                yield f"drive.device: [{name}] does not model it, leave out [{name}] or drive.device"
+            try:
+                study.check(self)
+            except InputError as error:
+                yield from error.sentences
+
+    def _check_drive_and_slider(self) -> None:
+        """Raise InputError for a drive or a slider that does not fit the beam."""
+        if self.drive is not None:
+            check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
+        forces, _ = self.forces, self.devices
+        if self.drive is not None and self.drive.kind == "force":
+            check_moved(forces, self.beam)
+        if self.slider is not None:
+            self.slider.start_on(self.beam)
+
+    @property
+    def motion(self) -> Any:
+        """The section [motion]; None where the scene has none."""
+        return self.studies.get("motion")
+
+    @property
+    def forces(self) -> tuple[PointForce, ...]:
+        """Forces of the drive in the beam's coordinate."""
+        return tuple(force.on(self.beam) for force in self.drive.force) if self.drive else ()
+
+    @property
+    def devices(self) -> tuple[Device, ...]:
+        """Devices of the drive in the beam's coordinate."""
+        return tuple(device.on(self.beam) for device in self.drive.device) if self.drive else ()
+
+    @property
+    def bare(self) -> "Scene":
+        """The scene without studies, claims and gates."""
+        return msgspec.structs.replace(self, studies={}, claim=(), gate=())

@@ -1,0 +1,170 @@
+"""A scene run: every gate and study once, over one solution cache; and what a run would do, without solving."""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, TypeAlias
+
+import msgspec
+
+from verify.errors import InputError
+from verify.scene.gates import GateResult, run_gate
+from verify.scene.load import load_scene
+from verify.scene.model import Scene
+
+if TYPE_CHECKING:
+    from verify.judge.cache import SolutionCache
+    from verify.report.result import Result
+
+Progress: TypeAlias = Callable[[str], None]
+
+
+class PlanRow(msgspec.Struct, frozen=True):
+    """One gate or study of a scene, and whether it runs."""
+
+    what: str
+    kind: str
+    runs: bool
+    why: str = ""
+    """Why it is skipped; of a gate that runs its quantity."""
+
+
+class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Everything that a scene's gates and studies computed."""
+
+    scene: Scene
+    gates: tuple[GateResult, ...]
+    """In the order of the file, skipped ones included."""
+    results: "dict[str, Result]"
+    """Results of the studies by the names of their sections."""
+    skipped: tuple[PlanRow, ...]
+    """Gates and studies that did not run, with the reason."""
+    warnings: tuple[str, ...]
+    """Implausible units, and a deflection beyond small-amplitude theory."""
+    first_frequency_hz: float | None
+    """Exact Euler-Bernoulli frequency of mode 1; None where there is none."""
+    largest_deflection: float | None
+    """Amplitude of the exact steady field, its maximum along the beam, m; None without a drive."""
+    seconds: float
+
+    @property
+    def failed(self) -> tuple[GateResult, ...]:
+        """Gates outside their bands, or that could not be evaluated."""
+        return tuple(result for result in self.gates if result.passed is False)
+
+    @property
+    def passed(self) -> bool:
+        """Whether no gate failed."""
+        return not self.failed
+
+
+def run_scene(
+    scene: Scene | str | Path, progress: Progress = lambda step: None, overrides: Sequence[str] = ()
+) -> RunResult:
+    """Run a scene (or a packaged name, or a path). `progress` is called with the name of each step before it starts.
+
+    With overrides ('beam.length=0.4') gates are skipped that hold for the values in the file. Raises InputError where
+    the scene is wrong or a study cannot run; a gate that fails or cannot be evaluated is in the result.
+    """
+    from verify.judge.cache import SolutionCache
+    from verify.quantities.base import QUANTITIES
+    from verify.scene.warnings import deflection_warning, unit_warnings
+    from verify.studies.base import studies_of
+
+    start = perf_counter()
+    loaded, rows = _planned(scene, overrides)
+    cache = SolutionCache(loaded.beam)
+    gates = []
+    for gate, row in zip(loaded.gate, rows, strict=False):
+        progress(f"gate {gate.id}")
+        if row.runs:
+            gates.append(run_gate(gate, loaded, cache))
+        else:
+            gates.append(GateResult(gate=gate, unit=QUANTITIES[gate.quantity].unit, reason=row.why))
+    results = {}
+    for name, study in studies_of(loaded):
+        progress(name)
+        results[name] = study.run(loaded, cache, progress)
+    frequency, deflection = _frequency_and_deflection(loaded, cache)
+    return RunResult(
+        scene=loaded,
+        gates=tuple(gates),
+        results=results,
+        skipped=tuple(row for row in rows if not row.runs),
+        warnings=(*unit_warnings(loaded), *deflection_warning(loaded, deflection)),
+        first_frequency_hz=frequency,
+        largest_deflection=deflection,
+        seconds=perf_counter() - start,
+    )
+
+
+def plan(scene: Scene | str | Path, overrides: Sequence[str] = ()) -> tuple[PlanRow, ...]:
+    """Which gates and studies of a scene run, which are skipped and why. Nothing is solved. Raises InputError."""
+    return tuple(_planned(scene, overrides)[1])
+
+
+def _planned(scene: Scene | str | Path, overrides: Sequence[str]) -> tuple[Scene, list[PlanRow]]:
+    """The scene, and its gates in their order, then the studies."""
+    from verify.studies.base import STUDIES, studies_of
+
+    if isinstance(scene, Scene):
+        loaded, effective = scene, tuple(overrides)
+    else:
+        loaded, effective = load_scene(scene, overrides), effective_overrides(scene, overrides)
+    skip = skipped_gates(loaded, effective)
+    rows = [PlanRow(gate.id, "gate", gate.id not in skip, skip.get(gate.id, gate.quantity)) for gate in loaded.gate]
+    running = [name for name, _ in studies_of(loaded)]
+    rows += [PlanRow(name, "study", True) for name in running]
+    rows += [PlanRow(name, "study", False, f"no [{name}] in the scene") for name in STUDIES if name not in running]
+    return loaded, rows
+
+
+def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
+    """Gates by id that hold for other values than `--set` gives, and why.
+
+    A gate runs where its quantity reads no overridden table and its arguments are its own, or where its band was set
+    as well.
+    """
+    from verify.quantities.base import QUANTITIES
+
+    keys = list(dict.fromkeys(text.partition("=")[0].strip() for text in overrides))
+    skip = {}
+    for i, gate in enumerate(scene.gate):
+        names = (f"gate.{gate.id}", f"gate.{i}")
+        if gate.quantity not in QUANTITIES or any(
+            f"{name}.{limit}" in keys for name in names for limit in ("expect", "at_least", "at_most")
+        ):
+            continue
+        reads = QUANTITIES[gate.quantity].reads
+        arguments = [key for key in keys if key.startswith(tuple(f"{name}.arguments" for name in names))]
+        values = [key for key in keys if key.split(".")[0] in reads]
+        if arguments or values:
+            skip[gate.id] = f"stated for other values: --set {', '.join(arguments or values)}"
+    return skip
+
+
+def effective_overrides(name_or_path: str | Path, overrides: Sequence[str]) -> tuple[str, ...]:
+    """Overrides without those that repeat what the file says: a beam of the same length is no other beam."""
+
+    def repeats(text: str) -> bool:
+        key = text.partition("=")[0].strip()
+        if key.startswith("gate.") and ".arguments" not in key:
+            return False  # a band that is stated counts even where it is the same
+        with suppress(InputError):  # alone it may be wrong
+            return load_scene(name_or_path, (text,)) == load_scene(name_or_path)
+        return False
+
+    return tuple(text for text in overrides if not repeats(text))
+
+
+def _frequency_and_deflection(scene: Scene, cache: "SolutionCache") -> tuple[float | None, float | None]:
+    """First frequency, Hz, and largest steady deflection, m; None without modes, without forces, or at a resonance."""
+    from verify.quantities.base import evaluate
+
+    frequency = deflection = None
+    with suppress(InputError):
+        frequency = cache.exact_hz(1)
+        places = [scene.beam.length * i / 200.0 for i in range(201)] if scene.forces else []
+        deflection = max((abs(evaluate("wave.deflection", {"x": x}, scene, cache)) for x in places), default=None)  # type: ignore[arg-type]
+    return frequency, deflection

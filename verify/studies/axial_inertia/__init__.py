@@ -1,1 +1,0 @@
-"""How linear a chain of rigid links is."""

@@ -1,0 +1,76 @@
+"""What a study is: a section of a scene that runs itself and returns a `Result`."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
+
+import msgspec
+
+from verify.errors import InputError
+from verify.registry import Registry
+
+if TYPE_CHECKING:
+    from verify.judge.cache import SolutionCache
+    from verify.report.result import Result
+    from verify.scene.model import Scene
+
+Progress: TypeAlias = Callable[[str], None]
+"""Called with the name of each step before it starts."""
+
+
+class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A section of a scene file. A subclass is the section's type: its fields are the options, `run` computes.
+
+    Other packages add one by an entry point of the group `verify.studies`, or by `STUDIES.register(Mine)`.
+    """
+
+    name: ClassVar[str] = ""
+    """Of its section in a scene and of its key in JSON."""
+    title: ClassVar[str] = ""
+    """Heading on the page."""
+    devices: ClassVar[bool] = False
+    """Whether it accepts a drive with devices on the beam."""
+
+    def check(self, scene: "Scene") -> None:
+        """Raise InputError where the scene lacks what the study needs, or has what it does not model."""
+
+    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+        """Compute the study. Raises InputError."""
+        raise NotImplementedError
+
+
+STUDIES: Registry[type[Study]] = Registry(
+    "study",
+    "verify.studies",
+    homes={
+        "spectrum": "verify.studies.spectrum:Spectrum",
+        "convergence": "verify.studies.convergence:Convergence",
+        "wave": "verify.studies.wave:Wave",
+        "motion": "verify.studies.motion:Motion",
+        "motor": "verify.studies.motor:Motor",
+        "axial_inertia": "verify.studies.axial_inertia:AxialInertia",
+        "claims": "verify.studies.claims:Claims",
+        "sweep": "verify.studies.sweep:Sweep",
+    },
+    classes=True,
+)
+"""Study classes by the name of their section, in the order in which they run."""
+
+
+def studies_of(scene: "Scene") -> list[tuple[str, Study]]:
+    """(name, study) of the scene's sections and of the implied ones, in the order of `STUDIES`.
+
+    [[claim]] implies `claims`, a [drive] with two forces `wave` where it runs with its defaults. [motion] without a
+    slider that stays on the beam has settings for quantities in time and is no study.
+    """
+    found: dict[str, Study] = dict(scene.studies)
+    if scene.slider is None or scene.slider.contact is not None:
+        found.pop("motion", None)
+    if scene.claim:
+        found.setdefault("claims", STUDIES["claims"]())
+    if "wave" not in found and len(scene.forces) == 2 and not scene.devices:
+        wave = STUDIES["wave"]()
+        with suppress(InputError):
+            wave.check(scene)
+            found["wave"] = wave
+    return [(name, found[name]) for name in STUDIES if name in found]

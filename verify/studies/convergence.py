@@ -1,0 +1,252 @@
+"""Frequency errors over the number of segments or elements: observed orders, two-sided bound, solve times."""
+
+from functools import partial
+from math import log, log10
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
+
+from msgspec import Meta
+
+from verify.errors import InputError, NoBracketError
+from verify.judge.variants import Rules, Variant
+from verify.studies.base import Progress, Study
+from verify.studies.charts import percent, plot_errors, si, variant_colors
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from verify.judge.cache import SolutionCache
+    from verify.report.result import Result
+    from verify.scene.model import Scene
+
+Counts: TypeAlias = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(min_length=1)]
+Row: TypeAlias = dict[str, Any]
+ORDER_TOLERANCE = 1.0
+"""Distance of an observed order from the theoretical one up to which sizes count as asymptotic."""
+STYLES = ("-o", "--s", ":^", "-.d", "-v")
+"""Line and marker of each mode."""
+CAPTIONS = {
+    "errors-over-size": "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of "
+    "segments and Hermite elements cancel.",
+    "bracket": "The exact frequency (zero) lies in the band for every N; no reference solution is needed for that.",
+    "work-precision": "Warm solve from beam to modes, set-up included, median of interleaved repeats. Numbers: N.",
+    "joint-models": "Absolute values: a dip is a change of sign of the error.",
+}
+
+
+class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Frequency errors of a few modes over several sizes, every rule of the models side by side."""
+
+    name: ClassVar[str] = "convergence"
+    title: ClassVar[str] = "Convergence"
+
+    modes: Annotated[Counts, Meta(description="Mode numbers, from 1.")] = (1, 5, 22)
+    counts: Annotated[Counts, Meta(description="Numbers of segments and of elements.")] = (10, 20, 49, 98)
+
+    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+        """Solve every variant at every size and time it. Raises InputError for a size that cannot be solved."""
+        from verify.judge.cache import comparable
+        from verify.report.result import Column, Figure, Result, Table
+
+        models, left_out = comparable(cache.beam, self.counts, max(self.modes))
+        variants = self.variants(models)
+        rows = self._rows(cache, variants, progress)
+        bounds, no_bound = self._bounds(cache)
+        joints = self._joint_models(cache, variants)
+        settled, warnings = self._summarise(cache, rows)
+        mode = max(self.modes)
+        error_columns = [
+            Column("mode"),
+            Column("model"),
+            Column("N"),
+            Column("frequency", "Hz", ".8g"),
+            percent("error"),
+        ]
+        error_columns += [Column("order", format=".2f"), si("solve time", "s", ".3g")]
+        bound_columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
+        bound_columns += [percent("width", ".4g"), percent("error of the mean")]
+        note = "Order: from the size before. Time: warm solve of all modes, set-up included, median of repeats."
+        tables = [
+            Table("Frequency error over N", error_columns, [tuple(list(row.values())[:7]) for row in rows], [note])
+        ]
+        figures: list[tuple[str, str, Any, tuple[Any, ...]]] = [
+            (
+                "errors-over-size",
+                "Convergence with the number of segments or elements",
+                self._draw_errors,
+                (rows, bounds),
+            ),
+            ("work-precision", "Frequency error over solve time", self._draw_work, (rows,)),
+        ]
+        if bounds:
+            title = "Two-sided bound: segments below, Hermite elements above"
+            tables.append(Table(title, bound_columns, [tuple(row.values()) for row in bounds]))
+            figures.insert(1, ("bracket", f"Two-sided bound on mode {mode}", self._draw_bound, (bounds,)))
+        if joints:
+            title = f"Joint models of the chain, mode {mode}"
+            columns = [Column("N"), *(percent(one.title) for one in joints)]
+            tables.append(Table(title, columns, list(zip(self.counts, *joints.values(), strict=True))))
+            figures.append(("joint-models", title, _draw_joints, (self.counts, joints)))
+        return Result(
+            summary=f"Mode {mode}, N = {self.counts[-1]}, error: {', '.join(settled)}." if settled else "",
+            tables=tables,
+            figures=[
+                Figure(key, title, CAPTIONS[key], partial(_on_axes, draw, cache, values))
+                for key, title, draw, values in figures
+            ],
+            warnings=[*warnings, *no_bound, *left_out.values()],
+            data={"rows": rows, "bounds": bounds},
+        )
+
+    def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:
+        """A row for each mode, variant and size, in this order."""
+        from verify.judge.compare import ORDER_FLOOR
+        from verify.models.catalogue import MODELS
+        from verify.timing import interleaved_medians
+
+        seconds: dict[tuple[Variant, int], float] = {}
+        for count in self.counts:
+            progress(f"N = {count}")
+            solves = []
+            for one in variants:
+                model, how = MODELS[one.model], dict(one.settings)
+                n = min(max(self.modes), model.n_elastic(cache.beam, count, **how))
+                cache.modes(one.model, count, n, one.settings)
+                solves.append(partial(model.solve_modes, cache.beam, n, count, **how))
+            seconds |= zip(((one, count) for one in variants), interleaved_medians(solves), strict=True)
+        rows = []
+        for mode in self.modes:
+            for one in variants:
+                before: tuple[int, float] | None = None
+                for count in self.counts:
+                    error, why = cache.error_or_why(one.model, count, mode, one.settings)
+                    frequency = order = None
+                    if error is not None:
+                        frequency = cache.paired_frequency_hz(one.model, count, mode, one.settings)
+                        # No order across a change of sign, nor at the rounding of the eigenvalues.
+                        coarse = before is not None and min(abs(before[1]), abs(error)) >= ORDER_FLOOR
+                        if before and coarse and before[0] != count and before[1] * error > 0.0:
+                            order = log(before[1] / error) / log(count / before[0])
+                    row = {"mode": mode, "model": one.title, "N": count, "frequency_hz": frequency, "error": error}
+                    time = None if error is None else seconds[one, count]
+                    rows.append(row | {"order": order, "run_time_s": time, "variant": one, "why": why})
+                    before = None if error is None else (count, error)
+        return rows
+
+    def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
+        """(a row for each mode and size with a bound, why there are none elsewhere)."""
+        from verify.judge.cache import has_bracket
+        from verify.models.naming import MEAN
+
+        rows: list[Row] = []
+        reasons: dict[str, None] = {}
+        settings = next((one for one in self.combinations if has_bracket(cache.beam, one)), self.combinations[0])
+        for mode in self.modes:
+            for count in self.counts:
+                try:
+                    bound = cache.bracket(mode, count, settings)
+                    mean = cache.frequency_error(MEAN, count, mode, settings)
+                except NoBracketError as error:
+                    reasons[f"No two-sided bound: {error}"] = None
+                    continue
+                except InputError:  # one of the models has no such mode, which its row says
+                    continue
+                row = {"mode": mode, "N": count, "lower_hz": bound.lower, "upper_hz": bound.upper}
+                rows.append(row | {"width": bound.relative_width, "mean_error": mean})
+        return rows, list(reasons)
+
+    def _joint_models(self, cache: "SolutionCache", variants: tuple[Variant, ...]) -> dict[Variant, list[float | None]]:
+        """Errors of the highest mode over sizes by every joint model that differs on this beam, the default first."""
+        others = self.every_rule(cache.beam)
+        chosen = [one for one in variants if one.model in {other.model for other in others}]
+        return {
+            one: [cache.error_or_why(one.model, count, max(self.modes), one.settings)[0] for count in self.counts]
+            for one in dict.fromkeys([*chosen, *others] if others else [])
+        }
+
+    def _summarise(self, cache: "SolutionCache", rows: list[Row]) -> tuple[list[str], list[str]]:
+        """(errors of the highest mode whose orders are those of theory, warnings on the others)."""
+        settled, warnings = [], dict.fromkeys(row["why"] for row in rows if row["why"])
+        for one in dict.fromkeys(row["variant"] for row in rows):
+            own = [row for row in rows if row["variant"] == one and row["mode"] == max(self.modes)]
+            orders = [row["order"] for row in own if row["order"] is not None][-2:]
+            theory = one.order(cache.beam)
+            expected = theory if theory is not None else orders[-1] if orders else 0.0
+            if own[-1]["error"] is None:
+                continue
+            if orders and all(abs(order - expected) <= ORDER_TOLERANCE for order in orders):
+                settled.append(f"{one.title} {100 * own[-1]['error']:+.4g} % (order {orders[-1]:.2f})")
+            else:
+                seen = ", ".join(f"{order:.2f}" for order in orders) or "none"
+                warnings[f"{one.title}, mode {max(self.modes)}: order not converged (observed {seen}; {theory})."] = (
+                    None
+                )
+        return settled, list(warnings)
+
+    def _draw_errors(self, ax: "Axes", cache: "SolutionCache", rows: list[Row], bounds: list[Row]) -> None:
+        from verify.report.plotting import slope_guide
+
+        mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
+        colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
+        lines = []
+        for mode, style in zip(self.modes, STYLES * len(self.modes), strict=False):
+            first = mode == self.modes[0]
+            for one, color in colors.items():
+                own = [row for row in rows if row["variant"] == one and row["mode"] == mode and row["error"]]
+                label = one.title if first else ""
+                lines.append((label, color, style, [r["N"] for r in own], [100 * r["error"] for r in own]))
+            own = [row for row in bounds if row["mode"] == mode]
+            label = "mean of both" if first and bounds else ""
+            lines.append((label, mean, style, [r["N"] for r in own], [100 * r["mean_error"] for r in own]))
+            lines.append((f"mode {mode}", "#7d8590", style, [], []))
+        plot_errors(ax, lines, "|frequency error|, %")
+        ax.legend(ncols=2)
+        guides = {one.order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors}
+        if bounds:
+            guides.setdefault(6, [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]])
+        for order, own in guides.items():
+            if order and own and span:
+                slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)
+
+    def _draw_work(self, ax: "Axes", cache: "SolutionCache", rows: list[Row]) -> None:
+        colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
+        for mode, style in zip(self.modes, STYLES * len(self.modes), strict=False):
+            for one, color in colors.items():
+                own = [row for row in rows if row["variant"] == one and row["mode"] == mode and row["error"]]
+                times, errors = [1e3 * r["run_time_s"] for r in own], [100 * abs(r["error"]) for r in own]
+                ax.loglog(times, errors, style, color=color, label=one.title if mode == self.modes[0] else "")
+                for row, time, error in zip(own, times, errors, strict=True):
+                    if mode == self.modes[-1]:
+                        ax.annotate(str(row["N"]), (time, error), (4, 4), textcoords="offset points", fontsize=8)
+            ax.plot([], [], style, color="#7d8590", label=f"mode {mode}")
+        ax.set(xlabel="solve time, ms", ylabel="|frequency error|, %")
+        ax.legend(ncols=2)
+
+    def _draw_bound(self, ax: "Axes", cache: "SolutionCache", bounds: list[Row]) -> None:
+        from matplotlib.ticker import NullLocator
+
+        from verify.report.plotting import MODEL_COLORS
+
+        own = [row for row in bounds if row["mode"] == max(self.modes)]
+        exact, counts = cache.exact_hz(max(self.modes)), [row["N"] for row in own]
+        lower, upper = ([100 * (row[key] / exact - 1.0) for row in own] for key in ("lower_hz", "upper_hz"))
+        ax.fill_between(counts, lower, upper, color=MODEL_COLORS["mean"], alpha=0.15, linewidth=0)
+        ax.semilogx(counts, upper, "-o", color=MODEL_COLORS["fem"], label="upper bound, Hermite elements")
+        ax.plot(counts, lower, "-o", color=MODEL_COLORS["segment"], label="lower bound, segments")
+        ax.plot(counts, [100 * row["mean_error"] for row in own], "-o", color=MODEL_COLORS["mean"], label="mean")
+        ax.axhline(0.0, color=MODEL_COLORS["analytic"], linewidth=1.0)
+        ax.set_xticks(counts, [str(count) for count in counts])
+        ax.xaxis.set_minor_locator(NullLocator())
+        ax.set(xlabel="number of segments or elements N", ylabel="against the exact frequency, %")
+        ax.legend()
+
+
+def _on_axes(draw: Any, cache: "SolutionCache", values: tuple[Any, ...], ax: "Axes") -> None:
+    draw(ax, cache, *values)
+
+
+def _draw_joints(
+    ax: "Axes", cache: "SolutionCache", counts: tuple[int, ...], joints: dict[Variant, list[float | None]]
+) -> None:
+    colors = variant_colors(tuple(joints))
+    lines = [(one.title, colors[one], "-o", counts, [100 * (e or 0.0) for e in own]) for one, own in joints.items()]
+    plot_errors(ax, lines, "|frequency error|, %")

@@ -1,1 +1,0 @@
-"""Both ways of driving a travelling wave, side by side."""

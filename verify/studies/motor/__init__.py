@@ -1,1 +1,0 @@
-"""A slider that may leave the beam: held, free, from rest, on every field."""

@@ -1,1 +1,0 @@
-"""What a source leaves open about its slider, gone through."""

@@ -1,0 +1,272 @@
+"""The driven beam: standing-wave ratio and crest speed over N, envelope, surface ellipses, where to drive."""
+
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
+
+import msgspec
+from msgspec import Meta
+
+from verify.checks import Relative
+from verify.errors import InputError, WindowError
+from verify.models.naming import Among, model_meta
+from verify.studies.base import Progress, Study
+from verify.studies.charts import model_style, plot_errors, plot_lines, si
+from verify.studies.convergence import Counts
+
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as MatplotlibFigure
+
+    from verify.judge.cache import SolutionCache
+    from verify.models.fields import HarmonicField
+    from verify.report.result import Movie, Result
+    from verify.scene.model import Scene
+    from verify.waves.case import DrivenCase
+    from verify.waves.driven import Operation
+
+Row: TypeAlias = dict[str, Any]
+Fields: TypeAlias = "dict[str, HarmonicField]"
+FRAMES, POINTS = 36, 13
+SURFACE = "#cc3f76"
+ENVELOPES = (
+    "A pure travelling wave on one section without losses has a flat envelope; ripples are reflection. Near forces and "
+    "ends the near field decays."
+)
+SIZES = "Against the exact beam: solid at the drive's frequency, dotted at each model's frequency of least reflection."
+MOVIE = (
+    "One period of the drive. Links are straight between their joints. The motion of surface points along the beam is "
+    "magnified as in the ellipses."
+)
+
+
+class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The steady wave of the scene's drive, measured in the window [L/4, 3L/4]."""
+
+    name: ClassVar[str] = "wave"
+    title: ClassVar[str] = "The driven beam"
+
+    count: Annotated[int, Meta(ge=1, description="Segments and elements of envelopes and operating points.")] = 49
+    counts: Annotated[Counts, Meta(description="Segments and elements of the errors over N.")] = (49, 98, 196)
+    model: Annotated[str, model_meta("Model of the operating points.", "unit_responses")] = "segment"
+    reflection_limit: Annotated[
+        Relative, Meta(gt=0, lt=1, description="Largest reflection of the fastest operating point.")
+    ] = 0.1
+    operating_loss_factor: Annotated[
+        Relative, Meta(gt=0, lt=1, description="Loss factor of the operating points where the beam is undamped.")
+    ] = 1e-3
+
+    def check(self, scene: "Scene") -> None:
+        """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
+        from verify.models.catalogue import MODELS, discrete
+        from verify.waves.measures import middle_half
+        from verify.waves.window import check_window
+
+        if len(scene.forces) != 2 or scene.drive is None:
+            raise InputError("wave: the study needs a [drive] with two forces, add them")
+        for verb in ("solve_harmonic", "unit_responses"):
+            Among(verb).check(self.model, "wave.model")
+        MODELS["analytic"].check(scene.beam, 1, 0)
+        places, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
+        try:
+            check_window(scene.beam, places, frequency, middle_half(scene.beam))
+        except WindowError as error:
+            raise WindowError(
+                f"wave: its window [L/4, 3L/4] does not suit this beam ({error}): leave [wave] out, and use gates with "
+                "a window of their own"
+            ) from None
+        bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
+        for model in discrete("solve_harmonic", scene.beam) if bare.uniform else ():
+            for count in self.counts:
+                model.check_carried(bare, count, frequency)
+
+    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+        """Solve the fields of all models. Raises InputError."""
+        from msgspec.structs import replace
+
+        from verify.models.catalogue import MODELS, discrete
+        from verify.report.result import Column, Figure, Result, Table
+        from verify.waves.case import DrivenCase
+        from verify.waves.driven import driven, measured_alone
+        from verify.waves.operating_point import operating_points
+
+        drive = scene.drive
+        exact = DrivenCase(
+            beam=scene.beam,
+            model="analytic",
+            count=None,
+            forces=scene.forces,
+            frequency_hz=drive.frequency_hz,
+            kind=drive.kind,
+        )
+        models = [model.name for model in discrete("solve_harmonic", scene.beam)]
+        rows: list[Row] = []
+        for model, count in [("analytic", None), *((model, count) for model in models for count in self.counts)]:
+            name = f"{count} {MODELS[model].title}" if count else MODELS[model].title
+            progress(name)
+            row: Row = {"name": name, "model": model, "N": count}
+            rows.append(row | _waves(replace(exact, model=model, count=count), cache))
+        progress("operating points")
+        beam = replace(scene.beam, loss_factor=scene.beam.loss_factor or self.operating_loss_factor)
+        case = replace(exact, beam=beam, model=self.model, count=self.count if MODELS[self.model].sized else None)
+        points, problems = operating_points(case, self.reflection_limit)
+        fields = {"analytic": driven(exact, cache)}
+        fields |= {model: driven(replace(exact, model=model, count=self.count), cache) for model in models}
+        other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
+        ratio = measured_alone(driven(other, cache), None, "standing_wave_ratio")
+
+        columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
+        columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
+        columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
+        columns += [si("crest speed there", "m/s", "+.5g")]
+        notes = [
+            "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Right: at the "
+            "model's own frequency of least reflection.",
+            f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
+        ]
+        cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
+        at = [Column("operating point"), Column("frequency", "Hz", ".2f"), Column("phase", "°", ".2f")]
+        at += [Column("reflection", format=".4f"), si("crest speed", "m/s", "+.5g")]
+        at += [Column("reflection per Hz", "1/Hz", ".2g"), Column("reflection per degree", "1/°", ".2g")]
+        keys = ("frequency_hz", "phase_deg", "reflection", "crest_speed", "per_hertz", "per_degree")
+        names = ["least reflection" if p.what.startswith("least") else "largest crest speed" for p in points]
+        where = [(name, *(getattr(p, key) for key in keys)) for name, p in zip(names, points, strict=True)]
+        size = self.count if self.count in self.counts else max(self.counts)
+        ratios = [f"{r['name']} {r['drive'].standing_wave_ratio:.5g}" for r in rows if r["N"] in (None, size)]
+        x, up, magnified, widest = ellipses(fields["analytic"])
+        paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
+        start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
+        caption = (
+            f"To scale up to {widest:.3g} times as wide as high; motion along the beam magnified {magnified:.2g} times."
+        )
+        return Result(
+            summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
+            tables=[
+                Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
+                Table(f"Where to drive, {MODELS[self.model].title}, loss factor {beam.loss_factor:g}", at, where),
+            ],
+            figures=[
+                Figure(
+                    "wave-envelopes",
+                    f"Envelope of the wave, N = {self.count}",
+                    ENVELOPES,
+                    lambda ax: _draw_envelopes(ax, fields),
+                ),
+                Figure(
+                    "wave-ellipses",
+                    "Surface ellipses along the beam, exact field",
+                    caption,
+                    lambda ax: plot_lines(ax, [*paths, start], ("x", "m"), ("deflection", "m")),
+                ),
+                Figure(
+                    "wave-sizes", "Error of the standing-wave ratio over N", SIZES, lambda ax: _draw_sizes(ax, rows)
+                ),
+            ],
+            movies=[_movie(fields, self.count)],
+            warnings=[
+                *(f"{row['name']}: {row['note']}." for row in rows if row["note"]),
+                *(f"{name}: {point.note}." for name, point in zip(names, points, strict=True) if point.note),
+                *map(str, problems),
+            ],
+            data={"rows": rows, "points": points, "other_drive_standing_wave_ratio": ratio},
+        )
+
+
+def _waves(case: "DrivenCase", cache: "SolutionCache") -> Row:
+    """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
+    from msgspec.structs import replace
+
+    from verify.waves.driven import SEARCH_SPAN, driven, operation, quietest_drive
+    from verify.waves.operating_point import edge_note
+
+    row = {"drive": operation(driven(case, cache)), "best": None, "note": ""}
+    try:
+        found = quietest_drive(case, SEARCH_SPAN, None, cache)
+    except InputError as error:
+        return row | {"note": str(error)}
+    if found.at_edge:
+        return row | {"note": edge_note("the reflection falls off", found.x)}
+    return row | {"best": operation(driven(replace(case, frequency_hz=found.x), cache))}
+
+
+def _cells(one: "Operation | None") -> tuple[float | None, ...]:
+    return (one.frequency_hz, one.standing_wave_ratio, one.axis_ratio, one.crest_speed) if one else (None,) * 4
+
+
+def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
+    """Motion of surface points of the middle half over one period.
+
+    (x with the motion along the beam magnified so that neighbours do not touch, (POINTS, FRAMES + 1), height likewise,
+    metres, that magnification, largest true ratio of width to height).
+    """
+    import numpy as np
+
+    from verify.waves.measures import lifted
+
+    turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
+    places = np.linspace(0.25, 0.75, POINTS) * field.beam.length
+    along = (lifted(field.beam, field.turn(places))[:, None] * turn).real
+    up = (field.deflection(places)[:, None] * turn).real
+    magnified = float(0.42 * (places[1] - places[0]) / abs(along).max())
+    ratio = np.ptp(along, axis=1) / np.maximum(np.ptp(up, axis=1), 1e-300)
+    return places[:, None] + magnified * along, up, magnified, float(ratio.max())
+
+
+def _draw_envelopes(ax: "Axes", fields: Fields) -> None:
+    import numpy as np
+
+    from verify.models.catalogue import MODELS
+
+    x = np.linspace(0.0, fields["analytic"].beam.length, 601)
+    lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
+    plot_lines(ax, lines, ("x", "m"), ("amplitude", "m"))
+
+
+def _draw_sizes(ax: "Axes", rows: list[Row]) -> None:
+    from verify.models.catalogue import MODELS
+
+    lines = []
+    for model in dict.fromkeys(row["model"] for row in rows[1:]):
+        own = [row for row in rows if row["model"] == model]
+        for key, style, text in (("drive", "-o", "at the drive"), ("best", ":o", "at its best frequency")):
+            pairs = [(row["N"], row[key], rows[0][key]) for row in own]
+            errors = [a.standing_wave_ratio - b.standing_wave_ratio if a and b else None for _, a, b in pairs]
+            label, color = f"{MODELS[model].title}, {text}", model_style(model)["color"]
+            lines.append((label, color, style, [n for n, _, _ in pairs], errors))
+    plot_errors(ax, lines, "|difference of the standing-wave ratio|")
+
+
+def _movie(fields: Fields, count: int) -> "Movie":
+    from verify.report.result import Movie
+
+    def animate(figure: "MatplotlibFigure") -> "FuncAnimation":
+        import numpy as np
+        from matplotlib.animation import FuncAnimation
+
+        from verify.models.catalogue import MODELS
+        from verify.units import unit_of, unit_over
+
+        exact, ax = fields["analytic"], figure.subplots()
+        x_surface, height, *_ = ellipses(exact)
+        places = {m: np.linspace(0.0, exact.beam.length, (count if MODELS[m].sized else 160) + 1) for m in fields}
+        waves = {model: field.deflection(places[model]) for model, field in fields.items()}
+        along, up = unit_of(exact.beam.length), unit_over(float(abs(wave).max()) for wave in waves.values())
+        top = 1.15 * up.factor * max(float(abs(wave).max()) for wave in waves.values())
+        lines = {}
+        for model, x in places.items():
+            style = {"analytic": "-", "segment": "-o"}.get(model, "x")
+            (lines[model],) = ax.plot(along.factor * x, 0.0 * x, style, markersize=3.0, **model_style(model))
+            lines[model].set_label(MODELS[model].title)
+        (points,) = ax.plot([], [], "o", color=SURFACE, label="surface points")
+        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}", ylim=(-top, top))
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+
+        def update(frame: int) -> list[Any]:
+            turn = np.exp(2j * np.pi * frame / FRAMES)
+            for model, line in lines.items():
+                line.set_ydata(up.factor * (waves[model] * turn).real)
+            points.set_data(along.factor * x_surface[:, frame], up.factor * height[:, frame])
+            return [*lines.values(), points]
+
+        return FuncAnimation(figure, update, frames=FRAMES, interval=60)
+
+    return Movie("wave-moving", f"The wave over one period, N = {count}", MOVIE, animate)

@@ -1,1 +1,0 @@
-"""The driven beam: figures over sizes, envelopes, ellipses, maps."""
