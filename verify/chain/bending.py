@@ -1,7 +1,7 @@
 """Large bending of a cantilever of rigid links under a dead load and a moment at its tip.
 
-Beyond its buckling load a chain has several equilibria, and Newton's method finds any of them: there the load grows from
-zero along the path of stable equilibria.
+Beyond its buckling load a chain has several equilibria, and Newton's method finds any of them: there the load grows
+from zero along the path of stable equilibria.
 """
 
 from dataclasses import replace

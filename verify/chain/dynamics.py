@@ -6,7 +6,7 @@ Haug, J. Mech. Design 104 (1982) 247): as many angles as there are held points d
 Forward dynamics is compiled (`chain.recursion_kernels`), motion in time is in `chain.stepping`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -125,17 +125,15 @@ def keep_pivots(rows: Array, pivots: Indices) -> Indices:
     return pivots if now >= PIVOT_LOSS ** len(rows) * best else chosen
 
 
-def project(system: ChainSystem, state: ChainState, dependent: Sequence[int] | None = None) -> tuple[ChainState, float]:
+def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
     """The state brought onto the held points, and the largest change of an angle or (times 1 s) of a rate.
 
-    Angles by Newton, rates by one linear solve; only the `dependent` joints (1..N, by pivot unless given) move.
-    Raises InputError where Newton finds no position.
+    Angles by Newton, rates by one linear solve; only the dependent angles move, chosen by pivot. Raises InputError
+    where Newton finds no position.
     """
     q, v = _arrays(system, state)
     rows = kinematics.held_rows(system, kinematics.place(system, state.time, q, v).joints[:, 0])
-    pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
-    if len(pivots) != len(rows) or any(not 0 <= p < system.n_links for p in pivots):
-        raise InputError(f"dependent = {dependent!r}: give {len(rows)} joints between 1 and {system.n_links}")
+    pivots = choose_pivots(rows)
     if not _settle(system, state.time, q, v, pivots) or not np.isfinite(q).all():
         raise InputError(
             f"state.angles cannot be brought onto the held points by turning joint {int(pivots[0]) + 1}: "

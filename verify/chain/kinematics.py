@@ -90,23 +90,15 @@ def held_rows(system: ChainSystem, x: Array) -> Array:
 
 def strayed(system: ChainSystem, time: float, placed: Placed) -> tuple[Array, Array]:
     """How far the held points stand off where they are held, and how fast they leave, (n_held,), metres and m/s."""
-    wanted, speeds = _wanted(system, time)
-    y, rising = (np.array([_at(system, column[:, 1], *one) for one in held_points(system)]) for column in placed[2:])
-    return y - wanted, rising - speeds
-
-
-def _at(system: ChainSystem, values: Array, link: int, at: float) -> float:
-    """What joints have, at a place on a link."""
-    share = at / system.lengths[link - 1]
-    return float(values[link - 1] + share * (values[link] - values[link - 1]))
-
-
-def _wanted(system: ChainSystem, time: float) -> tuple[Array, Array]:
-    """Height and speed asked of every held point, the roller's first."""
-    asked = [(0.0, 0.0)] if system.tip == "roller" else []
+    wanted = [(0.0, 0.0)] if system.tip == "roller" else []
     for one in system.actuators:
         omega = circular(one.frequency_hz)
         phase = omega * time + np.deg2rad(one.phase_deg)
-        asked.append((one.amplitude * np.cos(phase), -one.amplitude * omega * np.sin(phase)))
-    heights, speeds = np.array(asked, dtype=float).reshape(len(asked), 2).T
-    return heights, speeds
+        wanted.append((one.amplitude * np.cos(phase), -one.amplitude * omega * np.sin(phase)))
+    now = []
+    for link, at in held_points(system):
+        share = at / system.lengths[link - 1]
+        y, rising = (values[link - 1 : link + 1, 1] for values in (placed.joints, placed.velocities))
+        now.append((y[0] + share * (y[1] - y[0]), rising[0] + share * (rising[1] - rising[0])))
+    off = np.array(now, dtype=float).reshape(len(now), 2) - np.array(wanted, dtype=float).reshape(len(now), 2)
+    return off[:, 0], off[:, 1]

@@ -16,7 +16,6 @@ from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rot
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
-from verify.section import Piece
 from verify.segments.links import link_inertia
 
 Progress = Callable[[float], None]
@@ -129,12 +128,12 @@ def large_amplitude_frequency(
     a beam that is not uniform, not between hinges, or damped.
     """
     if not abs(amplitude) >= LINEAR:
-        raise InputError(
-            f"amplitude = {amplitude!r} radii of gyration: the chain's steps do not resolve it; give at least "
-            f"{LINEAR:g}, where the frequency is the linear one but for 3/32 of its square"
-        )
+        raise InputError(f"amplitude = {amplitude!r} radii of gyration is not resolved, give at least {LINEAR:g}")
     _check_hinged(beam, n_segments)
-    height = amplitude * _radius(beam)
+    piece = beam.pieces[0]
+    if not beam.uniform or piece.second_moment is None or piece.area is None:
+        raise InputError("beam: this benchmark takes a uniform beam with a shape, sizes and youngs_modulus")
+    height = amplitude * sqrt(piece.second_moment / piece.area)
     system = build_system(beam, n_segments, immovable=True)
     _check_height(height, system)
     linear = float(linearise(system, at_rest(system)).frequencies()[0])
@@ -149,34 +148,14 @@ def large_amplitude_frequency(
 
 
 def _check_hinged(beam: Beam, n_segments: int) -> None:
-    """Raise InputError for a beam or a number of segments that has no motion between hinges to follow."""
     if beam.supports != ("pinned", "pinned"):
-        raise InputError(
-            f"beam.supports = {list(beam.supports)!r}: this figure is of a beam between two hinges, give pinned ends"
-        )
+        raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark is of a beam with pinned ends")
     check_whole("segments", n_segments, 2)
-
-
-def _radius(beam: Beam) -> float:
-    """Sqrt(I / A) of a uniform beam, metres. Raises InputError where sections differ: no sine is their first mode."""
-    first, *others = (_figures(p) for p in beam.pieces)
-    if any(other != first for other in others):
-        raise InputError(
-            "beam.section: the first mode of unlike sections is no sine, as the amplitude asks for; give a uniform beam"
-        )
-    return sqrt(first[1] / first[3])
-
-
-def _figures(piece: Piece) -> tuple[float, float, float, float]:
-    """EI, I, rho A, A. Raises InputError where they are not known."""
-    if piece.second_moment is None or piece.area is None:
-        raise InputError("beam.shape: this figure takes a section's sizes, give its shape, sizes and youngs_modulus")
-    return piece.bending_stiffness, piece.second_moment, piece.mass_per_length, piece.area
 
 
 def _check_height(height: float, system: ChainSystem) -> None:
     if not 0.0 < height <= 0.1 * system.length:
-        raise InputError(f"amplitude: the middle would stand {height:.3g} m off; give a positive one up to L / 10")
+        raise InputError(f"amplitude: mid-span would stand {height:.3g} m off; give a positive one up to L / 10")
 
 
 def energy_drift(

@@ -134,7 +134,7 @@ def coupling_on_chain(
     if slider.coupling == "auto" and found.two_way:
         raise InputError(
             "slider.coupling = 'auto': a nonlinear chain carries a slider one way, and this one moves the surface by "
-            f"{found.relative_size or np.inf:.2g} of its motion; give 'one-way', a lighter slider or normal = 'massless'"
+            f"{found.relative_size or np.inf:.2g} of its motion; give 'one-way' or a lighter slider"
         )
     return found
 

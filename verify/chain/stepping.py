@@ -71,9 +71,7 @@ def simulate(
     method: Method = "adaptive",
     step: float | None = None,
     tolerance: float = 1e-8,
-    dependent: Sequence[int] | None = None,
     ledger: bool = True,
-    limit: float | None = None,
     progress: Callable[[float], None] = lambda part: None,
 ) -> ChainMotion:
     """The motion from `start`, kept at `times` (ascending, from start.time on).
@@ -81,17 +79,16 @@ def simulate(
     "rk4" takes a fixed `step` and is refused above its stability limit (`step_limit`); "adaptive" is Dormand and
     Prince's pair of orders 5 and 4, its error per step held to `tolerance` of the largest motion so far. Both are of
     order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
-    `limit` is the stability limit where it is known already, which spares finding it.
-    `dependent` (1..N) chooses the angles that the closure determines. An interrupt returns what is kept. `progress` is
+    An interrupt returns what is kept. `progress` is
     called with the fraction of time done. Raises InputError.
     """
     began = perf_counter()
     _check_method(method, step, tolerance)
     samples = checked_times(start, times)
-    begin, moved = project(system, start, dependent)
+    begin, moved = project(system, start)
     if method == "rk4" and step is not None:
-        refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
-    run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
+        refuse_unstable(step, step_limit(system, begin))
+    run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, ledger)
     ready = perf_counter()
     stopped = run.march(progress)
     return run.motion(method, (ready - began, perf_counter() - ready), stopped, how_started(moved, start))
@@ -136,7 +133,6 @@ class _Run:
         table: Tableau,
         step: float | None,
         tolerance: float,
-        dependent: Sequence[int] | None,
         ledger: bool,
     ) -> None:
         self.system = system
@@ -157,9 +153,9 @@ class _Run:
             samples=samples,
             kept=np.zeros((len(samples), size)),
             counts=np.zeros(5, dtype=np.int64),
-            clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]),
+            clock=np.array([start.time, first, PIVOT_LOSS]),
             scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0, 0.0]),
-            pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
+            pivots=choose_pivots(rows),
         )
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
@@ -176,7 +172,7 @@ class _Run:
                 if status != records.RUNNING:
                     return self.ended(status)
                 progress((float(self.m.clock[0]) - begun) / (end - begun))
-                if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
+                if self.flat.held.shape[0] > 1:
                     self.keep_pivots()
         except KeyboardInterrupt:
             return f"interrupted at t = {self.m.clock[0]:.6g} s"

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.jit import inline, jit
-from verify.models.arrays import Array, Indices
+from verify.models.arrays import Array
 from verify.motion import records as rec
 from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power, pulled
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
@@ -38,13 +38,6 @@ def _see(
 
 
 @inline
-def _remember(local: Array) -> None:
-    """Keep the deflection at the start of a step."""
-    for d in range(local.shape[1]):
-        local[rec.BEFORE, d] = local[rec.STILL, d]
-
-
-@inline
 def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: Law, space: Space) -> None:
     """Inertia and drift along the surface at the end of a step with what the contact has added, half at mid-step."""
     seen = space.seen
@@ -76,15 +69,6 @@ def _answer(
         set_local(surface.table, here.piece, space.factors, space.local)
         _correct_pull(dt, x, v, here.piece, surface.edges, law, space)
     return works
-
-
-@inline
-def _put_on(piece: int, edges: Array, motion: Array, law: Law, space: Space) -> None:
-    """Height and climb of a slider that was seen at the start of a step, and what presses it on."""
-    seen = space.seen
-    seen[2, rec.SURFACE] = seen[0, rec.SURFACE]
-    motion[rec.HEIGHT], motion[rec.NORMAL] = seen[0, rec.LEVEL], law.load
-    motion[rec.CLIMB] = climb(space.local, edges, piece, motion[rec.X], motion[rec.V] + seen[0, rec.DRIFT], law.half)
 
 
 @inline(forceinline=True)
@@ -125,11 +109,14 @@ def _step(
             grip = 0.0 if stuck else friction(v - seen[0, rec.SURFACE], law.static, law)
             rate, along = _starts(v, grip, dt, two_way, seen), v + seen[0, rec.DRIFT]
         if two_way is not None and row == 0:
-            _remember(space.local)
+            for d in range(space.local.shape[1]):
+                space.local[rec.BEFORE, d] = space.local[rec.STILL, d]
         if two_way is not None and row == 1:
             here = set_levers(surface, piece, space.local, x1, law.half)
-    if looking:
-        _put_on(piece, surface.edges, motion, law, space)
+    if looking:  # height, climb and load of a slider that is put on
+        seen[2, rec.SURFACE] = seen[0, rec.SURFACE]
+        motion[rec.HEIGHT], motion[rec.NORMAL] = seen[0, rec.LEVEL], law.load
+        motion[rec.CLIMB] = climb(space.local, surface.edges, piece, x, v + seen[0, rec.DRIFT], law.half)
         return
     give(dt, seen, space.slip)
     if two_way is not None:
@@ -172,21 +159,17 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
         if not np.isfinite(motion[rec.V] + space.factors[rec.STILL, 0]):
             return rec.NOT_FINITE
         if took[rec.N_EVENTS] > 0.0:
-            _note_events(surface.drive.origin + number * dt, motion[rec.X], took, kept.events, tally)
+            began = surface.drive.origin + number * dt
+            for i in range(int(took[rec.N_EVENTS])):  # all are counted, as many recorded as there is room for
+                row, at = tally[rec.EVENTS], rec.FIRST_EVENT + 2 * i
+                if row < len(kept.events):
+                    kept.events[row, 0], kept.events[row, 1] = began + took[at], took[at + 1]
+                    kept.events[row, 2] = motion[rec.X]
+                tally[rec.EVENTS] += 1
         if tally[rec.STEP] % kept.every == 0:
             _keep(dt, motion, rider.law, kept, space)
             tally[rec.SAMPLES] += 1
     return rec.DONE
-
-
-@inline
-def _note_events(time: float, x: float, took: Array, events: Array, tally: Indices) -> None:
-    """Write down all events of a step, as long as there is room; all of them are counted."""
-    for i in range(int(took[rec.N_EVENTS])):
-        row, here = tally[rec.EVENTS], rec.FIRST_EVENT + 2 * i
-        if row < len(events):
-            events[row, 0], events[row, 1], events[row, 2] = time + took[here], took[here + 1], x
-        tally[rec.EVENTS] += 1
 
 
 @inline

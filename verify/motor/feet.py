@@ -253,20 +253,16 @@ def sag_of(request: Request, placed: Sequence[Placed]) -> float | None:
 
     None where they would push away, or turn away, a beam that nothing holds.
     """
-    if request.beam.rigid_motions and any(_moves(one) for one in placed):
+    beam, n = request.beam, min(request.modes, SAGGING)
+    if beam.rigid_motions and any(_moves(one) for one in placed):
         return None
-    basis = _slow_modes(request)
+    if request.model == "analytic" and set(beam.added) - {"section", "mass"}:  # no exact modes of these
+        basis = basis_of(beam, "fem", 2 * SAGGING, n, "spline")
+    else:
+        basis = basis_of(beam, request.model, request.count, n, "spline")
     places = np.concatenate([one.start + feet_of((one,)).points[:, records.OFFSET] for one in placed])
     still = weighed(basis, placed)
     return float(np.abs(still @ basis.shapes(places, 0)).max())
-
-
-def _slow_modes(request: Request) -> TimeBasis:
-    """Of the model; of elements for an exact beam of more than sections and bodies, whose modes are not had."""
-    beam, n = request.beam, min(request.modes, SAGGING)
-    if request.model == "analytic" and set(beam.added) - {"section", "mass"}:
-        return basis_of(beam, "fem", 2 * SAGGING, n, "spline")
-    return basis_of(beam, request.model, request.count, n, "spline")
 
 
 def _moves(one: Placed) -> bool:

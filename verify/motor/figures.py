@@ -6,7 +6,7 @@ One that bounces without a pattern is read over ever longer windows, with how fa
 which moves along the beam and lets the speed swing within a period, is the check on them.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -14,7 +14,6 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase, blocks
 from verify.motor.result import MotorRun, uninterrupted
@@ -237,16 +236,6 @@ def _unsettled(case: MotorCase, found: AtSpeed) -> tuple[Reading, ...]:
     return tuple(one for one, is_wide in wide.items() if is_wide)
 
 
-def stall(case: MotorCase) -> AtSpeed:
-    """The motor held still: its force is the stall force."""
-    return at_speed(case, 0.0)
-
-
-def force_speed(case: MotorCase, speeds: Sequence[float]) -> tuple[AtSpeed, ...]:
-    """The motor at each speed, m/s."""
-    return tuple(at_speed(case, float(speed)) for speed in speeds)
-
-
 def no_load(
     case: MotorCase, reach: float | None = None, before: MotorRun | None = None, periods: int = PERIODS
 ) -> AtSpeed:
@@ -384,8 +373,3 @@ def comes_to_speed(run: MotorRun, last: int, crests: float) -> bool:
         return alike
     off = abs(float(run.normal_force[-last:].mean()) - slider.normal_force)
     return alike and off <= CARRIED * slider.normal_force
-
-
-def phase_portrait(run: MotorRun) -> tuple[Array, Array]:
-    """(height, its rate) of the first foot at the samples, metres and m/s, the rate by differences."""
-    return run.height[:, 0], np.gradient(run.height[:, 0], run.times)

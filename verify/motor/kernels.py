@@ -39,18 +39,13 @@ def _look(number: int, surface: Surface, given: GivenSurface, half: float, line:
             if reckoned:
                 draw(surface.table, piece, line)
             else:
-                _copy(given.local[number], piece, line)
+                for d in range(given.local.shape[3]):
+                    line.local[piece, STILL, d] = given.local[number, piece, STILL, d]
+                    line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]
             line.stamp[piece] = number
         see(i, x, edges[piece], edges[piece + 1] - edges[piece], gone(i, feet), half, line, feet)
         if not reckoned:
             feet.touch[i, rec.SURFACE] += between(given.along[number], edges, piece, x)
-
-
-@inline
-def _copy(local: Array, piece: int, line: Line) -> None:
-    """The polynomials of a piece as they are given."""
-    for d in range(local.shape[2]):
-        line.local[piece, STILL, d], line.local[piece, MOVING, d] = local[piece, STILL, d], local[piece, MOVING, d]
 
 
 @inline
@@ -76,15 +71,6 @@ def _close(i: int, across: float, feet: Feet) -> None:
 
 
 @inline
-def _give_way(edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
-    """The beam gives way under the forces so far, which dashpots feel."""
-    for i in range(feet.points.shape[0]):
-        if feet.touch[i, rec.DEPTH] > 0.0:
-            length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
-            _close(i, moved(i, length, half, feet, beam)[1], feet)
-
-
-@inline
 def _rub_back(
     dt: float,
     damped: bool,
@@ -99,7 +85,10 @@ def _rub_back(
     for _ in range(GIVES_WAY if damped else 0):
         clear(feet, beam)
         bear(dt, surface.edges, half, feet, beam)
-        _give_way(surface.edges, half, feet, beam)
+        for i in range(feet.points.shape[0]):  # dashpots act on the closing speed with the beam's response
+            if feet.touch[i, rec.DEPTH] > 0.0:
+                length = surface.edges[feet.piece[i] + 1] - surface.edges[feet.piece[i]]
+                _close(i, moved(i, length, half, feet, beam)[1], feet)
         press(dt, feet, before)
     hold(dt, feet, before)
     clear(feet, beam)

@@ -74,6 +74,8 @@ def _ride(
 
     `edges` are metres from where the slider starts.
     """
+    from verify.motor import kernels
+
     stage = setup.stages[0]
     riding = Riding.fresh(setup.placed, setup.request, False)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
@@ -82,40 +84,23 @@ def _ride(
     riding.first = np.zeros(0)
     offsets = riding.feet.points[:, records.OFFSET]
     riding.feet.piece[:] = np.clip(np.searchsorted(edges[1:-1], offsets), 0, len(edges) - 2)
-    drawn = _drawn(given, riding)
-    stopped = _run(given, edges, stage, riding, progress)
-    stopped = _gone(edges, stage, riding) if stopped == LEFT_BEAM else stopped
-    state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
-    began, ready = begun
-    run = outcome(0, setup, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
-    return replace(run, motor_margins=replace(run.motor_margins, drawn=drawn))
-
-
-def _drawn(given: GivenSurface, riding: Riding) -> float:
-    """Speed along x of the links under all points, m/s, rms over time and over the links' ends."""
     first, last = int(riding.feet.piece.min()), int(riding.feet.piece.max())
-    return float(np.sqrt(np.mean(given.along[:, first : last + 2] ** 2)))
-
-
-def _run(given: GivenSurface, edges: Array, stage: Stage, riding: Riding, progress: Callable[[float], None]) -> str:
-    """All steps on a surface that is given; why it ended."""
-    from verify.motor import kernels
-
-    pieces, _, terms = given.local.shape[1:]
-    line, surface = fresh_line(pieces, terms, 0), _without_modes(edges)
+    drawn = float(np.sqrt(np.mean(given.along[:, first : last + 2] ** 2)))
+    drive = Drive(omega=0.0, origin=0.0, unit=1.0, growth=np.zeros(0))
+    surface = Surface(np.zeros((READ + 1, 0)), drive, np.zeros((0, 0, 0)), edges)  # no modes, the surface is given
+    line = fresh_line(given.local.shape[1], given.local.shape[3], 0)
 
     def advance(steps: int) -> int:
         return kernels.ride(
             steps, stage.dt, surface, given, riding.feet, riding.rubbing, None, line, riding.before, riding.log
         )
 
-    return in_chunks(stage.n_steps, riding, advance, lambda n: progress(n / stage.n_steps))
-
-
-def _without_modes(edges: Array) -> Surface:
-    """Pieces that neither modes nor a drive move."""
-    drive = Drive(omega=0.0, origin=0.0, unit=1.0, growth=np.zeros(0))
-    return Surface(np.zeros((READ + 1, 0)), drive, np.zeros((0, 0, 0)), edges)
+    stopped = in_chunks(stage.n_steps, riding, advance, lambda n: progress(n / stage.n_steps))
+    stopped = _gone(edges, stage, riding) if stopped == LEFT_BEAM else stopped
+    state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
+    began, ready = begun
+    run = outcome(0, setup, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
+    return replace(run, motor_margins=replace(run.motor_margins, drawn=drawn))
 
 
 def _gone(edges: Array, stage: Stage, riding: Riding) -> str:

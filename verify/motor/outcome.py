@@ -10,7 +10,6 @@ from verify.models.underfoot import standing_at
 from verify.motion.result import Statistics
 from verify.motion.slider_run import reached
 from verify.motor import records
-from verify.motor.feet import Placed
 from verify.motor.result import MotorLedger, MotorMargins, MotorRun, MotorState
 from verify.motor.stepping import Riding
 from verify.slider import Slider
@@ -37,7 +36,10 @@ def outcome(b: int, setup: "Setup", riding: Riding, ended: Ended) -> MotorRun:
     request, one, n = setup.request, setup.placed[b], int(riding.log.tally[records.SAMPLES])
     stages = (stage.origin + stage.sample_times for stage in setup.stages)
     times = np.concatenate([[setup.stages[0].origin], *stages])[: n + 1]
-    events, notes = _events(riding, b)
+    log, feet, put, (events, notes) = riding.log, riding.feet, riding.put_down, _events(riding, b)
+    own, own_feet = feet.owner == b, feet.keeper == b
+    beam = standing_at(request.beam, one.start)
+    k = travelling_wavenumber(beam, request.frequency_hz)
     assert riding.first is not None
     return MotorRun(
         model=request.model,
@@ -46,18 +48,45 @@ def outcome(b: int, setup: "Setup", riding: Riding, ended: Ended) -> MotorRun:
         start=one.start,
         times=times,
         points=request.points,
-        deflection=np.concatenate([riding.first[None], riding.log.deflections[:n]]),
+        deflection=np.concatenate([riding.first[None], log.deflections[:n]]),
         **_along(b, n, one.slider, riding),
-        **_across(b, n, riding),
-        point_offsets=riding.feet.points[riding.feet.owner == b, records.OFFSET] - (one.start - setup.placed[0].start),
+        height=np.concatenate([put[None, own_feet, records.HEIGHT], log.heights[:n, own_feet, 0]]),
+        pitch=np.concatenate([put[None, own_feet, records.PITCH], log.heights[:n, own_feet, 1]]),
+        pressures=np.concatenate([riding.pressed[None, own], log.pressures[:n, own]]),
+        point_offsets=feet.points[own, records.OFFSET] - (one.start - setup.placed[0].start),
         events=events,
         notes=(*setup.notes, *notes),
         coupling=setup.coupling,
         beam_margins=setup.margins,
-        motor_margins=motor_margins(setup, one),
+        motor_margins=MotorMargins(
+            epsilon=layer_epsilon(one.slider, k, 2.0 * beam.surface_distance),
+            step=setup.contact_rate * setup.stages[-1].dt,
+            sag=setup.sag,
+            sag_taken=setup.coupling.two_way,
+            chain=setup.margins.nonlinearity,
+        ),
         ledger=ledger(riding, b),
-        state=_state(b, reached(setup.stages, riding.steps), setup, riding, ended),
-        statistics=_statistics(setup, riding, ended),
+        state=MotorState(
+            beam=request.beam,
+            model=request.model,
+            count=request.count,
+            time=reached(setup.stages, riding.steps),
+            q=ended.q,
+            rates=ended.rates,
+            steady=request.start == "steady",
+            travelled=float(feet.body[b, records.X]),
+            speed=float(feet.body[b, records.V]),
+            feet=feet.state[own_feet].copy(),
+            touch=feet.touch[own].copy(),
+        ),
+        statistics=Statistics(
+            steps=riding.steps,
+            evaluations=riding.steps,
+            step_s=setup.stages[-1].dt,
+            set_up_s=ended.set_up_s,
+            wall_s=ended.wall_s,
+            stopped=ended.stopped,
+        ),
     )
 
 
@@ -78,45 +107,6 @@ def _along(b: int, n: int, slider: Slider, riding: Riding) -> dict[str, Array]:
     return {name: np.concatenate([[first], kept[column]]) for name, (first, column) in columns.items()}
 
 
-def _across(b: int, n: int, riding: Riding) -> dict[str, Array]:
-    """What the feet of slider b did across the beam, (n + 1, feet), and its points, (n + 1, points)."""
-    log, put, feet, points = riding.log, riding.put_down, riding.feet.keeper == b, riding.feet.owner == b
-    return {
-        "height": np.concatenate([put[None, feet, records.HEIGHT], log.heights[:n, feet, 0]]),
-        "pitch": np.concatenate([put[None, feet, records.PITCH], log.heights[:n, feet, 1]]),
-        "pressures": np.concatenate([riding.pressed[None, points], log.pressures[:n, points]]),
-    }
-
-
-def _state(b: int, time: float, setup: "Setup", riding: Riding, ended: Ended) -> MotorState:
-    """From where slider b can go on."""
-    feet = riding.feet
-    return MotorState(
-        beam=setup.request.beam,
-        model=setup.request.model,
-        count=setup.request.count,
-        time=time,
-        q=ended.q,
-        rates=ended.rates,
-        steady=setup.request.start == "steady",
-        travelled=float(feet.body[b, records.X]),
-        speed=float(feet.body[b, records.V]),
-        feet=feet.state[feet.keeper == b].copy(),
-        touch=feet.touch[feet.owner == b].copy(),
-    )
-
-
-def _statistics(setup: "Setup", riding: Riding, ended: Ended) -> Statistics:
-    return Statistics(
-        steps=riding.steps,
-        evaluations=riding.steps,
-        step_s=setup.stages[-1].dt,
-        set_up_s=ended.set_up_s,
-        wall_s=ended.wall_s,
-        stopped=ended.stopped,
-    )
-
-
 def _events(riding: Riding, b: int) -> tuple[Array, tuple[str, ...]]:
     """(events of slider b's points, numbered from its first; notes on lost events and lost contact)."""
     log, feet = riding.log, riding.feet
@@ -130,19 +120,6 @@ def _events(riding: Riding, b: int) -> tuple[Array, tuple[str, ...]]:
         left = found[found[:, records.EVENT_KIND] == records.LEAVES, records.EVENT_TIME]
         notes.append(f"contact: lost at the end, since {left[-1]:.6g} s" if len(left) else "contact: none")
     return found, tuple(notes)
-
-
-def motor_margins(setup: "Setup", one: Placed) -> MotorMargins:
-    """What the contact's assumptions leave out."""
-    beam = standing_at(setup.request.beam, one.start)
-    k, thickness = travelling_wavenumber(beam, setup.request.frequency_hz), 2.0 * beam.surface_distance
-    return MotorMargins(
-        epsilon=layer_epsilon(one.slider, k, thickness),
-        step=setup.contact_rate * setup.stages[-1].dt,
-        sag=setup.sag,
-        sag_taken=setup.coupling.two_way,
-        chain=setup.margins.nonlinearity,
-    )
 
 
 def layer_epsilon(slider: Slider, wavenumber: float | None, thickness: float) -> float | None:

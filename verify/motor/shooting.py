@@ -57,12 +57,18 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
             samples=2,
         )
     )
-    free, once = _free(case), blocks(case, speed, 1, 2)
+    given, once = feet_of((Placed(case.slider, 0.0),)).given, blocks(case, speed, 1, 2)
+    moves = np.repeat(given[:, [records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA]] > 0.0, 2, axis=1)
+    free = np.flatnonzero(moves.ravel())  # heights and their rates, pitches of feet that turn
 
     def period(state: MotorState | None) -> MotorRun:
         return uninterrupted(once(state))
 
-    state, size, best = run.state, _size(run)[free], None
+    omega = 2.0 * np.pi / max(run.duration, 1e-300)
+    height = float(np.ptp(run.height)) + float(np.abs(run.state.feet[:, 0]).max()) + 1e-12
+    arm = float(np.abs(run.point_offsets).max()) or 1.0
+    scale = np.array([height, height * omega, height / arm, height * omega / arm])
+    state, size, best = run.state, np.tile(scale, len(given))[free], None
     for rounds in range(1, MOST + 1):
         run = period(state)
         missed = (run.state.feet - state.feet).ravel()[free] / size
@@ -80,22 +86,6 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
         f"no periodic motion was found in {MOST} rounds: it does not repeat after one period; take means over many "
         "periods instead"
     )
-
-
-def _size(run: MotorRun) -> Array:
-    """Of each coordinate, to which differences are taken: amplitude of the height, per foot and its rates."""
-    omega = 2.0 * np.pi / max(run.duration, 1e-300)
-    height = float(np.ptp(run.height)) + float(np.abs(run.state.feet[:, 0]).max()) + 1e-12
-    arm = float(np.abs(run.point_offsets).max()) or 1.0
-    row = np.array([height, height * omega, height / arm, height * omega / arm])
-    return np.tile(row, len(run.state.feet))
-
-
-def _free(case: MotorCase) -> Indices:
-    """Which of the feet's coordinates can move: heights and their rates, pitches of feet that turn."""
-    given = feet_of((Placed(case.slider, 0.0),)).given
-    moves = np.repeat(given[:, [records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA]] > 0.0, 2, axis=1)
-    return np.flatnonzero(moves.ravel())
 
 
 def _moved(feet: Array, free: Indices, by: Array) -> Array:

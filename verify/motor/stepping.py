@@ -98,9 +98,8 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         feet, p, touch = self.feet, self.feet.points, self.feet.touch
         found = np.zeros((len(self.placed), 2))
         found[:, 0] = 0.5 * np.array([one.slider.mass for one in self.placed]) * feet.body[:, records.V] ** 2
-        masses, inertias = (
-            _turned(feet.given[:, one]) for one in (records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA)
-        )
+        inverse = feet.given[:, [records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA]]  # 0 where nothing moves
+        masses, inertias = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0).T
         across = 0.5 * (masses * feet.state[:, records.CLIMB] ** 2 + inertias * feet.state[:, records.TURN] ** 2)
         np.add.at(found[:, 0], feet.keeper, across)
         climb = feet.state[feet.foot, records.CLIMB] + p[:, records.ARM] * feet.state[feet.foot, records.TURN]
@@ -114,11 +113,6 @@ AROUND = 8
 """Pieces on each side of the points that a beam is asked for at once."""
 
 
-def _turned(eases: Array) -> Array:
-    """One over each; 0, in place of what has no end, where nothing moves."""
-    return np.divide(1.0, eases, out=np.zeros_like(eases), where=eases > 0.0)
-
-
 def run_stages(
     stages: Sequence[Stage], tables: Sequence[Array], z: Array, riding: Riding, tell: Callable[[int], None]
 ) -> tuple[str, Array, Array]:
@@ -126,7 +120,7 @@ def run_stages(
     stopped, state = END, (np.empty(0), np.empty(0))
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.start(*state)
-        surface = _surface(stage, tables[i], z, riding.start)
+        surface = Surface(modal_rows(stage, z), drive_of(stage), tables[i], stage.edges - riding.start)
         if i == 0:
             riding.first = stage.deflection(z, np.zeros(1), riding.points)[0]
             riding.look(stage.dt)
@@ -157,11 +151,6 @@ def _after(riding: Riding, step: float) -> Array:
     feet = riding.feet
     on = feet.body[:, records.X] + step * feet.body[:, records.V] * feet.riders[:, records.FREE]
     return np.asarray(on[feet.owner] + feet.points[:, records.OFFSET])
-
-
-def _surface(stage: Stage, table: Array, z: Array, start: float) -> Surface:
-    """The whole beam as the kernels read it."""
-    return Surface(modal_rows(stage, z), drive_of(stage), table, stage.edges - start)
 
 
 def beam_answer(surface: Surface) -> BeamAnswer:
