@@ -18,10 +18,7 @@ if TYPE_CHECKING:
     from verify.chain.ride import ChainRide
     from verify.judge.cache import SolutionCache
 
-Method = Annotated[
-    Literal["adaptive", "rk4", "modal", "linear"],
-    Meta(description="modal: exact linear flow and kicks; linear: that flow alone; default: rk4 with a step"),
-]
+Method = Annotated[Literal["adaptive", "rk4"], Meta(description="default: rk4 with a step")]
 Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
 Tolerance = Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step")]
 Seconds = Annotated[float, Meta(gt=0, description="s, from rest")]
