@@ -5,6 +5,7 @@ inertia of relative size (kL)² <theta²>, which grows with the square of the fo
 (EA/l) have part of it. All runs start from rest and are undamped; all forces have one amplitude.
 """
 
+from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
@@ -92,7 +93,17 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
         from verify.motion.validity import NONLINEAR, axial_inertia_size
         from verify.report.result import Column, Figure, Result, Table
 
-        driven = chains.driven_chain(scene, "axial_inertia", self.count, self.duration, self.x)
+        assert scene.drive is not None
+        hertz = scene.drive.frequency_hz
+        n = max(chains.SAMPLES, ceil(chains.SAMPLES_PER_PERIOD * hertz * self.duration) + 1)
+        driven = chains.Driven(
+            beam=scene.beam,
+            forces=scene.forces,
+            frequency_hz=hertz,
+            count=self.count,
+            x=0.5 * scene.beam.length if self.x is None else self.x,
+            times=np.linspace(0.0, self.duration, n),
+        )
         unit = chains.linear_chain(driven)
         rows: list[dict[str, Any]] = []
         for force in self.forces:

@@ -1,13 +1,15 @@
 """What the tables and charts of several studies share: columns, lines in suitable units, errors over N."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from verify.judge.variants import Variant
-    from verify.report.result import Column
+    from verify.report.result import Column, Movie
 
 THIN, BROAD = 1.4, 4.0
 """Widths of lines of discrete models, and of the exact beam below them."""
@@ -78,3 +80,16 @@ def plot_errors(ax: "Axes", lines: Iterable[tuple[str, str, str, Sequence[int], 
     ax.xaxis.set_minor_locator(NullLocator())
     ax.set(xlabel="number of segments or elements N", ylabel=ylabel)
     ax.legend()
+
+
+def movie(key: str, title: str, caption: str, set_up: "Callable[[Axes], Any]") -> "Movie":
+    """A movie. `set_up` draws on axes and returns (function of a frame that returns its artists, frames)."""
+    from verify.report.result import Movie
+
+    def animate(figure: "Figure") -> "FuncAnimation":
+        from matplotlib.animation import FuncAnimation
+
+        update, frames = set_up(figure.subplots())
+        return FuncAnimation(figure, update, frames=frames, interval=60)
+
+    return Movie(key, title, caption, animate)

@@ -12,20 +12,19 @@ from verify.checks import Relative, check_number
 from verify.errors import InputError
 from verify.options import Links, Start
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, percent, plot_lines, si
+from verify.studies.charts import model_style, movie, percent, plot_lines, si
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from matplotlib.animation import FuncAnimation
-    from matplotlib.figure import Figure as MatplotlibFigure
+    from matplotlib.axes import Axes
 
     from verify.judge.cache import SolutionCache
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed, Timed
     from verify.motor.result import MotorRun
     from verify.motor.shooting import Periodic
-    from verify.report.result import Figure, Movie, Result, Table
+    from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
 CHAIN = "chain"
@@ -185,7 +184,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             summary=f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})." if valid else "",
             tables=[*_tables(fields), *([_rest_table(rest)] if rest else [])],
             figures=_figures(fields, rest),
-            movies=[_movie(first)],
+            movies=[movie("motor-moving", f"Contact, {first.name}", CAPTIONS["motor-moving"], _movie(first))],
             warnings=warnings,
             data={
                 "curves": {field.name: field.curve for field in fields},
@@ -493,16 +492,13 @@ def _figures(fields: list[Field], rest: list[dict[str, Any]]) -> "list[Figure]":
     ]
 
 
-def _movie(field: Field) -> "Movie":
-    from verify.report.result import Movie
-
-    def animate(figure: "MatplotlibFigure") -> "FuncAnimation":
+def _movie(field: Field) -> "Callable[[Axes], Any]":
+    def set_up(ax: "Axes") -> Any:
         import numpy as np
-        from matplotlib.animation import FuncAnimation
 
         from verify.units import unit_of, unit_over
 
-        run, ax = field.period, figure.subplots()
+        run = field.period
         slider, start = run.slider, run.start or 0.0
         assert slider is not None
         along, up = unit_of(float(run.points[-1])), unit_over(run.deflection.ravel().tolist())
@@ -532,6 +528,6 @@ def _movie(field: Field) -> "Movie":
                 bars.set_segments(np.stack([np.c_[x, up.factor * low], np.c_[x, up.factor * high]], axis=1))
             return [surface, *(one for *_, body, bars in feet for one in (body, bars))]
 
-        return FuncAnimation(figure, update, frames=range(1, len(run.times)), interval=60)
+        return update, range(1, len(run.times))
 
-    return Movie("motor-moving", f"Contact over one period, {field.name}", CAPTIONS["motor-moving"], animate)
+    return set_up

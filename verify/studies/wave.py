@@ -9,17 +9,17 @@ from verify.checks import Relative
 from verify.errors import InputError, WindowError
 from verify.models.naming import Among, model_meta
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, plot_errors, plot_lines, si
+from verify.studies.charts import model_style, movie, plot_errors, plot_lines, si
 from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
+    from collections.abc import Callable
+
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as MatplotlibFigure
 
     from verify.judge.cache import SolutionCache
     from verify.models.fields import HarmonicField
-    from verify.report.result import Movie, Result
+    from verify.report.result import Result
     from verify.scene.model import Scene
     from verify.waves.case import DrivenCase
     from verify.waves.driven import Operation
@@ -90,6 +90,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.waves.operating_point import operating_points
 
         drive = scene.drive
+        assert drive is not None
         exact = DrivenCase(
             beam=scene.beam,
             model="analytic",
@@ -161,7 +162,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     "wave-sizes", "Error of the standing-wave ratio over N", SIZES, lambda ax: _draw_sizes(ax, rows)
                 ),
             ],
-            movies=[_movie(fields, self.count)],
+            movies=[movie("wave-moving", f"One period, N = {self.count}", MOVIE, _movie(fields, self.count))],
             warnings=[
                 *(f"{row['name']}: {row['note']}." for row in rows if row["note"]),
                 *(f"{name}: {point.note}." for name, point in zip(names, points, strict=True) if point.note),
@@ -235,17 +236,14 @@ def _draw_sizes(ax: "Axes", rows: list[Row]) -> None:
     plot_errors(ax, lines, "|difference of the standing-wave ratio|")
 
 
-def _movie(fields: Fields, count: int) -> "Movie":
-    from verify.report.result import Movie
-
-    def animate(figure: "MatplotlibFigure") -> "FuncAnimation":
+def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
+    def set_up(ax: "Axes") -> Any:
         import numpy as np
-        from matplotlib.animation import FuncAnimation
 
         from verify.models.catalogue import MODELS
         from verify.units import unit_of, unit_over
 
-        exact, ax = fields["analytic"], figure.subplots()
+        exact = fields["analytic"]
         x_surface, height, *_ = ellipses(exact)
         places = {m: np.linspace(0.0, exact.beam.length, (count if MODELS[m].sized else 160) + 1) for m in fields}
         waves = {model: field.deflection(places[model]) for model, field in fields.items()}
@@ -267,6 +265,6 @@ def _movie(fields: Fields, count: int) -> "Movie":
             points.set_data(along.factor * x_surface[:, frame], up.factor * height[:, frame])
             return [*lines.values(), points]
 
-        return FuncAnimation(figure, update, frames=FRAMES, interval=60)
+        return update, FRAMES
 
-    return Movie("wave-moving", f"The wave over one period, N = {count}", MOVIE, animate)
+    return set_up
