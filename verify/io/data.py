@@ -139,14 +139,13 @@ def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | N
 
 def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
     from verify.motion.simulate import simulate
-    from verify.quantities.options import DriveOptions
     from verify.quantities.slider import TimeOptions, motion_arguments
 
     if scene.motion is None:
         raise InputError("what = 'motion': the scene has no [motion], add it or --set motion.duration=1e-3")
     if scene.devices:
         raise InputError("what = 'motion': motion in time does not model drive.device, leave drive.device out")
-    arguments = motion_arguments(scene, DriveOptions(), TimeOptions(model=request.model, count=count))
+    arguments = motion_arguments(scene, TimeOptions(model=request.model, count=count))
     if scene.slider is not None:
         arguments |= {"slider": scene.slider, "steps_per_period": scene.motion.steps_per_period}
     run = simulate(**arguments, at=x.tolist(), samples=request.samples or INSTANTS)

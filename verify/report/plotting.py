@@ -162,7 +162,7 @@ def _points(ax: Any) -> Iterator[Sequence[Any]]:
             yield from ((series(one), float(x), float(y), "") for x, y in one.get_offsets())
 
 
-def movie_frames(movie: "Movie", dpi: float = 100.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:
+def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:
     """The movie's pictures (pillow, RGBA) and the milliseconds that each is shown."""
     from matplotlib.animation import AbstractMovieWriter
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -185,7 +185,7 @@ def movie_frames(movie: "Movie", dpi: float = 100.0, ink: str = EVEN, paper: str
 
     with style(ink):
         canvas: Any = FigureCanvasAgg(
-            MatplotlibFigure(figsize=(5.4, 3.2), dpi=dpi, layout="constrained", facecolor=paper)
+            MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper)
         )
         animation: Any = movie.animate(canvas.figure)
         interval = float(animation.event_source.interval)
