@@ -156,3 +156,10 @@ def test_problem_needs_a_beam_that_the_engines_take():
     pytest.importorskip("mujoco")
     with pytest.raises(InputError, match="beam\\.supports"):
         list(questions(["engines"], Problem(beam=replace(BEAM, supports=("clamped", "free")), mode=2)))
+
+
+def test_undriven_beam_has_modes_alone():
+    bare = Problem(forces=(), mode=2, sizes=(20,))
+    assert len(list(questions(["modes"], bare))) == 1
+    with pytest.raises(InputError, match=r"field: the scene has no \[drive\]"):
+        list(questions(["field"], bare))

@@ -44,13 +44,11 @@ class Problem:
 
 
 def problem_of(scene: Any) -> Problem:
-    """The beam, drive and slider of a scene, those of the paper where it has none."""
-    own = Problem(beam=scene.beam)
+    """The beam, drive and slider of a scene, the paper's slider where it has none; no forces without a drive."""
     if scene.drive is None:
-        return own
+        return Problem(beam=scene.beam, forces=())
     duration = scene.motion.duration if scene.motion else 4.0 / scene.drive.frequency_hz
-    slider = scene.slider or own.slider
-    return Problem(scene.beam, tuple(scene.forces), scene.drive.frequency_hz, slider, duration)
+    return Problem(scene.beam, tuple(scene.forces), scene.drive.frequency_hz, scene.slider or SLIDER, duration)
 
 
 def rms(values: Any, exact: Any) -> float:
@@ -323,4 +321,6 @@ def questions(names: Sequence[str], problem: Problem) -> Iterator[Question]:
         if name not in SETS:
             raise InputError(f"set = {name!r} is unknown: {near_name(name, tuple(SETS))}")
     for name in names or SETS:
+        if name != "modes" and not problem.forces:
+            raise InputError(f"{name}: the scene has no [drive] with forces, add it or bench its modes alone")
         yield from SETS[name](problem)
