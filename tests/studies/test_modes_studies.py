@@ -78,10 +78,6 @@ def test_no_bound_on_a_clamped_beam(run):
     result = run("steel-cantilever", Convergence(modes=(3,), counts=(12, 24)))
     assert any("No two-sided bound" in warning for warning in result.warnings)
     assert "bracket" not in {figure.id for figure in result.figures}
-    joints = result.tables[-1]
-    assert "Joint models" in joints.title
-    half = [row["segments, wall half"] for row in joints.records()]
-    assert 3.0 < half[0] / half[1] < 5.0
 
 
 def test_orders_outside_the_asymptotic_range_void_the_summary(run):
@@ -98,7 +94,7 @@ def test_variants_stand_side_by_side(run, renders):
     axes = renders(result)
     guides = [line for line in axes["errors-over-size"].lines if line.get_gid() == "guide"]
     assert len(guides) == 2
-    assert {"work-precision", "joint-models"} <= set(axes)
+    assert "work-precision" in axes
 
 
 def test_convergence_charts_of_the_paper(run, renders):
