@@ -3,7 +3,6 @@
 import pytest
 
 from verify.analytic_modes import frequency_hz
-from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.scene.load import load_scene
 from verify.studies.convergence import Convergence
@@ -102,8 +101,3 @@ def test_convergence_charts_of_the_paper(run, renders):
     assert axes["bracket"].get_ylabel() == "against the exact frequency, %"
     labels = [text.get_text() for text in axes["errors-over-size"].get_legend().get_texts()]
     assert {"segments", "Hermite elements", "mean of both", "mode 2", "mode 5"} == set(labels)
-
-
-def test_a_setting_of_no_model_is_refused(run):
-    with pytest.raises(InputError, match="grading"):
-        run("paper", Convergence(modes=(1,), counts=(3, 5), grading=-1.0))

@@ -71,17 +71,18 @@ def test_slider_renders(run, slider, renders):
     assert {line.get_label() for line in axes["slider-velocity"].lines} == {"surface under the slider", "slider"}
 
 
-@pytest.mark.parametrize(
-    ("change", "word"),
-    [
-        ({"duration": 0.0}, "motion.duration"),
-        ({"start": "steady", "soft_start_periods": 1.0}, "soft_start_periods"),
-        ({"modal_damping": 1.5}, "modal_damping"),
-    ],
-)
-def test_wrong_motion_options_are_refused(change, word):
-    with pytest.raises(InputError, match=word):
-        Motion(**change)
+def test_wrong_options_are_refused():
+    for study, change, word in (
+        (Motion, {"duration": 0.0}, "motion.duration"),
+        (Motion, {"start": "steady", "soft_start_periods": 1.0}, "soft_start_periods"),
+        (Motion, {"modal_damping": 1.5}, "modal_damping"),
+        (Motor, {"models": ("chain",)}, "linear model"),
+        (Motor, {"models": ("segmen",)}, "'segment'"),
+        (Motor, {"places": 1}, "motor.places"),
+        (AxialInertia, {"forces": (1.0, -1.0)}, "forces"),
+    ):
+        with pytest.raises(InputError, match=word):
+            study(**change)
 
 
 def test_departures_equal_the_quantity(run):
@@ -123,11 +124,6 @@ def test_chain_renders(run, renders):
 def test_scenes_without_what_a_study_needs_are_refused(study, scene, word):
     with pytest.raises(InputError, match=word):
         study.check(load_scene(scene))
-
-
-def test_motor_alone_on_a_chain_is_refused():
-    with pytest.raises(InputError, match="linear model"):
-        Motor(models=("chain",))
 
 
 def test_motor_figures_equal_the_quantities(run):

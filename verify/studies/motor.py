@@ -133,9 +133,13 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"motor.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
                 "start, leave it out"
             )
-        for name, unit in (("chain", "seconds"), ("chain_force", "newton"), ("places", "positions")):
+        for name, unit, least in (
+            ("chain", "seconds", 0.0),
+            ("chain_force", "newton", 0.0),
+            ("places", "positions", 1),
+        ):
             if getattr(self, name) is not None:
-                check_number(f"motor.{name}", getattr(self, name), unit, above=name == "places")
+                check_number(f"motor.{name}", getattr(self, name), unit, above=least)
 
     @property
     def linear(self) -> tuple[str, ...]:
@@ -187,7 +191,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             data={
                 "curves": {field.name: field.curve for field in fields},
                 "margins": {field.name: field.free.motor_margins for field in fields},
-                "from_rest": [{key: row[key] for key in row if key not in ("times", "path")} for row in rest],
+                "from_rest": [{key: row[key] for key in row if key not in ("times", "path", "style")} for row in rest],
             },
         )
 
@@ -213,6 +217,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.motor import figures as motor
+        from verify.motor.result import uninterrupted
 
         name = _name(case.model, case.count)
         progress(f"force over speed, {name}")
@@ -229,9 +234,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
         run = motor.started(begun, target, self.periods).run
         if len(run.times) < 3:
-            raise InputError(
-                f"motor.start: the slider {run.statistics.stopped} within two periods, give smaller forces"
-            )
+            raise InputError(f"motor.start: the slider {run.statistics.stopped} at once, give smaller forces")
         last = max(int(LAST * (len(run.times) - 1)) // 2 * 2, 2)
         speed, spread = motor.mean_speed(run, last)
         goes_on = run.statistics.finished and self.start == "steady"
@@ -240,14 +243,9 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         ends = [x + foot.offset + 0.75 * side * foot.length for foot in case.slider.feet for side in (-1.0, 1.0)]
         half = max(0.5 * (max(ends) - min(ends)), 0.0125 * case.beam.length)
         places = np.clip(0.5 * (max(ends) + min(ends)) + np.linspace(-half, half, PLACES), 0.0, case.beam.length)
-        period = case.run(
-            case.period,
-            held_speed=target,
-            frozen=True,
-            at=places.tolist(),
-            samples=FRAMES + 1,
-            continue_from=motor.held(case, target, periods=HELD_PERIODS)[1],
-        )
+        begin = motor.held(case, target, periods=HELD_PERIODS)[1]
+        settings = {"held_speed": target, "frozen": True, "at": places.tolist(), "samples": FRAMES + 1}
+        period = uninterrupted(case.run(case.period, continue_from=begin, **settings))
         return Field(
             case=case,
             name=name,
