@@ -78,7 +78,7 @@ REFUSED = [
     ("measure nowhere mode.frequency model=fem mode=1 count=4", "neither a packaged scene nor a file"),
     ("measure bare.toml mode.frequenzy model=fem mode=1 count=4", "did you mean 'mode.frequency'"),
     ("measure bare.toml mode.frequency model=fem mode=1", "count is missing"),
-    ("measure bare.toml mode.frequency model=fem mode=1 count=4 n=2", "n is no argument"),
+    ("measure bare.toml mode.frequency model=fem mode=1 count=4 n=2", "n is not a known key"),
     ("measure bare.toml mode.frequency model=fem mode=0 count=4", "mode = 0"),
     ("measure bare.toml mode.frequency model=fem mode=40 count=4", "mode = 40"),
     ("measure bare.toml mode.deflection model=fem mode=1 count=4 x=0.5", "off the beam"),
