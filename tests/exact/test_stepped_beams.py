@@ -7,6 +7,7 @@ from exact_reference import PAIRED
 from msgspec.structs import replace
 from scipy.linalg import eigh
 from stepped_reference import PATCHED, written_out
+from verify.scenes.scene import load_scene
 
 from verify import analytic_modes
 from verify.beam import Beam
@@ -14,7 +15,6 @@ from verify.elements import linear as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.models.division import divide, part_counts
-from verify.scenes.scene import load_scene
 from verify.section import Section
 from verify.segments import linear as segment_model
 from verify.segments import links as chain

@@ -1,7 +1,5 @@
 """Segments and Hermite elements against their own exact solutions, in exact or extended arithmetic."""
 
-import subprocess
-import sys
 from math import pi, sin, sqrt
 
 import mpmath

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
-from scipy.sparse import csc_array, diags_array
+from scipy.sparse import csc_array
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
