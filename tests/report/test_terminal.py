@@ -64,3 +64,17 @@ def test_run_data_is_complete(full_run):
     assert set(data["results"]) == {"spectrum", "made"}
     assert "gate" not in data["inputs"]
     assert data["environment"]["numpy"]
+
+
+def test_void_results_lead_the_verdict(small_run):
+    import msgspec
+
+    from verify.report.page import run_page
+    from verify.report.result import Result
+
+    void = Result("", warnings=["Lift-off: the surface falls away from the slider.", "more"])
+    run = msgspec.structs.replace(small_run, results={"motion": void})
+    assert verdict(run).startswith("No valid result: The slider. All 2 gates passed")
+    page = run_page(run)
+    assert page.index('class="verdict void"') < page.index("Lift-off") < page.index("<nav")
+    assert "No valid result" in printed(run, 80)
