@@ -141,10 +141,13 @@ class Quantity:
     def bind(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Keyword arguments of the function: checked, with defaults, option groups built. Raises InputError."""
         data = {name: _native(value, name) for name, value in arguments.items()}
+        required = {field.name for field in msgspec.structs.fields(self.schema) if field.required}
         for name, kind in self._types.items():
             among = _among(kind)
             if among is not None and isinstance(data.get(name), str):
                 among.check(data[name], name)
+            elif among is not None and name in required - set(data) and set(data) <= set(self._types):
+                raise InputError(f"{name} is missing: give one of {', '.join(among.names())}")
             if name in data and isinstance(data[name], int | float) and entry_of(kind) is not None:
                 data[name] = [data[name]]
         checked = convert(data, self.schema)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.scene.model import Complex, Gate, Scene, limits_as_text
+from verify.scene.model import Complex, Gate, Scene
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
@@ -38,7 +38,7 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
         """The band as text: '0.00428 ± 5e-09', 'at most 0.01', 'contains 4469.94'."""
         gate = self.gate
         if gate.expect is None:
-            return limits_as_text(gate.at_least, gate.at_most)
+            return gate.limits
         complex_ = isinstance(gate.expect, Complex)
         value = f"{gate.expect.re!r} {gate.expect.im:+}i" if complex_ else repr(gate.expect)  # type: ignore[union-attr]
         return f"contains {value}" if gate.within is None else f"{value} ± {gate.within:g}"

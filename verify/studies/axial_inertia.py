@@ -139,15 +139,15 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
         scale = chains.rms(lines["exact"])
         beside = [(NAMES[m], chains.rms(w - lines["exact"]) / scale or None, float(w[-1])) for m, w in lines.items()]
 
-        columns = [Column("force", "N", "g"), si("rms deflection", "m"), Column("(kL)² ⟨θ²⟩", format=".1e")]
-        columns += [Column("linear")]
-        for name in CHAINS.values():
-            columns += [Column(f"{name}, end", format=".2e"), Column(f"{name}, rms", format=".2e")]
-        columns += [Column("rigid links, least along the beam", format=".1e"), Column("largest", format=".1e")]
-        cells = []
-        for row in rows:
-            departures = [value for chain in CHAINS for value in (row[chain].at_end, row[chain].rms)]
-            cells.append((row["force"], row["deflection_rms"], row["size"], row["linear"], *departures, *row["along"]))
+        columns = [Column("force", "N", "g"), Column("(kL)² ⟨θ²⟩", format=".1e"), Column("linear"), Column("chain")]
+        columns += [Column("departure at the end", format=".2e"), Column("departure, rms", format=".2e")]
+        columns += [Column("least along the beam", format=".1e"), Column("largest along the beam", format=".1e")]
+        cells = [
+            (row["force"], row["size"], row["linear"], name, row[chain].at_end, row[chain].rms)
+            + (row["along"] if chain == "full" else (None, None))
+            for row in rows
+            for chain, name in CHAINS.items()
+        ]
         compared = [Column("model"), percent("rms difference from the exact beam"), si("final deflection", "m", "+.5g")]
         where = f"x = {driven.x:g} m, N = {self.count}, {1e3 * self.duration:g} ms"
         worst = max(rows, key=lambda row: row["force"])

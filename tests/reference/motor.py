@@ -1,4 +1,4 @@
-"""What a motor does by other means: exact parabolas, event-driven DOP853, springs in a row. Nothing of the suite.
+"""A motor's contact by other means: exact parabolas, event-driven DOP853, springs in a row. Nothing of verify.
 
 A mid-line moves as w(x, t); a body above it has the place x and the speed v along it, the height z across. Below it is
 the material X = x + (h/2) w'(x), whose surface is at w(X) and runs along with u = (w_t w' - (h/2) w_t') / sqrt(1 + w'^2)
