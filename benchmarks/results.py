@@ -17,7 +17,7 @@ MARKER = "<!-- results: written by python -m benchmarks.results -->\n"
 COMMANDS = {
     "paper": ["bench", "--json", "--seconds", "10"],
     "steel-cantilever": ["bench", "modes", "--scene", "steel-cantilever", "--mode", "8", "--json"],
-    "stress": ["stress", "--slow", "--json"],
+    "stress": ["stress", "--slow", "--jobs", "2", "--json"],
 }
 
 
