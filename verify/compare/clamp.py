@@ -59,5 +59,5 @@ def fit_clamp(
         return np.asarray(logs - np.log(hertz[modes])) if len(hertz) > modes.max() else np.full(len(logs), np.inf)
 
     around = np.log(start) + np.array([-0.5, 0.5])
-    found = minimize_scalar(lambda k: float(np.sum(left(k) ** 2)), bounds=around, options={"xatol": 1e-9})
+    found = minimize_scalar(lambda k: float(np.sum(left(k) ** 2)), bounds=around, options={"xatol": 1e-7})
     return float(np.exp(found.x)), left(found.x)

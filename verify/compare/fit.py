@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.compare.candidates import EXACT, Candidate, frequencies_hz
+from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.clamp import clamp_effect, clamped_ends, fit_clamp
 from verify.errors import InputError
 from verify.judge.variants import falls_within
@@ -20,21 +20,21 @@ TOLERANCE = 1e-3
 """Largest relative difference of a frequency from the candidate that a list is said to be of."""
 AMBIGUOUS = 2.0
 """Factor of rms within which candidates or faults are alternatives."""
-EFFECT = 0.05
+EFFECT = 0.02
 """A fitted fault leaves at most so much of what it changes."""
-SIZES = (2, 1000)
-"""N, where the user does not say it."""
-UNEVEN = 400
-"""The largest N, where errors do not fall smoothly."""
+SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
+"""N: where the user does not say it up to the second; interpolated up to the third."""
 FEWEST = 3
 """Entries below which a fitted fault is no evidence."""
-REFINED = 5
+REFINED = 3
 """Candidates solved around their best interpolated N."""
+FLAT = 0.95
+"""Of rms: sizes are refined as long as a neighbour leaves less than this."""
 UNITS = {"rad/s": 2 * pi, "mHz": 1e3, "1/min": 60.0, "divided by 2 pi": 0.5 / pi, "kHz": 1e-3, "1/60 Hz": 1 / 60}
 COST = {"none": 0.0, "unit": 5.0, "count": 5.0, "missing": 6.0, "extra": 6.0, "factor": 9.0, "clamp": 9.0}
 """Of faults, in natural logarithms of likelihood."""
-FITTED = ("count", "missing", "extra", "factor", "clamp")
-"""Faults with a fitted parameter."""
+FITTED = {"count": 1, "missing": 1, "extra": 2, "factor": 1, "clamp": 1}
+"""Fitted parameters of faults; an extra entry is one less to fit as well."""
 
 
 class Fault(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -101,7 +101,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def fitted(self, fit: Fit) -> int:
         """Number of fitted parameters."""
-        return (fit.fault.kind in FITTED) + (fit.candidate.sized and self.count is None)
+        return FITTED.get(fit.fault.kind, 0) + (fit.candidate.sized and self.count is None)
 
     def score(self, fit: Fit) -> float:
         """Minus log likelihood with noise of unknown size, and the cost of the fault."""
@@ -110,7 +110,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def accepts(self, fit: Fit) -> bool:
         """Whether a fit is evidence: small differences, entries beyond what was fitted, a fault that explains."""
         sharp = self.floor <= 1e-8 and fit.rms <= FLOOR
-        enough = len(fit.differences) - self.fitted(fit) >= 2 or sharp
+        enough = len(fit.differences) - self.fitted(fit) >= (1 if sharp else 2)
         explains = fit.fault.kind not in ("factor", "clamp") or fit.rms <= EFFECT * fit.effect
         return fit.largest <= TOLERANCE and enough and explains
 
@@ -198,14 +198,16 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
         return sorted(fits, key=lambda one: (max(one.rms, FLOOR), order[one.candidate]))
 
     scanned = rank([fit for one in data.members for fault in faults if (fit := _scanned(data, one, fault)) is not None])
-    exact = [one for one in scanned[REFINED:] if not one.candidate.sized][:1]
-    refined = [fit for one in [*scanned[:REFINED], *exact] if (fit := _refined(data, one)) is not None]
+    near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
+    if faults and faults[0].ends:  # scanned with the effect on the exact beam
+        near += [one for one in scanned if one not in near and one.candidate.theory == EULER]
+    refined = [fit for one in near if (fit := _refined(data, one)) is not None]
     if every:
         solved = {one.candidate for one in refined}
         refined += [fit for one in scanned if one.candidate not in solved and (fit := _solved(data, one)) is not None]
     ranked = rank(refined)
-    first = [one for one in ranked if _same(one, ranked[0])]  # of equal frequencies the first of the members
-    return [*sorted(first, key=lambda one: order[one.candidate]), *ranked[len(first) :]]
+    first = [one for one in ranked if _same(one, ranked[0])]  # of equal frequencies the one with least fitted
+    return [*sorted(first, key=lambda one: (data.fitted(one), order[one.candidate])), *ranked[len(first) :]]
 
 
 def _same(one: Fit, other: Fit) -> bool:
@@ -218,8 +220,10 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault) -> Fit | None:
     counts = (data.count,)
     if fault.kind == "count" and data.count is not None:
         near = {2 * data.count, data.count // 2, *range(data.count - 2, data.count + 3)} - {data.count}
-        counts = tuple(sorted(size for size in near if size >= SIZES[0]))
+        counts = tuple(sorted(size for size in near if size >= SMALLEST))
     sizes, table = spectrum(data.beam, candidate, data.n_modes, counts if candidate.sized else (None,))
+    if data.count is None:
+        sizes, table = sizes[sizes <= SEARCHED], table[sizes <= SEARCHED]
     raw = data.logs[fault.entries] - table[:, fault.modes]
     if fault.kind == "count" and not candidate.sized:
         return None
@@ -231,9 +235,12 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault) -> Fit | None:
             stiffnesses, effect = clamp_effect(data.beam, fault.ends, data.n_modes)
         except InputError:
             return None
-        left = raw[:, None, :] - effect[:, fault.modes]
-        at = np.argmin(np.sum(left**2, axis=2), axis=1)
-        parameters, removed = stiffnesses[at], effect[at][:, fault.modes]
+        effect = effect[:, fault.modes]
+        at = np.clip(np.argmin(np.sum((raw[:, None, :] - effect) ** 2, axis=2), axis=1), 1, len(effect) - 2)
+        slope = 0.5 * (effect[at + 1] - effect[at - 1])
+        step = np.clip(np.sum(slope * (raw - effect[at]), axis=1) / np.sum(slope**2, axis=1), -1.0, 1.0)
+        parameters = stiffnesses[at] * (stiffnesses[1] / stiffnesses[0]) ** step
+        removed = effect[at] + step[:, None] * slope
     elif fault.factor is None:
         removed = np.repeat(np.median(raw, axis=1)[:, None], raw.shape[1], axis=1)
         parameters = np.exp(removed[:, 0])
@@ -269,7 +276,7 @@ def _refined(data: Data, fit: Fit) -> Fit | None:
     if best is None or fit.count is None or data.count is not None:
         return best
     if falls_within(data.beam):
-        for size in range(SIZES[0], UNEVEN):
+        for size in range(SMALLEST, SEARCHED + 1):
             other = _solved(data, msgspec.structs.replace(fit, count=size))
             best = other if other is not None and other.rms < best.rms else best
             if best.rms <= data.floor:
@@ -278,7 +285,7 @@ def _refined(data: Data, fit: Fit) -> Fit | None:
     for step in (1, -1):
         while True:
             other = _solved(data, msgspec.structs.replace(best, count=best.count + step))
-            if other is None or other.rms >= best.rms:
+            if other is None or other.rms > FLAT * best.rms or best.count >= SEARCHED:
                 break
             best = other
     return best
@@ -304,7 +311,7 @@ def _solved(data: Data, fit: Fit) -> Fit | None:
 def spectrum(
     beam: Beam, candidate: Candidate, n_modes: int, counts: tuple[int | None, ...]
 ) -> tuple[Indices, Array]:
-    """(N (r,), log of the frequencies (r, n_modes), NaN for modes that it has not); (None,): of all SIZES.
+    """(N (r,), log of the frequencies (r, n_modes), NaN for modes that it has not); (None,): of all sizes.
 
     All sizes are interpolated in 1/N between some that are solved and the exact beam of the same theory; where a step
     or an attachment inside a part lets errors fall unevenly, those that are solved stand alone.
@@ -321,10 +328,10 @@ def spectrum(
     if not candidate.sized or counts != (None,):
         sizes = np.array([count or 0 for count in counts])
         return sizes, np.array([solve(count) for count in counts])
-    uneven, size = falls_within(beam), max(SIZES[0], n_modes // 2)
-    while size < (UNEVEN if uneven else 12 * n_modes):
+    uneven, size = falls_within(beam), max(SMALLEST, n_modes // 2)
+    while size < (SEARCHED if uneven else 8 * n_modes):
         table[size] = solve(size)
-        size = max(size + 1, round(size * (1.3 if size < 3 * n_modes else 1.5)))
+        size = max(size + 1, round((1.3 if size < 3 * n_modes else 1.5) * size))
     knots, solved = np.array(list(table)), np.array(list(table.values()))
     if uneven or np.isnan(solved).all():
         return knots, solved
@@ -332,7 +339,7 @@ def spectrum(
 
     exact = Candidate(model=EXACT, theory=candidate.theory)
     limit = np.log(frequencies_hz(exact, beam, None, n_modes))
-    sizes, logs = np.arange(*SIZES), np.full((SIZES[1] - SIZES[0], n_modes), np.nan)
+    sizes, logs = np.arange(SMALLEST, LARGEST + 1), np.full((LARGEST + 1 - SMALLEST, n_modes), np.nan)
     for mode in range(n_modes):
         known = np.isfinite(solved[:, mode])
         if known.sum() > 2:
