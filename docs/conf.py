@@ -1,8 +1,4 @@
-"""Sphinx builds these pages without a network: `sphinx-build -W -b html docs docs/_build`.
-
-Every gate of the catalogue is judged, so that its sheets say what was measured; `-D verify_judge=0` leaves that out and
-takes a quarter of the time.
-"""
+"""Sphinx builds these pages without a network: `sphinx-build -W -b html docs docs/_build`."""
 
 import sys
 from importlib.metadata import version as installed
@@ -15,8 +11,8 @@ author = "The verify developers"
 project_copyright = "the verify developers, MIT licence"
 release = version = installed("fem-segment-verify")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "made_pages", "plain_docstrings"]
-napoleon_custom_sections = [("Fields", "params_style")]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "made_pages"]
+default_role = "code"
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build", "_ext"]
 nitpicky = False
@@ -39,3 +35,4 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
 autodoc_class_signature = "separated"
+suppress_warnings = ["ref.python"]  # names of fields that several classes have
