@@ -14,7 +14,9 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 @scene_argument
 @click.argument("given", nargs=-1, metavar="FILE | FREQUENCIES...")
 @overrides_option
-@click.option("--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any.")
+@click.option(
+    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any."
+)
 @click.option("--modes", "shapes", metavar="FILE", help="Mode shapes: x in the first column, then one column a mode.")
 @click.option("--model", metavar="MODULE:FUNCTION", help="A Python model (beam, n_modes, count) -> frequencies in Hz.")
 @click.option("--unit", type=click.Choice(["Hz", "kHz", "rad/s"]), help="Of the list. Default: its header's, else Hz.")
@@ -62,8 +64,7 @@ def compare(
     options = Options(count=count, kind=kind, mode=mode, within=_ratio(within), theory=theory)
     numbers = [_number(word) for word in given]
     if model is not None:
-        frequencies, forms = solve_model(model, loaded.beam, count, mode)
-        result = compare_list(loaded, frequencies, forms, options)
+        result = compare_list(loaded, solve_model(model, loaded.beam, count, mode), None, options)
     elif all(number is not None for number in numbers):
         typed = listed("frequencies", [n for n in numbers if n is not None], given, unit=unit or "Hz")
         result = compare_list(loaded, typed, None, options)
