@@ -1,41 +1,82 @@
-"""Dated results of the benches of all packaged scenes, or of those named, one page for each in docs/bench.
+"""The tables of docs/bench.md and docs/stress.md from the JSON in docs/bench, measured again with --run.
 
-Run: python -m benchmarks.results [scene ...]
+python -m benchmarks.results [--run]
 """
 
-import os
+import json
 import sys
-from contextlib import suppress
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import Any
 
-from verify.bench.request import Bench
-from verify.bench.sets import settled
 from verify.cli import status_of
-from verify.errors import InputError
-from verify.scenes.scene import load_scene, packaged_scenes
 
-SECONDS = "40"
-"""Of estimated work for each scene."""
-
-
-def main(names: list[str]) -> int:
-    """The number of scenes whose bench failed."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    failed = 0
-    for name in names or _with_a_bench():
-        print(f"== {name}", flush=True)
-        failed += status_of(["bench", name, "--seconds", SECONDS, "--keep", "docs/bench"]) != 0
-    return failed
+DOCS = Path(__file__).parents[1] / "docs"
+MARKER = "<!-- results: written by python -m benchmarks.results -->\n"
+"""What stands below it in a page is replaced."""
+COMMANDS = {
+    "paper": ["bench", "--json", "--seconds", "10"],
+    "steel-cantilever": ["bench", "modes", "field", "--scene", "steel-cantilever", "--mode", "8", "--json"],
+    "stress": ["stress", "--slow", "--json"],
+}
 
 
-def _with_a_bench() -> list[str]:
-    """Packaged scenes that a bench takes: none whose drive has devices."""
-    found = []
-    for name in packaged_scenes():
-        with suppress(InputError):
-            settled(Bench(), load_scene(name))
-            found.append(name)
-    return found
+def run() -> None:
+    """Write the JSON files."""
+    for name, words in COMMANDS.items():
+        with (DOCS / "bench" / f"{name}.json").open("w", encoding="utf-8") as out, redirect_stdout(out):
+            status = status_of(words)
+        print(f"{name}: exit status {status}")
+
+
+def number(value: float | None, form: str = ".2g") -> str:
+    """A cell."""
+    return "" if value is None else format(value, form)
+
+
+def bench_tables() -> str:
+    """Ratios at equal errors, and the finest size of every method."""
+    lines: list[str] = []
+    for name in (one for one in COMMANDS if one != "stress"):
+        data = json.loads((DOCS / "bench" / f"{name}.json").read_text("utf-8"))
+        machine = ", ".join(data["machine"].values())
+        lines += ["", f"## {name}", "", f"`verify {' '.join(COMMANDS[name])}`: {machine}", ""]
+        lines += ["| set | method | order | finest size: error, time | ratio at 1e-2 | 1e-3 | 1e-4 | 1e-5 |"]
+        lines += ["|---|---|--:|---|--:|--:|--:|--:|"]
+        for question in data["questions"]:
+            for method, ratios in question["ratios"].items():
+                row = [one for one in question["rows"] if one["method"] == method][-1]
+                size = f"{row['size_name']} {row['size']:.3g}: " if row["size_name"] else ""
+                finest = f"{size}{row['error']:.1e}, {1e3 * row['seconds']:.3g} ms"
+                cells = (question["id"], method, number(row["order"], ".2f"), finest, *map(number, ratios))
+                lines.append(f"| {' | '.join(cells)} |")
+        known = (f"{one['id']}: {one['title']}; reference {one['reference']}" for one in data["questions"])
+        lines += ["", *(f"- {one}" for one in known)]
+    return "\n".join(lines) + "\n"
+
+
+def stress_table() -> str:
+    """One line for each check, both models of a check together."""
+    checks = json.loads((DOCS / "bench" / "stress.json").read_text("utf-8"))["checks"]
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for one in checks:
+        groups.setdefault(one["id"].removesuffix("-segments").removesuffix("-elements"), []).append(one)
+    lines = ["", "| check | error of | parameter | tolerance | worst | breaks at | standard method |"]
+    lines += ["|---|---|---|---|---|---|---|"]
+    for name, ones in groups.items():
+        worst = max(ones, key=lambda one: one["worst"] / one["tolerance"])
+        limits = [f"{one['breaks_at']:.2g} {one['breaks_by']}" for one in ones if one["breaks_at"] is not None]
+        method = next((one["baseline_name"] for one in ones), "")
+        error = max((one["baseline"] or float("inf") for one in ones), default=0.0)
+        cells = [name, worst["title"], f"{worst['parameter']}, {worst['from']:g} to {worst['to']:g}"]
+        cells += [number(worst["tolerance"], ".3g"), number(worst["worst"]), ", ".join(dict.fromkeys(limits))]
+        lines.append(f"| {' | '.join(cells)} | {f'{method}: {error:.0e}' if method else ''} |")
+    return "\n".join(lines).replace("inf |", "fails |") + "\n"
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    if sys.argv[1:] == ["--run"]:
+        run()
+    for page, text in (("bench", bench_tables()), ("stress", stress_table())):
+        path = DOCS / f"{page}.md"
+        path.write_text(path.read_text("utf-8").partition(MARKER)[0] + MARKER + text, "utf-8")

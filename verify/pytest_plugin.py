@@ -11,7 +11,6 @@ import pytest
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
-    from verify.scene.gates import GateResult
     from verify.scene.model import Gate, Scene
 
 
@@ -75,7 +74,10 @@ class GateItem(pytest.Item):
         from verify.scene.gates import run_gate
 
         result = run_gate(self.gate, self.scene, self.cache)
-        self.user_properties.extend(_properties(result))
+        fraction = "" if result.fraction is None else f"{result.fraction:.6g}"
+        values = {"measured": result.value, "expected": result.expected, "unit": result.unit, "fraction": fraction}
+        self.user_properties += [(name, str(value)) for name, value in values.items()]
+        self.user_properties.append(("seconds", f"{result.seconds:.6g}"))
         if not result.passed:
             raise GateFailedError(
                 f"gate {result.id}: {result.reason} (expected {result.expected} {result.unit}; {result.gate.why})"
@@ -88,9 +90,3 @@ class GateItem(pytest.Item):
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """Location and name of the item."""
         return self.path, None, f"gate {self.name}"
-
-
-def _properties(result: "GateResult") -> list[tuple[str, object]]:
-    fraction = "" if result.fraction is None else f"{result.fraction:.6g}"
-    values = {"measured": result.value, "expected": result.expected, "unit": result.unit, "fraction": fraction}
-    return [(name, str(value)) for name, value in values.items()] + [("seconds", f"{result.seconds:.6g}")]

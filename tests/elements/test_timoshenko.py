@@ -90,14 +90,14 @@ def sine(beam, mode, shear=True):
 def test_scikit_fem_assembles_the_polynomials_of_the_element_on_unequal_cells():
     """Every form against matrices written here, on the degrees of freedom as scikit-fem numbers them."""
     basis, weights = mesh.basis_between(UNEQUAL, shear=True), np.array([2.0, 0.3, 5.0, 1.1, 0.7])
-    made = [mesh.moving_matrix, mesh.rolling_matrix, mesh.turn_matrix, mesh.shear_matrix]
-    for make, unit, power in zip(made, matrices(), (1, -1, -3, -1), strict=True):
+    forms = ("moving", "rolling", "turning", "shearing")
+    for form, unit, power in zip(forms, matrices(), (1, -1, -3, -1), strict=True):
         expected = np.zeros((basis.N, basis.N))
         for cell, length in enumerate(np.diff(UNEQUAL)):
             scale = np.array([1.0, length, 1.0, length, length, length])
             at = basis.element_dofs[:, cell]
             expected[np.ix_(at, at)] += weights[cell] * length**power * unit * np.outer(scale, scale)
-        assert make(basis, weights).toarray() == pytest.approx(expected, rel=1e-12, abs=1e-12)
+        assert mesh.assemble(basis, form, weights).toarray() == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
 def test_the_element_is_scikit_fems_to_every_part():
@@ -147,8 +147,8 @@ def test_readings_are_scikit_fems_probes(what):
 def test_every_derivative_read_is_the_change_of_the_one_before(order):
     basis, x, nodal = sampled()
     step, middles = 1e-5, x[6:][abs(x[6:, None] - UNEQUAL).min(axis=1) > 1e-4]
-    left, right = (mesh.interpolate(basis, nodal, middles + side * step, order - 1) for side in (-1.0, 1.0))
-    found = mesh.interpolate(basis, nodal, middles, order)
+    left, right = (basis.read(nodal, middles + side * step, order - 1) for side in (-1.0, 1.0))
+    found = basis.read(nodal, middles, order)
     assert found == pytest.approx((right - left) / (2 * step), rel=1e-5, abs=1e-5)
     assert found.any() == (order < 4)
 

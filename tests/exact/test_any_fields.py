@@ -8,10 +8,10 @@ import pytest
 from exact_reference import driven
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
-from verify.exact import modes as analytic_modes
 from verify.exact.driven import general_field
 from verify.exact.in_time import _edges
 from verify.section import Section

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-from verify.exact import modes as analytic_modes
+from verify import analytic_modes
 from verify.exact.buckling import buckling_load, check_stable
 from verify.section import Section
 
@@ -91,7 +91,7 @@ def test_a_stepped_column():
 def test_masses_and_the_beams_own_force_do_not_change_it():
     beam = replace(STRUT, supports=("clamped", "pinned"))
     heavy = replace(beam, mass=(PointMass(position=0.3, mass=2.0),), tension=-0.4 * EULER)
-    assert buckling_load(heavy) == buckling_load(beam)
+    assert buckling_load(heavy) == pytest.approx(buckling_load(beam), rel=1e-14)
 
 
 def test_compression_at_and_beyond_buckling_is_refused_everywhere():

@@ -14,7 +14,8 @@ from verify.errors import InputError
 from verify.exact import roots
 from verify.exact.buckling import buckling_load
 from verify.exact.lineup import line_up
-from verify.exact.modes import exact_frequency_hz, modes_below, solve_modes
+from verify.exact.modes import exact_frequency_hz, solve_modes
+from verify.exact.roots import modes_below
 from verify.options import SUPPORTS, THEORIES
 from verify.section import Section
 

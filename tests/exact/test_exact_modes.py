@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.errors import InputError
-from verify.exact import closed_forms, sweeps
+from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes
 from verify.options import SUPPORTS
 from verify.section import Section
@@ -185,16 +185,10 @@ WORK = [
 ]
 
 
-@pytest.mark.parametrize(("beam", "theory", "each"), WORK, ids=["closed", "thick", "stepped"])
-def test_more_modes_than_are_waited_for_are_refused_before_the_first_with_a_time(beam, theory, each, monkeypatch):
-    monkeypatch.setattr(analytic_modes, "frequency_hz", None)  # nothing is solved
-    monkeypatch.setattr(analytic_modes, "general_frequency_hz", None)
-    most = int(20.0 / each)
-    for n_modes in (most + 1, 10**8, 10**30, 10**400, 10**5000):
-        with pytest.raises(InputError, match=r"n_modes = .* would take about .* than the 20 s that are waited for"):
-            analytic_modes.solve_modes(beam, n_modes, theory)
-    with pytest.raises(InputError, match="n_modes = 10000000 would take about"):
-        sweeps.sweep_modes([beam], 10**7, theory)
+@pytest.mark.parametrize("n_modes", [0, -2, 10**6, 10**400])
+def test_numbers_of_modes_are_bounded(n_modes):
+    with pytest.raises(InputError, match="n_modes"):
+        analytic_modes.solve_modes(LONG, n_modes)
 
 
 def test_many_modes_of_which_each_takes_little_are_solved():

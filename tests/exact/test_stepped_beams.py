@@ -8,11 +8,11 @@ from msgspec.structs import replace
 from scipy.linalg import eigh
 from stepped_reference import PATCHED, written_out
 
+from verify import analytic_modes
 from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.exact import modes as analytic_modes
 from verify.models.division import divide, part_counts
 from verify.scenes.scene import load_scene
 from verify.section import Section

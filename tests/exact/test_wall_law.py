@@ -10,12 +10,8 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.elements.linear import solve_modes as element_modes
-from verify.errors import InputError
 from verify.exact import error_laws
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
-from verify.judge.workbench import Workbench
-from verify.quantities.catalogue import arguments_of, evaluate, quantity
-from verify.scenes.scene import Scene
 from verify.segments.linear import solve_modes as segment_modes
 
 STRIP = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850.0)
@@ -103,30 +99,6 @@ def test_the_leading_terms_are_a_law_of_fine_chains_alone(supports, mode, one, t
     assert abs(error_laws.leading_error("segment", supports, mode, first // 2) / half - 1) > 1 / 3
     if mode >= 3:
         assert ratio(20) < 0.5
-
-
-@pytest.mark.parametrize(
-    ("model", "supports", "given"),
-    [
-        ("segment", ("guided", "pinned"), {"theory": "timoshenko"}),
-        ("fem", ("clamped", "free"), {"theory": "rayleigh"}),
-        ("segment", ("clamped", "free"), {"wall": "half"}),
-        ("fem", ("free", "pinned"), {"grading": 1.3}),
-    ],
-)
-def test_the_leading_law_is_that_of_equal_parts_and_thin_beams_alone(model, supports, given):
-    """By Timoshenko's theory a clamped chain of 60 links was told 131 times as far off as a law that is none of it."""
-    scene = Scene(name="strip", beam=replace(STRIP, supports=supports))
-    ((name, value),) = given.items()
-    assert ratio_to_law(scene, model) > 0.0
-    with pytest.raises(InputError, match=f"{name} = {value!r}: the leading law is that of equal parts"):
-        ratio_to_law(scene, model, **given)
-
-
-def ratio_to_law(scene, model, **given):
-    found = quantity("mode.law_ratio")
-    arguments = arguments_of(found, {"model": model, "mode": 2, "count": 400, **given})
-    return evaluate(found, arguments, scene, Workbench(scene.beam))
 
 
 def test_where_errors_of_clamped_chains_change_sign():

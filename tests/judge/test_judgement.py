@@ -7,10 +7,8 @@ from msgspec.structs import replace
 from verify.attached import PointMass
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.judge import compare
-from verify.judge.workbench import Need, Workbench, merged
+from verify.judge.cache import SolutionCache
 from verify.models.modes import Modes
-from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
-from verify.scenes.scene import load_scene
 
 X = np.linspace(0, 1, 41)
 SINES = np.array([np.sin(n * np.pi * X) for n in (1, 2, 3, 4)])
@@ -113,30 +111,6 @@ def test_a_complex_error_has_an_order_where_it_keeps_its_direction():
         compare.settled_order(counts, [errors[0], 1j * errors[1], errors[2]])
 
 
-@pytest.mark.parametrize(
-    ("scene", "quantity", "arguments", "message"),
-    [
-        ("absorbing-end", "wave.order", {"of": "deflection", "counts": [40, 80, 160]}, "changes sign"),
-        ("absorbing-end", "wave.order", {"counts": [40, 80, 160]}, r"no settled order between them \(5.14, 0.75\)"),
-        (
-            "paper-slider",
-            "slider.order",
-            {"count": 49, "steps": [3.65e-6, 1.825e-6, 9.125e-7], "slope": 1e6},
-            "steps = ",
-        ),
-        ("steel-cantilever", "mode.shape_order", {"mode": 5, "counts": [5, 10, 20]}, "no settled order"),
-    ],
-)
-def test_an_order_of_any_figure_is_refused_where_its_error_changes_its_sign_or_falls_at_none(
-    scene, quantity, arguments, message
-):
-    """Handed over without their signs the errors gave 2.8, -0.2 or whatever slope lay through them."""
-    kind, loaded = QUANTITIES[quantity], load_scene(scene)
-    asked = arguments_of(kind, {"model": "segment"} | arguments)
-    with pytest.raises(InputError, match=message):
-        evaluate(kind, asked, loaded, Workbench(loaded.beam))
-
-
 def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():
     found = compare.bracket(99.0, 101.0)
     assert (found.mean, found.relative_width) == (100.0, 0.02)
@@ -145,26 +119,9 @@ def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():
             compare.bracket(below, above)
 
 
-def test_who_wants_the_same_size_shares_one_solve(titanium_strip):
-    needs = [Need("segment", 31, 4), Need("segment", 31, 9), Need("fem", 31, 2)]
-    assert merged(needs) == {("segment", 31, ()): 9, ("fem", 31, ()): 2}
-    bench = Workbench(titanium_strip, needs)
-    bench.frequency_error("segment", 31, 4)
-    bench.frequency_error("segment", 31, 9)
-    bench.shape_error("segment", 31, 7)
-    assert [(s.model, s.count, s.n_modes) for s in bench.solves] == [("segment", 31, 9)]
-
-
-def test_wishes_of_others_do_not_fail_the_one_who_asks_for_less(titanium_strip):
-    bench = Workbench(titanium_strip, [Need("segment", 8, 50)])
-    assert bench.modes("segment", 8, 3).n_modes == 7
-    with pytest.raises(InputError, match="mode = 50: the segment model at count = 8 has 7 elastic modes"):
-        bench.modes("segment", 8, 50)
-
-
 def test_an_unknown_reading_is_refused_with_those_there_are(titanium_strip):
     with pytest.raises(InputError, match="corrected, raw"):
-        Workbench(titanium_strip).shape_error("segment", 8, 3, "spline")
+        SolutionCache(titanium_strip).shape_error("segment", 8, 3, "spline")
 
 
 def test_a_shape_that_rests_at_every_node_has_no_error():
@@ -177,8 +134,8 @@ def test_a_shape_that_rests_at_every_node_has_no_error():
 def test_a_mode_seen_at_its_own_nodes_alone_has_no_error(titanium_strip, parts):
     """sin(pi) is 1e-16 in floating point: an error relative to that was told, 6.4 of mode 3 in three elements."""
     with pytest.raises(NoFigureError, match="at rest at every node"):
-        Workbench(titanium_strip).shape_error("fem", parts, parts)
-    assert 1e-4 < Workbench(titanium_strip).shape_error("fem", parts + 1, parts) < 0.3
+        SolutionCache(titanium_strip).shape_error("fem", parts, parts)
+    assert 1e-4 < SolutionCache(titanium_strip).shape_error("fem", parts + 1, parts) < 0.3
 
 
 @pytest.mark.parametrize("size", [1e-6, 1e4])
@@ -186,13 +143,13 @@ def test_a_mode_seen_at_its_own_nodes_alone_has_no_error_whatever_the_beam_weigh
     """Deflections of unit modal mass go by the root of the mass: 1e9 m of a speck, 1e-6 m of a bridge."""
     sizes = {name: size * getattr(titanium_strip, name) for name in ("length", "width", "thickness")}
     with pytest.raises(NoFigureError, match="at rest at every node"):
-        Workbench(replace(titanium_strip, **sizes)).shape_error("fem", 3, 3)
-    assert 1e-4 < Workbench(replace(titanium_strip, **sizes)).shape_error("fem", 4, 3) < 0.3
+        SolutionCache(replace(titanium_strip, **sizes)).shape_error("fem", 3, 3)
+    assert 1e-4 < SolutionCache(replace(titanium_strip, **sizes)).shape_error("fem", 4, 3) < 0.3
 
 
 def test_a_shape_that_a_heavy_body_keeps_small_is_not_taken_for_rest(titanium_strip):
     heavy = replace(titanium_strip, mass=(PointMass(position=0.3 * titanium_strip.length, mass=1e12),))
-    assert Workbench(heavy).shape_error("fem", 10, 1) < 1e-3
+    assert SolutionCache(heavy).shape_error("fem", 10, 1) < 1e-3
 
 
 def test_all_nodes_of_a_high_mode_are_found_each_where_it_is():

@@ -1,20 +1,18 @@
 """Models with their settings side by side: which stand there, which make a difference on a beam, what a choice shows."""
 
-import json
-
 import pytest
 from msgspec.structs import replace
+from packaged_beams import packaged_beam
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
+from verify.judge.cache import SolutionCache
 from verify.judge.sizing import choose_of_all
 from verify.judge.variants import Rules, Variant, beside, every_rule, falls_within
-from verify.judge.workbench import Workbench
-from verify.scenes.scene import load_scene
 from verify.section import Section
 
-CANTILEVER = load_scene("steel-cantilever").beam
+CANTILEVER = packaged_beam("steel-cantilever")
 BOTH = ("segment", "fem")
 
 
@@ -38,7 +36,7 @@ def test_a_setting_that_no_model_has_is_refused():
 
 
 def test_the_rules_that_make_a_difference_are_those_of_what_the_beam_has():
-    assert every_rule(load_scene("paper").beam) == ()
+    assert every_rule(packaged_beam("paper")) == ()
     walls = labels(every_rule(CANTILEVER))
     assert walls == [f"segment wall={wall}" for wall in ("half", "welded", "third-order", "five-joint")]
     stepped = replace(
@@ -53,8 +51,8 @@ def test_the_rules_that_make_a_difference_are_those_of_what_the_beam_has():
 
 def test_beside_the_default_stands_the_literatures_wall_and_the_joint_that_axial_force_mends():
     assert labels(beside(CANTILEVER)) == ["segment wall=half"]
-    assert labels(beside(load_scene("taut-strip").beam)) == ["segment joints=tensioned"]
-    assert beside(load_scene("free-free-bar").beam) == ()
+    assert labels(beside(packaged_beam("taut-strip"))) == ["segment joints=tensioned"]
+    assert beside(packaged_beam("free-free-bar")) == ()
 
 
 def test_errors_go_up_and_down_with_their_number_of_parts_where_something_may_fall_within_one_and_at_no_end():
@@ -68,7 +66,7 @@ def test_errors_go_up_and_down_with_their_number_of_parts_where_something_may_fa
 
 
 def test_a_choice_shows_69_links_of_the_literature_beside_19():
-    choices, left_out = choose_of_all(Workbench(CANTILEVER), 5, 1e-3)
+    choices, left_out = choose_of_all(SolutionCache(CANTILEVER), 5, 1e-3)
     found = {one.variant.label: one.count for one in choices}
     assert found["segment"] == 19
     assert found["segment wall=half"] == 69
@@ -77,7 +75,7 @@ def test_a_choice_shows_69_links_of_the_literature_beside_19():
 
 def test_under_tension_a_choice_shows_the_joint_that_needs_a_sixth_of_the_links():
     found = {
-        one.variant.label: one.count for one in choose_of_all(Workbench(load_scene("taut-strip").beam), 3, 1e-3)[0]
+        one.variant.label: one.count for one in choose_of_all(SolutionCache(packaged_beam("taut-strip")), 3, 1e-3)[0]
     }
     assert (found["segment"], found["segment joints=tensioned"]) == (56, 10)
 
@@ -86,11 +84,11 @@ def test_the_theoretical_orders_are_told_for_the_beam_at_hand():
     orders = {
         "gregory": Variant("segment").order(CANTILEVER),
         "half": Variant("segment", (("wall", "half"),)).order(CANTILEVER),
-        "stepped": Variant("segment").order(load_scene("stepped-beam").beam),
-        "printed": Variant("segment", (("joints", "printed"),)).order(load_scene("stepped-beam").beam),
-        "taut": Variant("segment").order(load_scene("taut-strip").beam),
-        "tensioned": Variant("segment", (("joints", "tensioned"),)).order(load_scene("taut-strip").beam),
-        "elements": Variant("fem").order(load_scene("stepped-beam").beam),
+        "stepped": Variant("segment").order(packaged_beam("stepped-beam")),
+        "printed": Variant("segment", (("joints", "printed"),)).order(packaged_beam("stepped-beam")),
+        "taut": Variant("segment").order(packaged_beam("taut-strip")),
+        "tensioned": Variant("segment", (("joints", "tensioned"),)).order(packaged_beam("taut-strip")),
+        "elements": Variant("fem").order(packaged_beam("stepped-beam")),
     }
     assert orders == {
         "gregory": 4,
@@ -101,44 +99,6 @@ def test_the_theoretical_orders_are_told_for_the_beam_at_hand():
         "tensioned": 4,
         "elements": 4,
     }
-
-
-def test_guides_of_a_stepped_chain_have_its_order(tmp_path):
-    from verify.run.runner import run_scene
-
-    charts = {chart.id: chart for chart in run_scene(load_scene("stepped-beam")).found["convergence"].charts()}
-    guides = {line.name for line in charts["errors-over-size"].lines if line.guide}
-    assert guides == {"slope 2", "slope 4"}
-
-
-def test_a_report_of_a_clamped_beam_overlays_all_walls():
-    from verify.run.runner import run_scene
-
-    found = run_scene(load_scene("steel-cantilever")).found["convergence"]
-    (chart,) = [chart for chart in found.charts() if chart.id == "rules"]
-    names = [line.name for line in chart.lines]
-    assert names == ["segments", *(f"segments, wall {w}" for w in ("half", "welded", "third-order", "five-joint"))]
-    gregory, half = (dict(zip(line.x, line.y, strict=True)) for line in chart.lines[:2])
-    assert half[80] > 100 * gregory[80]
-
-
-@pytest.mark.parametrize("section", ["convergence", "spectrum"])
-def test_settings_of_a_section_reach_its_figures(section):
-    from verify.run.tables import study_of
-
-    def errors(*overrides):
-        job = study_of(load_scene("steel-cantilever", overrides), section)
-        records = job.run(lambda step: None).records()
-        return json.loads(json.dumps(records))[-1]
-
-    plain, half = errors(), errors(f"{section}.wall=half")
-    assert half["segment wall=half_error"] < 0
-    assert abs(half["segment wall=half_error"]) > 2 * abs(plain["segment_error"])
-    assert half["fem_error"] == plain["fem_error"]
-    graded = errors(f"{section}.grading=1.9")
-    assert graded["fem grading=1.9_error"] > plain["fem_error"]
-    thick = errors(f"{section}.theory=timoshenko")
-    assert abs(thick["fem theory=timoshenko_error"]) == pytest.approx(abs(plain["fem_error"]), rel=0.5)
 
 
 def test_a_clamp_that_gives_has_the_order_of_its_wall_joint_too():
@@ -154,16 +114,16 @@ def test_a_clamp_that_gives_has_the_order_of_its_wall_joint_too():
 
 
 def test_a_wall_that_makes_no_difference_is_said_to_make_none():
-    _, left_out = choose_of_all(Workbench(load_scene("paper").beam), 3, 1e-2, Rules(wall="half", attachment="lever"))
+    _, left_out = choose_of_all(SolutionCache(packaged_beam("paper")), 3, 1e-2, Rules(wall="half", attachment="lever"))
     assert left_out == {
         "wall": "it makes no difference here, no end is clamped",
         "attachment": "it makes no difference here, nothing stands on the beam",
     }
-    assert not choose_of_all(Workbench(CANTILEVER), 3, 1e-2, Rules(wall="half"))[1]
+    assert not choose_of_all(SolutionCache(CANTILEVER), 3, 1e-2, Rules(wall="half"))[1]
 
 
 def test_an_elastic_clamp_is_a_wall_and_a_spring_on_the_way_is_none():
-    arm = load_scene("instrument-arm").beam
+    arm = packaged_beam("instrument-arm")
     assert labels(beside(arm)) == ["segment wall=half", "segment attachment=lever"]
     assert labels(every_rule(arm))[0] == "segment wall=half"
     on_the_way = replace(arm, supports=("pinned", "free"), spring=(replace(arm.spring[0], position=0.3),))
@@ -174,10 +134,10 @@ def test_an_elastic_clamp_is_a_wall_and_a_spring_on_the_way_is_none():
 
 def test_a_choice_sets_other_rules_beside_each_of_several_theories():
     rules = Rules(theory=("timoshenko", "rayleigh"), joints=("tensioned", "series"))
-    found = {one.variant.label: one.count for one in choose_of_all(Workbench(CANTILEVER), 2, 1e-2, rules)[0]}
+    found = {one.variant.label: one.count for one in choose_of_all(SolutionCache(CANTILEVER), 2, 1e-2, rules)[0]}
     for theory in ("rayleigh", "timoshenko"):
         alone = Rules(theory=theory, joints=rules.joints)
-        own = {one.variant.label: one.count for one in choose_of_all(Workbench(CANTILEVER), 2, 1e-2, alone)[0]}
+        own = {one.variant.label: one.count for one in choose_of_all(SolutionCache(CANTILEVER), 2, 1e-2, alone)[0]}
         assert own == {label: count for label, count in found.items() if label.endswith(theory)}
         assert f"segment wall=half joints=tensioned theory={theory}" in own
 
@@ -190,5 +150,5 @@ def test_bodies_on_rigid_links_stand_beside_wherever_they_differ():
     chosen = labels(beside(on_the_way, (("wall", "half"),)))
     assert chosen[-1] == "segment wall=half attachment=lever"
     heavy = replace(on_the_way, mass=(PointMass(position=0.1, mass=0.2),))
-    found = {one.variant.label: one.count for one in choose_of_all(Workbench(heavy), 4, 1e-3)[0]}
+    found = {one.variant.label: one.count for one in choose_of_all(SolutionCache(heavy), 4, 1e-3)[0]}
     assert (found["segment"], found["segment attachment=lever"]) == (15, 22)

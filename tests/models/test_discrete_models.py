@@ -10,13 +10,13 @@ import pytest
 from msgspec.structs import replace
 from scipy.sparse import csc_array
 
+from verify import analytic_modes
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.elements import pencil
-from verify.elements.mesh import basis_between, mass_matrix, stiffness_matrix
+from verify.elements.mesh import assemble, basis_between
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws
-from verify.exact import modes as analytic_modes
 from verify.models import eigen
 from verify.models.pencil import factorised
 from verify.segments import linear as segment_model
@@ -124,7 +124,7 @@ def test_runs_repeat_to_the_last_bit(titanium_strip, model):
 def test_scikit_fems_assembly_equals_the_textbook_matrices_on_unequal_elements():
     lengths, stiffness, mass = np.array([0.7, 1.9, 1.1]), np.array([2.0, 0.3, 5.0]), np.array([1.2, 0.4, 3.0])
     basis = basis_between(np.append(0.0, np.cumsum(lengths)))
-    found_k, found_m = stiffness_matrix(basis, stiffness).toarray(), mass_matrix(basis, mass).toarray()
+    found_k, found_m = assemble(basis, "bending", stiffness).toarray(), assemble(basis, "inertia", mass).toarray()
     k, m = np.zeros((8, 8)), np.zeros((8, 8))
     for e, h in enumerate(lengths):
         scale = np.diag([1, h, 1, h])
@@ -139,7 +139,7 @@ def test_scikit_fems_assembly_equals_the_textbook_matrices_on_unequal_elements()
 
 def test_the_factored_curvatures_are_scikit_fems_stiffness():
     lengths, stiffness = np.array([0.7, 1.9, 1.1]), np.array([2.0, 0.3, 5.0])
-    assembled = stiffness_matrix(basis_between(np.append(0.0, np.cumsum(lengths))), stiffness)
+    assembled = assemble(basis_between(np.append(0.0, np.cumsum(lengths))), "bending", stiffness)
     rows = pencil.curvature_matrix(lengths).toarray()
     weights = pencil.curvature_weights(lengths, assembled)
     assert weights == pytest.approx(np.concatenate([stiffness / lengths, 3 * stiffness / lengths]), rel=1e-14)
@@ -210,9 +210,9 @@ def test_requests_no_model_can_meet_are_refused_before_anything_is_allocated(tit
         solve(titanium_strip, 0, 9)
     with pytest.raises(InputError, match="more than the"):
         solve(titanium_strip, 19, 9)
-    with pytest.raises(InputError, match="GiB"):
+    with pytest.raises(InputError, match="largest system"):
         solve(titanium_strip, 5, 10**13)
-    with pytest.raises(InputError, match="GiB"):
+    with pytest.raises(InputError, match="largest system"):
         solve(titanium_strip, 300_000, 1_000_000)
     with pytest.raises(InputError, match=r"segment|element"):
         solve(titanium_strip, 1, -3)
@@ -300,24 +300,6 @@ def test_a_singular_system_is_one_sentence(titanium_strip):
         factorised(csc_array(np.ones((3, 3))))  # where modes are asked for, no frequency was given
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="peak memory is read from /proc")
-@pytest.mark.parametrize("model", sorted(MODELS))
-def test_the_memory_guard_counts_more_than_a_driven_field_takes(titanium_strip, model):
-    """Peak resident memory of a fresh process at 10^5 parts, less what it took at ten."""
-    code = (
-        "import re\nfrom verify import {0}\nfrom verify.beam import Beam, PointForce\n"
-        "beam = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0, loss_factor=0.01)\n"
-        "peaks = []\n"
-        "for n in (10, 100_000):\n"
-        "    {0}.solve_harmonic(beam, [PointForce(position=0.1)], 433.0, n)\n"
-        "    peaks.append(1024 * int(re.search(r'VmHWM:\\s+(\\d+) kB', open('/proc/self/status').read())[1]))\n"
-        "print(peaks[1] - peaks[0])"
-    ).format({"segment": "segment_model", "fem": "fem_beam"}[model])
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    counted = eigen.required_bytes(MODELS[model].unknowns(titanium_strip, 100_000), 1)
-    assert 0.3 * counted < int(done.stdout) < counted
-
-
 def mean_is_nearest(supports, mode, count):
     """Whether the mean of both models is known to lie nearer to the exact frequency than Hermite elements alone.
 
@@ -364,9 +346,3 @@ def test_the_means_limit_is_where_segments_are_three_times_as_far_off():
     assert segment / hermite == pytest.approx(-3, abs=1e-10)
     assert mu / np.pi == pytest.approx(0.69635, abs=1e-5)
     assert not mean_is_nearest(("clamped", "free"), 1, 1000)
-
-
-def test_a_dense_solve_is_told_eight_times_as_long_for_twice_the_unknowns():
-    few = eigen.DENSE_UNKNOWNS // 2
-    assert eigen.solve_seconds(2 * few, 3) == pytest.approx(8 * eigen.solve_seconds(few, 3))
-    assert 0.001 < eigen.solve_seconds(2 * few, 3) < 100

@@ -9,21 +9,24 @@ from scipy.sparse import csc_array, diags_array
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.elements import linear as fem_beam
-from verify.elements import sweeps as fem_sweeps
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import damped_stiffness, element_pencil
 from verify.errors import InputError
 from verify.exact.modes import solve_modes as exact_modes
-from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, probed, refuse_near_resonance
-from verify.models.pencil import bordered, on_diagonals, soft_scales
-from verify.models.response import distance_answered, forced_response, resonance_distance
+from verify.models.driven_pencil import check_dense, harmonic_response, modal_receptance
+from verify.models.pencil import bordered, soft_scales
+from verify.models.response import forced_response
 from verify.section import Section
 from verify.segments import linear as segment_model
-from verify.segments import sweeps as segment_sweeps
 from verify.segments.assembly import build_chain, chain_pencil
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 CLAMPED = replace(STRIP, supports=("clamped", "free"))
+
+
+def damped_response(pencil, loads, omega2, stiffness, ratio):
+    """The response at one frequency, (n, 1)."""
+    return harmonic_response(pencil, np.asarray(loads, dtype=complex), np.array([omega2]), stiffness, ratio)
 
 
 def test_a_mixed_matrix_is_scaled_by_the_powers_of_two_that_its_answers_are_scaled_back_by():
@@ -131,14 +134,10 @@ def test_a_sum_over_modes_has_no_value_at_an_undamped_resonance_and_one_beside_i
 def test_a_resonance_is_refused_by_its_number_and_frequency_and_none_beside_it(model, mode):
     """Up to 2e-9 of omega^2, which is 1e-9 of the frequency."""
     solver = {"segment": segment_model, "fem": fem_beam}[model]
-    pencil = pencils(CLAMPED, 20)[model]
     hertz = float(solver.solve_modes(CLAMPED, 16, 20).frequencies_hz[mode - 1])
-    scale = (2 * np.pi / CLAMPED.wave_constant) ** 2 * (CLAMPED.length / 20) ** 4
 
     def ask(frequency):
-        omega2 = frequency**2 * scale
-        free = forced_response(pencil, probed(pencil, loads_of(pencil.n)), omega2, pencil.stiffness.astype(complex))
-        refuse_near_resonance(model, CLAMPED, pencil, omega2, frequency, solver.solve_modes, 20, free)
+        solver.solve_harmonic(CLAMPED, PointForce(position=0.2), frequency, 20)
 
     for near in (hertz, hertz * (1 + 0.8e-9), hertz * (1 - 0.8e-9)):
         with pytest.raises(
@@ -161,41 +160,6 @@ def test_all_modes_are_taken_up_to_the_dense_size_and_not_beyond():
     ):
         with pytest.raises(InputError, match="takes all 1001 modes"):
             ask()
-
-
-@pytest.mark.parametrize("model", ["segment", "fem"])
-def test_one_factorisation_answers_a_drive_and_how_far_its_resonance_is(model):
-    """The drive as by itself to the last digit; the distance near the fifth mode is that distance."""
-    pencil = pencils(CLAMPED, 23)[model]
-    values, stiffness = eigh(*matrices(pencil), eigvals_only=True), pencil.stiffness.astype(complex)
-    for omega2, near in ((values[4] * (1.0 - 3e-7), 3e-7), (values[4] * (1.0 + 2e-6), -2e-6), (1.2 * values[7], None)):
-        both = damped_response(pencil, probed(pencil, loads_of(pencil.n)), omega2, stiffness, 0.0)
-        alone = damped_response(pencil, loads_of(pencil.n), omega2, stiffness, 0.0)
-        assert both.shape == (pencil.n, 2)
-        assert np.array_equal(both[:, :1], alone)
-        found = distance_answered(pencil, both[:, 1].real, omega2)
-        assert found == pytest.approx(resonance_distance(pencil, omega2), rel=1e-6)
-        assert near is None or found == pytest.approx(near, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("values", "shape"),
-    [
-        ({0: [1.5, -2.0, 0.25]}, None),
-        ({-1: [3.0, 4.0], 0: [1.0, 2.0j, 5.0], 1: [-7.0, 8.0]}, None),
-        ({0: [1.0, 2.0], 1: [3.0, 4.0]}, (2, 3)),
-        ({-2: [5.0, 6.0, 7.0]}, (5, 3)),
-        ({3: []}, (0, 3)),
-    ],
-)
-def test_diagonals_lie_where_scipy_lays_them(values, shape):
-    found = on_diagonals({above: np.array(each) for above, each in values.items()}, shape)
-    if shape == (0, 3):
-        assert found.shape == shape
-        return
-    known = diags_array(list(values.values()), offsets=list(values), shape=shape, dtype=found.dtype)
-    assert found.shape == known.shape
-    assert np.array_equal(found.toarray(), known.toarray())
 
 
 L = 0.8
@@ -242,10 +206,10 @@ SETTINGS = [
 def lossy(model, beam, n, settings):
     """(pencil, D with the beam's loss), as the model's driven verbs make them."""
     if model == "fem":
-        elements, pencil = fem_beam.driven(beam, n, 1.0, settings.get("theory", "euler-bernoulli"))
+        elements, pencil = fem_beam._driven(beam, n, 1.0, settings.get("theory", "euler-bernoulli"))
         return pencil, damped_stiffness(elements, pencil)
     given = {"wall": "gregory", "joints": "series", "grading": 1.0, "theory": "euler-bernoulli"}
-    chain, pencil = segment_model.driven(beam, n, given | {"attachment": "reciprocal"} | settings)
+    chain, pencil = segment_model._driven(beam, n, given | {"attachment": "reciprocal"} | settings)
     return pencil, segment_model.damped(beam, chain, pencil, 0.0)
 
 
@@ -294,11 +258,10 @@ def test_both_models_take_a_loss_beside_a_ratio_and_agree(what, theory):
     own, omega = 2 * np.pi * modes.frequencies_hz, 2 * np.pi * 83.0
     shares = 1.7 * modes.deflection(0.2)[:, 0] / (own**2 * (1 + 0.05j) - omega**2 + 2j * 0.03 * own * omega)
     summed = shares @ modes.deflection(x)
-    sweeps = {"segment": segment_sweeps, "fem": fem_sweeps}
-    for model, module in {"segment": segment_model, "fem": fem_beam}.items():
+    for module in (segment_model, fem_beam):
         field = module.solve_harmonic(beam, force, 83.0, 80, modal_damping=0.03, theory=theory)
         assert field.deflection(x) == pytest.approx(summed, rel=1e-3)
-        sweep = sweeps[model].sweep_harmonic(beam, force, [80.0, 83.0], 80, modal_damping=0.03, theory=theory)
+        sweep = module.sweep_harmonic(beam, force, [80.0, 83.0], 80, modal_damping=0.03, theory=theory)
         assert sweep.deflection(x)[1] == pytest.approx(field.deflection(x), rel=1e-12)
 
 
@@ -307,9 +270,8 @@ def test_a_loss_beside_a_ratio_is_refused_by_the_names_of_what_loses_nothing(mod
     beam = replace(CARRIER, mass=(BODY,), tension=900.0, foundation=5e4)
     said = r"loss_factor = 0\.05 and modal_damping = 0\.03 together .* beside beam\.tension and beam\.foundation, "
     module = {"segment": segment_model, "fem": fem_beam}[model]
-    sweeps = {"segment": segment_sweeps, "fem": fem_sweeps}[model]
     with pytest.raises(InputError, match=said):
         module.solve_harmonic(beam, PointForce(position=0.2), 83.0, 20, modal_damping=0.03)
     with pytest.raises(InputError, match=said):
-        sweeps.sweep_harmonic(beam, PointForce(position=0.2), [83.0], 20, modal_damping=0.03)
+        module.sweep_harmonic(beam, PointForce(position=0.2), [83.0], 20, modal_damping=0.03)
     assert module.solve_harmonic(replace(beam, loss_factor=0.0), PointForce(position=0.2), 83.0, 20, modal_damping=0.03)

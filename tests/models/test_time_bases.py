@@ -2,18 +2,14 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
-from verify.elements import in_time as fem_motion
 from verify.elements import linear as fem_beam
-from verify.elements.mesh import build_elements, point_loads
 from verify.errors import InputError
-from verify.exact import modes as analytic_modes
 from verify.exact.in_time import MOST
 from verify.models.catalogue import MODELS
 from verify.models.fields import phasor
@@ -70,47 +66,6 @@ def dense_segments(n, line="spline"):
         else segment_motion._splined(STRIP, chain, joints, False)
     )
     return omegas, shapes, joints
-
-
-@settings(max_examples=25, deadline=None)
-@given(n=st.integers(2, 60), part=st.floats(0.0, 1.0), derivative=st.integers(0, 3))
-def test_modes_of_equal_links_in_closed_form_are_those_of_the_dense_solve(n, part, derivative):
-    basis = segment_motion.time_basis(STRIP, n)
-    omegas, shapes, _ = dense_segments(n)
-    assert basis.omegas == pytest.approx(omegas, rel=1e-12)
-    x = np.array([part * STRIP.length * (1 - 1e-9)])
-    closed, dense = basis.shapes(x, derivative), shapes(x, derivative)
-    signs = np.sign(np.sum(basis.shapes(basis.edges, 0) * shapes(basis.edges, 0), axis=1))[:, None]
-    scale = abs(shapes(np.linspace(0, STRIP.length, 400), derivative)).max()
-    off_nodes = derivative < 3 or abs(x / STRIP.length * n - np.round(x / STRIP.length * n)) > 1e-6  # third: steps
-    if off_nodes:
-        assert closed == pytest.approx(signs * dense, abs=2e-9 * scale)
-
-
-@settings(max_examples=25, deadline=None)
-@given(n=st.integers(2, 40), part=st.floats(0.001, 0.999), derivative=st.integers(0, 1))
-def test_modes_of_equal_elements_in_closed_form_are_those_of_the_dense_solve(n, part, derivative):
-    """Two branches may share a frequency; what they add up to in a response does not depend on the choice."""
-    basis = fem_motion.time_basis(STRIP, n)
-    elements = build_elements(STRIP, n)
-    omegas, nodal, *_ = fem_motion._dense(elements)
-    assert basis.omegas == pytest.approx(omegas, rel=1e-11)
-    x, place = np.array([part * STRIP.length * (1 - 1e-9)]), 0.31 * STRIP.length
-    dense_loads = point_loads(elements.basis, np.array([place / (STRIP.length / n)])).reshape(-1, 2)
-    w, slope = (kind.T for kind in nodal(np.arange(n + 1)))
-    modal = dense_loads[:, 0] @ w.T + dense_loads[:, 1] @ slope.T
-    element = min(int(x[0] / STRIP.length * n), n - 1)
-    h = STRIP.length / n
-    s = x[0] / h - element
-    weights = [(1 - s) ** 2 * (1 + 2 * s), s * (1 - s) ** 2, s**2 * (3 - 2 * s), s**2 * (s - 1)]
-    if derivative:
-        weights = [6 * s * (s - 1) / h, (1 - s) * (1 - 3 * s) / h, 6 * s * (1 - s) / h, s * (3 * s - 2) / h]
-    ends = (w[:, element], slope[:, element], w[:, element + 1], slope[:, element + 1])
-    shape = sum(weight * value for weight, value in zip(weights, ends, strict=True))
-    kernel = 1.0 / (omegas**2 + omegas[0] ** 2)
-    expected = (modal * shape) @ kernel
-    found = (basis.loads(place) * basis.shapes(x, derivative)[:, 0]) @ (1.0 / (basis.omegas**2 + basis.omegas[0] ** 2))
-    assert found == pytest.approx(expected, abs=1e-9 * abs(modal * kernel * abs(shape).max()).sum() + 1e-30)
 
 
 @pytest.mark.parametrize("supports", HELD)

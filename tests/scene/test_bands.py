@@ -13,9 +13,7 @@ from verify.scene.convert import convert
 from verify.scene.gates import run_gate
 from verify.scene.model import Complex, Gate, Scene
 
-SCENE = Scene(
-    name="strip", beam=Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
-)
+SCENE = Scene(name="strip", beam=Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0))
 
 
 def judged(value, **band):

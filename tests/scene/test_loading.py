@@ -5,11 +5,11 @@ import json
 import pytest
 
 from verify import load_scene
-from verify.errors import InputError, WrongSceneError
-from verify.scene.load import STARTER, copy_with_name, name_of, packaged_scenes, read_text, scene_from, tables_of
+from verify.errors import InputError
+from verify.scene.load import STARTER, copy_with_name, packaged_scenes, read_text, scene_from, tables_of
 from verify.scene.model import Claim
 from verify.scene.schema import scene_schema, sections
-from verify.scene.warnings import deflection_warning, unit_warnings
+from verify.scene.warnings import unit_warnings
 
 BEAM = """
 [beam]
@@ -89,7 +89,7 @@ def test_byte_order_mark_and_line_ends_are_ignored(tmp_path):
 
 
 def test_every_error_of_a_file_is_listed(tmp_path):
-    text = SCENE.replace("width", "widht").replace('mode = 3 }', 'mod = 3 }').replace("expect", "expct")
+    text = SCENE.replace("width", "widht").replace("mode = 3 }", "mod = 3 }").replace("expect", "expct")
     text = "colour = 'red'\n" + text + "[spectrum]\nmodes = 0\n[convergence]\ncounts = 'x'\n"
     assert [sentence.split(" = ")[0].split(":")[0] for sentence in errors(tmp_path, text)] == [
         "colour is not a known key",
@@ -111,7 +111,6 @@ def test_every_error_of_a_file_is_listed(tmp_path):
         ("length", "lenght", ["beam.lenght is not a known key: did you mean 'length'?"]),
         ("length = 0.73", "", ["beam.length is missing: give it a value"]),
         ('id = "g"', "", ["gate[0].id is missing: give it a value"]),
-        ("'s'", "'../s'", []),
         (GATE, GATE + GATE, ["gate.g occurs twice: give every gate its own id"]),
         (
             "density = 4470",
@@ -122,11 +121,7 @@ def test_every_error_of_a_file_is_listed(tmp_path):
     ],
 )  # fmt: skip
 def test_error_sentence_names_field_value_and_remedy(tmp_path, old, new, sentences):
-    text = SCENE.replace(old, new, 1)
-    if sentences:
-        assert errors(tmp_path, text) == sentences
-    else:
-        assert scene_of(tmp_path, text).name == "s"
+    assert errors(tmp_path, SCENE.replace(old, new, 1)) == sentences
 
 
 def test_parts_that_do_not_fit_together_are_listed(tmp_path):
@@ -142,13 +137,6 @@ def test_long_list_of_errors_is_cut(tmp_path):
     found = errors(tmp_path, SCENE + wrong)
     assert len(found) == 31
     assert found[-1] == "and 14 more"
-
-
-def test_one_error_is_a_plain_input_error(tmp_path):
-    with pytest.raises(InputError) as caught:
-        scene_of(tmp_path, SCENE + "[spectrum]\ncount = 0\n")
-    assert not isinstance(caught.value, WrongSceneError)
-    assert str(caught.value) == "spectrum.count = 0: give a whole number >= 1"
 
 
 def test_unreadable_files_are_refused(tmp_path):
@@ -181,13 +169,7 @@ def test_copy_keeps_comments_under_another_name():
     text = read_text(STARTER)
     copied = copy_with_name(text, "mine")
     assert copied == text.replace('name = "my-beam"', 'name = "mine"')
-    assert copy_with_name("name = 'a'  # own\n", "b").startswith("#:schema ./verify.schema.json\nname = \"b\"  # own")
-
-
-def test_name_follows_the_file(tmp_path):
-    assert name_of(tmp_path / "my beam (2).toml") == "my-beam-2-"
-    with pytest.raises(InputError, match="use letters or digits"):
-        name_of(tmp_path / "---.toml")
+    assert copy_with_name("name = 'a'  # own\n", "b").startswith('#:schema ./verify.schema.json\nname = "b"  # own')
 
 
 @pytest.mark.parametrize(
@@ -207,12 +189,6 @@ def test_other_units_are_warned_about(tmp_path, old, new, words):
         text = text.replace("113e9", "113e12")
     (warning,) = unit_warnings(scene_of(tmp_path, text))
     assert words in warning
-
-
-def test_large_deflection_is_warned_about(tmp_path):
-    scene = scene_of(tmp_path, SCENE)
-    assert deflection_warning(scene, 0.05) == ()
-    assert "0.2 times the beam's length" in deflection_warning(scene, 0.146)[0]
 
 
 def test_schema_describes_every_key():

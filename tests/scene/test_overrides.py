@@ -4,7 +4,7 @@ import pytest
 
 from verify import load_scene
 from verify.errors import InputError
-from verify.scene.convert import literal, typed
+from verify.scene.convert import literal
 from verify.scene.load import tables_of, toml_text
 from verify.scene.run import effective_overrides, plan, skipped_gates
 
@@ -117,11 +117,6 @@ def test_overrides_are_a_list_of_words(overrides):
         load_scene("paper", overrides)
 
 
-def test_parameter_of_another_law_is_refused(path):
-    with pytest.raises(InputError, match=r"slider.slope = 470.0 is K of Eq. \(3\)"):
-        load_scene(path, ("slider.law=coulomb", "slider.slope=470"))
-
-
 @pytest.mark.parametrize(
     ("text", "value"),
     [
@@ -142,11 +137,6 @@ def test_parameter_of_another_law_is_refused(path):
 )
 def test_value_is_a_literal_a_word_or_a_list(text, value):
     assert literal(text, "x") == value
-
-
-def test_ranges_belong_to_lists_of_whole_numbers():
-    assert typed("2-4,9", tuple[int, ...], "x") == [2, 3, 4, 9]
-    assert typed("2-4", str, "x") == "2-4"
 
 
 def test_tables_with_overrides_are_written_as_toml(path, tmp_path):

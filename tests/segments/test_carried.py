@@ -403,8 +403,8 @@ def test_what_a_small_chain_carries_takes_it_a_few_times_as_long():
 @pytest.mark.parametrize("base", [0.2, 1.0, 5.0])
 @pytest.mark.parametrize(("part", "even"), [(0.045, True), (0.055, False)])
 def test_whether_links_around_a_place_are_equally_long_is_a_matter_of_their_own_length(base, part, even):
-    lengths = base * (1.0 + part * np.array([0, 0, 0.3, 0, 0.1, 0, 1.0, 0.2, 0, 0, 0, 0.0]))[:, None]
-    links, on, about = places_on(lengths, np.array([lengths[:5].sum() + 0.37 * lengths[5, 0]]))
+    lengths = base * (1.0 + part * np.array([0, 0, 0.3, 0, 0.1, 0, 1.0, 0.2, 0, 0, 0, 0.0]))
+    links, on, about = places_on(lengths, np.array([lengths[:5].sum() + 0.37 * lengths[5]]))
     assert links.tolist() == [5]
     assert on == pytest.approx([0.37])
     assert about.tolist() == [even]

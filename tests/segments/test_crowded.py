@@ -7,12 +7,10 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.exact import modes as exact_modes
-from verify.segments import crowded, stacks
 from verify.segments.assembly import build_chain
 from verify.segments.attached import felt_at
 from verify.segments.crowded import _groups, felt_together
 from verify.segments.linear import solve_modes
-from verify.segments.sweeps import sweep_modes
 
 STRIP = Beam(length=1.2, width=0.03, thickness=0.003, youngs_modulus=200e9, density=7800.0)
 L = STRIP.length
@@ -144,54 +142,12 @@ def test_bodies_that_come_together_are_one_body():
     assert apart[0].frequencies_hz == pytest.approx(apart[1].frequencies_hz, rel=1e-5)
 
 
-@pytest.mark.parametrize("supports", [("clamped", "pinned"), ("free", "free"), ("pinned", "guided")])
-def test_a_stack_of_chains_has_the_crowds_of_each(monkeypatch, supports):
-    beams = [
-        replace(
-            FLANGES,
-            supports=supports,
-            mass=tuple(replace(one, position=one.position + by) for one in FLANGES.mass),
-            spring=(PointSpring(position=0.55 + by, rotational=20.0),),
-        )
-        for by in (-0.49, -0.48, -0.2, -0.19, -0.1987, 0.31, 0.6, 0.611, 0.64)
-    ]
-    stacked = []
-    plain = stacks.mend_each
-    monkeypatch.setattr(stacks, "mend_each", lambda *given: stacked.append(len(given[0])) or plain(*given))
-    together = sweep_modes(beams, 3, 32)
-    assert stacked == [9]
-    for found, beam in zip(together, beams, strict=True):
-        assert found == pytest.approx(solve_modes(beam, 3, 32).frequencies_hz, rel=1e-12)
-
-
-def test_crowds_anywhere_within_a_chain_have_weights_of_one_solution(monkeypatch):
-    """Two flanges 2.2 links apart, told from the nearer end, wherever they stand beyond the walls."""
-    solved, plain = [], crowded._mended
-    monkeypatch.setattr(crowded, "_mended", lambda *given: solved.append(1) or plain(*given))
-    step = L / 40
-    beams = [
-        replace(
-            FLANGES,
-            mass=tuple(
-                replace(one, position=(k + by) * step) for one, by in zip(FLANGES.mass, (0.4, 2.6), strict=True)
-            ),
-        )
-        for k in (8, 9, 10, 20, 21, 22, 26, 27, 28)
-    ]
-    together = sweep_modes(beams, 3, 40)
-    assert len(solved) == 2  # with that of the first beam alone, by which all are checked
-    for found, beam in zip(together, beams, strict=True):
-        assert found == pytest.approx(solve_modes(beam, 3, 40).frequencies_hz, rel=1e-12)
-
-
 def test_a_chain_too_short_or_unlike_for_a_crowd_keeps_what_it_had():
     for count, settings in ((9, {}), (30, {"grading": 3.0})):
         chain = build_chain(FLANGES, count, **settings)
         places = [one.position for one in FLANGES.mass]
         together, own = (rule(chain, places, "reciprocal") for rule in (felt_together, felt_at))
         assert all((one == other).all() for one, other in zip(together, own, strict=True))
-    assert crowded.near(np.array([20, 22]), 60)
-    assert not crowded.near(np.array([20, 40]), 60)
 
 
 @pytest.mark.parametrize(("places", "count"), [((30.0, 24.375), 60), ((7.0, 40.25), 61), ((19.0, 25.0, 33.7), 60)])
@@ -204,8 +160,6 @@ def test_what_stands_on_a_joint_is_as_near_seen_from_the_other_end(places, count
     beam = replace(STRIP, supports=("pinned", "clamped"), mass=bodies)
     here, there = (solve_modes(one, 4, count).frequencies_hz for one in (beam, beam.mirrored()))
     assert there == pytest.approx(here, rel=1e-11)
-    seen = np.array(places)[:, None]
-    assert (crowded.near(seen, count) == crowded.near(count - seen, count)).all()
 
 
 @pytest.mark.parametrize("supports", [("clamped", "free"), ("pinned", "guided"), ("free", "free")])

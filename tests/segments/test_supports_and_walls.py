@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
-from verify.exact import modes as analytic_modes
 from verify.judge import compare
-from verify.judge.workbench import Workbench
+from verify.judge.cache import SolutionCache
 from verify.options import SUPPORTS, WALLS
 from verify.segments import linear as segment_model
 from verify.segments.walls import wall_factors
@@ -141,7 +141,7 @@ def test_the_bracket_holds_for_every_mode_a_chain_has(titanium_strip, supports):
         n = min(segment_model.n_elastic(beam, count), fem_beam.n_elastic(beam, count))
         if n == 0:
             continue
-        bench = Workbench(beam)
+        bench = SolutionCache(beam)
         bench.modes("segment", count, n, settings)
         bench.modes("fem", count, n)
         for mode in range(1, n + 1):
@@ -164,24 +164,24 @@ def test_a_bracket_that_is_no_theorem_is_refused_with_the_reason(titanium_strip,
     if "section" in change:
         change = {"section": (Section(length=0.3), Section(length=0.43, thickness=0.001))}
     with pytest.raises(NoBracketError, match=reason):
-        Workbench(replace(titanium_strip, **change)).bracket(3, 20, settings)
+        SolutionCache(replace(titanium_strip, **change)).bracket(3, 20, settings)
 
 
 def test_a_bracket_thinner_than_rounding_is_refused(titanium_strip):
     with pytest.raises(NoBracketError, match="smaller count"):
-        Workbench(titanium_strip).bracket(1, 1500)
+        SolutionCache(titanium_strip).bracket(1, 1500)
 
 
 @pytest.mark.parametrize("supports", [p for p in UNORDERED if "clamped" not in p], ids="-".join)
 def test_the_mean_of_both_models_is_of_order_six_without_a_clamped_end(titanium_strip, supports):
-    bench = Workbench(replace(titanium_strip, supports=supports))
+    bench = SolutionCache(replace(titanium_strip, supports=supports))
     first, second = (bench.frequency_error("mean", n, 6) for n in (40, 80))
     assert np.log2(first / second) == pytest.approx(6.0, abs=0.12)
 
 
 @pytest.mark.parametrize("supports", UNORDERED, ids="-".join)
 def test_corrected_joints_are_of_order_four_but_two_next_to_a_clamped_wall(titanium_strip, supports):
-    bench = Workbench(replace(titanium_strip, supports=supports))
+    bench = SolutionCache(replace(titanium_strip, supports=supports))
     found = {r: [bench.shape_error("segment", n, 3, r) for n in (80, 160)] for r in ("raw", "corrected")}
     orders = {reading: np.log2(a / b) for reading, (a, b) in found.items()}
     assert orders["raw"] == pytest.approx(2.0, abs=0.03)
@@ -196,7 +196,7 @@ def test_corrected_joints_are_of_order_four_but_two_next_to_a_clamped_wall(titan
 @pytest.mark.parametrize(("model", "expected", "band"), [("segment", 4.0, 0.6), ("fem", 3.0, 0.05)])
 def test_curvatures_converge(titanium_strip, supports, model, expected, band):
     """Joint moments with order 4 (the sign change of Gregory's walls blurs it), Gauss points with order 3."""
-    bench = Workbench(replace(titanium_strip, supports=supports))
+    bench = SolutionCache(replace(titanium_strip, supports=supports))
     first, second = (bench.curvature_error(model, n, 3) for n in (60, 120))
     assert np.log2(first / second) == pytest.approx(expected, abs=band)
 
@@ -204,7 +204,7 @@ def test_curvatures_converge(titanium_strip, supports, model, expected, band):
 @pytest.mark.parametrize("supports", PAIRS, ids="-".join)
 @pytest.mark.parametrize("model", ["segment", "fem"])
 def test_nodes_of_a_mode_stand_where_the_exact_mode_has_them(titanium_strip, supports, model):
-    bench = Workbench(replace(titanium_strip, supports=supports))
+    bench = SolutionCache(replace(titanium_strip, supports=supports))
     exact = bench.node_positions("analytic", None, 4)
     found = bench.node_positions(model, 60, 4)
     assert len(found) == len(exact)
@@ -212,7 +212,7 @@ def test_nodes_of_a_mode_stand_where_the_exact_mode_has_them(titanium_strip, sup
 
 
 def test_the_nodes_of_a_pinned_mode_divide_the_beam_evenly(titanium_strip):
-    found = Workbench(titanium_strip).node_positions("analytic", None, 5)
+    found = SolutionCache(titanium_strip).node_positions("analytic", None, 5)
     assert found == pytest.approx(np.arange(1, 5) / 5 * 0.73, rel=1e-13)
 
 

@@ -247,18 +247,6 @@ def test_a_tensioned_joint_takes_the_harmonic_mean_of_what_its_links_have(theory
         assert chain.slip_masses[1:-1] == pytest.approx(mean / 12, rel=1e-12)
 
 
-@pytest.mark.parametrize("attachment", ["reciprocal", "lever"])
-@pytest.mark.parametrize("joints", ["series", "tensioned"])
-@pytest.mark.parametrize("theory", ["euler-bernoulli", *THEORIES])
-@pytest.mark.parametrize("tip", [(), (PointMass(position=L, mass=0.02, rotary_inertia=1e-5),)])
-@pytest.mark.parametrize("count", [20, 400])
-def test_how_a_chain_is_solved_is_known_beforehand(attachment, joints, theory, tip, count):
-    beam = replace(THICK, mass=tip, supports=("clamped", "free"))
-    settings = {"theory": theory, "attachment": attachment, "joints": joints}
-    found = solve_modes(beam, 3, count, **settings)
-    assert MODELS["segment"].method(beam, 3, count, **settings) == found.method
-
-
 @pytest.mark.parametrize("theory", THEORIES)
 @pytest.mark.parametrize(("end", "hold"), [(0, 0.3), (1, 20.0)])
 def test_mended_joints_before_an_elastic_clamp_keep_order_four(theory, end, hold):

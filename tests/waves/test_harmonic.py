@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
-from verify.exact import modes as analytic_modes
 from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
 from verify.models.fields import phasor, wavenumber
 from verify.options import SUPPORTS

@@ -13,7 +13,7 @@ from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import closed_forms, error_laws
-from verify.exact import modes as analytic_modes
+from verify import analytic_modes
 from verify.judge.workbench import Workbench
 from verify.models import intervals
 from verify.models.catalogue import MODELS

@@ -1,5 +1,5 @@
-"""Benches: run time against error, of every method that a scene gives something to do.
+"""Work-precision benchmarks: run time over error of every method that answers the same question."""
 
-Takes a scene, the models, the studies' runs and other engines; gives rows (error, time, what each is against) and
-sentences, each earned or withheld with the reason. The catalogue of studies and the command `bench` call it.
-"""
+from verify.bench.work_precision import Method, Question, Row, measure, result, time_at
+
+__all__ = ["Method", "Question", "Row", "measure", "result", "time_at"]

@@ -6,12 +6,12 @@ Haug, J. Mech. Design 104 (1982) 247): as many angles as there are held points d
 Forward dynamics is compiled (`chain.recursion_kernels`), motion in time is in `chain.stepping`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from verify.chain import places, records
+from verify.chain import kinematics, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular
@@ -100,20 +100,20 @@ def _arrays(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
 
 def positions(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
     """Joints 0..N, (N + 1, 2) metres, and their velocities, (N + 1, 2) m/s."""
-    placed = places.place(system, state.time, *_arrays(system, state))
+    placed = kinematics.place(system, state.time, *_arrays(system, state))
     return placed.joints, placed.velocities
 
 
 def energies(system: ChainSystem, state: ChainState) -> tuple[float, float, float]:
     """Kinetic, elastic and gravitational energy, joule."""
     angles, rates = _arrays(system, state)
-    found = places.energies(system, np.array([state.time]), angles[None], rates[None])[:, 0]
+    found = kinematics.energies(system, np.array([state.time]), angles[None], rates[None])[:, 0]
     return float(found[0]), float(found[1]), float(found[2])
 
 
 def held_rows(system: ChainSystem, state: ChainState) -> Array:
     """Derivatives of the held points' y by the relative angles, (n_held, N), metres."""
-    return places.held_rows(system, positions(system, state)[0][:, 0])
+    return kinematics.held_rows(system, positions(system, state)[0][:, 0])
 
 
 def keep_pivots(rows: Array, pivots: Indices) -> Indices:
@@ -125,17 +125,15 @@ def keep_pivots(rows: Array, pivots: Indices) -> Indices:
     return pivots if now >= PIVOT_LOSS ** len(rows) * best else chosen
 
 
-def project(system: ChainSystem, state: ChainState, dependent: Sequence[int] | None = None) -> tuple[ChainState, float]:
+def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
     """The state brought onto the held points, and the largest change of an angle or (times 1 s) of a rate.
 
-    Angles by Newton, rates by one linear solve; only the `dependent` joints (1..N, by pivot unless given) move.
-    Raises InputError where Newton finds no position.
+    Angles by Newton, rates by one linear solve; only the dependent angles move, chosen by pivot. Raises InputError
+    where Newton finds no position.
     """
     q, v = _arrays(system, state)
-    rows = places.held_rows(system, places.place(system, state.time, q, v).joints[:, 0])
-    pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
-    if len(pivots) != len(rows) or any(not 0 <= p < system.n_links for p in pivots):
-        raise InputError(f"dependent = {dependent!r}: give {len(rows)} joints between 1 and {system.n_links}")
+    rows = kinematics.held_rows(system, kinematics.place(system, state.time, q, v).joints[:, 0])
+    pivots = choose_pivots(rows)
     if not _settle(system, state.time, q, v, pivots) or not np.isfinite(q).all():
         raise InputError(
             f"state.angles cannot be brought onto the held points by turning joint {int(pivots[0]) + 1}: "
@@ -151,9 +149,9 @@ def _settle(system: ChainSystem, time: float, q: Array, v: Array, pivots: Indice
         return True
     with np.errstate(over="ignore", invalid="ignore"):
         for _ in range(NEWTON_STEPS):
-            placed = places.place(system, time, q, v)
-            rows = places.held_rows(system, placed.joints[:, 0])[:, pivots]
-            off, leaving = places.strayed(system, time, placed)
+            placed = kinematics.place(system, time, q, v)
+            rows = kinematics.held_rows(system, placed.joints[:, 0])[:, pivots]
+            off, leaving = kinematics.strayed(system, time, placed)
             try:
                 change, correction = np.linalg.solve(rows, np.stack([off, leaving], axis=1)).T
             except np.linalg.LinAlgError:

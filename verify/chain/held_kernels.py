@@ -4,14 +4,14 @@ import numpy as np
 
 from verify.chain.records import HALF, ROLLER, Flat
 from verify.chain.recursion_kernels import direction, hub_motion, solve
+from verify.jit import inline
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import part
 
 SETTLED = 1e-9
 """Radians: the change of an angle after which another would be below rounding."""
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def rise(f: Flat, k: int, work: Array) -> float:
     """Vertical acceleration of a held point for column 12's angular accelerations and column 3's rates."""
     total, link = 0.0, int(f.held[k, 4])
@@ -22,7 +22,7 @@ def rise(f: Flat, k: int, work: Array) -> float:
     return total
 
 
-@part()
+@inline
 def solve_small(a: Array, n: int) -> None:
     """Gauss with row exchange on an (n, n + 1) array; the answer in its last column."""
     for j in range(n):
@@ -41,7 +41,7 @@ def solve_small(a: Array, n: int) -> None:
         a[j, n] /= a[j, j]
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def hold(f: Flat, t: float, work: Array) -> float:
     """Forces of the actuators that keep their points on the prescribed y; their power.
 
@@ -81,7 +81,7 @@ def hold(f: Flat, t: float, work: Array) -> float:
     return power
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
     """Angles and rates into columns 2, 3; positions and velocities of joints 0..N into 13 to 16."""
     angle, rate, _ = hub_motion(f.numbers, t)
@@ -97,7 +97,7 @@ def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
     work[n, 13], work[n, 14], work[n, 15], work[n, 16] = x, y, vx, vy
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) -> None:
     """Residuals of the held points (or of their rates), and derivatives by the dependent angles, into `small`."""
     count = f.held.shape[0]
@@ -115,7 +115,7 @@ def constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) ->
             f.small[k, d] = x - work[pivots[d], 13] if pivots[d] <= i else 0.0
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array) -> None:
     """Bring dependent angles (Newton, at most 20 times, until a change is below SETTLED) and rates onto held points."""
     count = f.held.shape[0]
@@ -139,7 +139,7 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array)
             return
 
 
-@part()
+@inline
 def repivot(f: Flat, pivots: Indices, work: Array, loss: float) -> bool:
     """Exchange the roller's dependent angle, where it is the only one, if its lever arm has become short."""
     if f.held.shape[0] != 1:

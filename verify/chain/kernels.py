@@ -5,11 +5,11 @@ import numpy as np
 from verify.chain.held_kernels import hold, project, repivot
 from verify.chain.records import DIVERGED, DONE, ROLLER, RUNNING, TOO_SMALL, Flat, March
 from verify.chain.recursion_kernels import cosines, hub_motion, load_power, loads, moments, shortening, solve, weigh
+from verify.jit import inline, jit
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -> tuple[float, float]:
     """Relative angular accelerations, (N,), into `out`; (power lost, power put in by loads, actuators and hub)."""
     lost, power = moments(f, t, q, v, work)
@@ -29,7 +29,7 @@ def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -
     return lost, power
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
     """Rates of the state (q, v, energy lost, work put in), (2N + 2,)."""
     n = f.links.shape[0]
@@ -38,7 +38,7 @@ def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
         out[i] = y[n + i]
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _stages(f: Flat, t: float, h: float, y: Array, a: Array, c: Array, k: Array, new: Array, work: Array) -> None:
     """Stages 1.. of an explicit Runge-Kutta step into k[1:], its answer (the last row of `a`) into `new`."""
     stages = a.shape[1]
@@ -54,7 +54,7 @@ def _stages(f: Flat, t: float, h: float, y: Array, a: Array, c: Array, k: Array,
             derivative(f, t + c[s] * h, new, work, k[s])
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _keep(t: float, h: float, at: float, y: Array, new: Array, k0: Array, k1: Array, n: int, out: Array) -> None:
     """The state at a time within a step: quintic Hermite in the angles, its derivative in the rates."""
     s = (at - t) / h
@@ -74,7 +74,7 @@ def _keep(t: float, h: float, at: float, y: Array, new: Array, k0: Array, k1: Ar
         out[i] = u0 * y[i] + u1 * new[i] + h * s * r * (r * k0[i] - s * k1[i])
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _error(n: int, h: float, k: Array, weights: Array, y: Array, scale: Array) -> float:
     """Norm of a step's estimated error over its tolerance: angles and rates each by their root mean square.
 
@@ -96,7 +96,7 @@ def _error(n: int, h: float, k: Array, weights: Array, y: Array, scale: Array) -
     return worst
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def torn(rates: Array, h: float) -> bool:
     """Whether rates are not finite, or one step would turn a joint by more than half a turn."""
     fine = True
@@ -105,7 +105,7 @@ def torn(rates: Array, h: float) -> bool:
     return not fine
 
 
-@part()
+@inline
 def furthest(before: float, work: Array, n: int) -> float:
     """The largest of a number and the turns of n links from the straight chain, which stand in column 2, radians."""
     for i in range(n):
@@ -114,7 +114,7 @@ def furthest(before: float, work: Array, n: int) -> float:
     return before
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _propose(error: float, order: float, h: float) -> float:
     """The next step after one with this error over its tolerance."""
     if not error >= 0.0:
@@ -124,7 +124,7 @@ def _propose(error: float, order: float, h: float) -> float:
     return h * (share if share < 4.0 else 4.0)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _keep_samples(m: March, t: float, h: float) -> None:
     """What lies within an accepted step."""
     last, n = m.k.shape[0] - 1, m.y.size // 2 - 1
@@ -133,7 +133,7 @@ def _keep_samples(m: March, t: float, h: float) -> None:
         m.counts[3] += 1
 
 
-@lean(fastmath={"contract"})
+@jit(fastmath={"contract"})
 def march(f: Flat, m: March, budget: int, work: Array) -> int:
     """At most `budget` steps, fixed or held to the tolerances of `scale`; each ends on the held points.
 

@@ -1,4 +1,4 @@
-"""Known problems solved by the nonlinear chain: figures that have a reference outside this suite."""
+"""Benchmark problems of the nonlinear chain, with references outside this package."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -7,28 +7,22 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.chain.confirmed import refuse_unknown
 from verify.chain.dynamics import at_rest, linearise, positions, project
-from verify.chain.far import refuse_unknown
 from verify.chain.result import ChainMotion
-from verify.chain.splitting import modal_basis, simulate_linear, simulate_modal
 from verify.chain.statics import solve_static
-from verify.chain.stepping import simulate
+from verify.chain.stepping import Method, simulate
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
-from verify.chain.work import DENSE_LINKS, MOST, STATIC_LINKS, check_links, check_modes_of
+from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
-from verify.section import Piece
 from verify.segments.links import link_inertia
 
 Progress = Callable[[float], None]
-"""Hears how much of a motion is done, 0 to 1."""
+"""Called with the fraction of a motion done, 0 to 1."""
 
 LINEAR = 1e-6
 """Amplitude in radii of gyration up to which a chain is linear to 1e-13."""
-
-
-def unheard(part: float) -> None:
-    """Nobody listens."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +41,7 @@ def cantilever_tip(load: float, n_segments: int, wall: Wall = "gregory") -> TipP
     The reference is the elastica by elliptic integrals: K. E. Bisshopp and D. C. Drucker, Quart. Appl. Math. 3 (1945)
     272. Order 2 in the number of segments. Raises InputError where no equilibrium is found.
     """
-    _check_static(n_segments)
+    check_whole("segments", n_segments, 1)
     system = build_system(UNIT_CANTILEVER, n_segments, wall=wall)
     at = float(system.lengths[-1])
     system = replace(system, loads=(LinkLoad(link=system.n_links, at=at, force=(0.0, load * UNIT_STIFFNESS)),))
@@ -61,14 +55,10 @@ def rollup_gap(n_segments: int, wall: Wall = "half", turns: float = 1.0) -> floa
     With equal joints, a wall joint 2EI/l among them, the circle closes exactly; Gregory's weights leave a gap. Raises
     InputError where no equilibrium is found.
     """
-    _check_static(n_segments)
+    check_whole("segments", n_segments, 1)
     system = build_system(UNIT_CANTILEVER, n_segments, wall=wall)
     moment = 2.0 * pi * turns * UNIT_STIFFNESS
     return float(np.hypot(*_tip(replace(system, loads=(LinkLoad(link=system.n_links, at=0.0, moment=moment),)))))
-
-
-def _check_static(n_segments: int) -> None:
-    check_links(n_segments, 1, STATIC_LINKS, "an equilibrium takes a time in proportion to its links")
 
 
 def _tip(system: ChainSystem) -> tuple[float, float]:
@@ -88,9 +78,7 @@ def hanging_frequency(mode: int, n_segments: int) -> float:
     sqrt(3/2) for one link, j_{0,n} / 2 (Daniel Bernoulli) in the limit of many, approached with order 2. Raises
     InputError for more modes than links.
     """
-    check_modes_of(n_segments)
-    if mode > n_segments:
-        raise InputError(f"mode = {mode!r}: a hanging chain of {n_segments} segments has as many modes")
+    check_whole("segments", n_segments, mode)
     lengths, masses, still = (np.full(n_segments, value) for value in (1.0 / n_segments, 1.0 / n_segments, 0.0))
     system = ChainSystem(
         lengths=lengths,
@@ -110,9 +98,7 @@ def turning_frequency(mode: int, n_segments: int, speed: float, wall: Wall = "gr
     197, has flapping). Approached with order 2: the wave that bends is answered with order 4, the centrifugal pull with
     order 2. Raises InputError for more modes than links.
     """
-    check_modes_of(n_segments)
-    if mode > n_segments:
-        raise InputError(f"mode = {mode!r}: a chain of {n_segments} segments has as many modes, raise segments")
+    check_whole("segments", n_segments, mode)
     system = build_system(UNIT_CANTILEVER, n_segments, wall=wall)
     unit = sqrt(UNIT_STIFFNESS / UNIT_CANTILEVER.mass_per_length)
     system = replace(system, rotation=Rotation(rate=speed * unit))
@@ -131,7 +117,9 @@ def first_shape(system: ChainSystem, amplitude: float) -> ChainState:
     return at_rest(system, np.diff(theta, prepend=0.0))
 
 
-def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int, progress: Progress = unheard) -> float:
+def large_amplitude_frequency(
+    beam: Beam, amplitude: float, n_segments: int, progress: Progress = lambda part: None
+) -> float:
     """Frequency over the linear chain's, first mode between immovable hinges, `amplitude` in radii of gyration.
 
     The radius is sqrt(I / A); the immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J.
@@ -140,19 +128,17 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int, pro
     a beam that is not uniform, not between hinges, or damped.
     """
     if not abs(amplitude) >= LINEAR:
-        raise InputError(
-            f"amplitude = {amplitude!r} radii of gyration: the chain's steps do not resolve it; give at least "
-            f"{LINEAR:g}, where the frequency is the linear one but for 3/32 of its square"
-        )
+        raise InputError(f"amplitude = {amplitude!r} radii of gyration is not resolved, give at least {LINEAR:g}")
     _check_hinged(beam, n_segments)
-    height = amplitude * _radius(beam)
+    piece = beam.pieces[0]
+    if not beam.uniform or piece.second_moment is None or piece.area is None:
+        raise InputError("beam: this benchmark takes a uniform beam with a shape, sizes and youngs_modulus")
+    height = amplitude * sqrt(piece.second_moment / piece.area)
     system = build_system(beam, n_segments, immovable=True)
     _check_height(height, system)
     linear = float(linearise(system, at_rest(system)).frequencies()[0])
     times = np.linspace(0.0, 1.01 * pi / 2 / linear, 801)
-    motion = simulate(
-        system, first_shape(system, height), times, tolerance=1e-10, ledger=False, most=MOST, progress=progress
-    )
+    motion = simulate(system, first_shape(system, height), times, tolerance=1e-10, ledger=False, progress=progress)
     _finished(motion)
     middle = motion.deflection([0.5 * beam.length])[:, 0]
     if not (k := int(np.argmax(middle <= 0.0))):
@@ -162,34 +148,14 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int, pro
 
 
 def _check_hinged(beam: Beam, n_segments: int) -> None:
-    """Raise InputError for a beam or a number of segments that has no motion between hinges to follow."""
     if beam.supports != ("pinned", "pinned"):
-        raise InputError(
-            f"beam.supports = {list(beam.supports)!r}: this figure is of a beam between two hinges, give pinned ends"
-        )
-    check_modes_of(n_segments, 2)
-
-
-def _radius(beam: Beam) -> float:
-    """Sqrt(I / A) of a uniform beam, metres. Raises InputError where sections differ: no sine is their first mode."""
-    first, *others = (_figures(p) for p in beam.pieces)
-    if any(other != first for other in others):
-        raise InputError(
-            "beam.section: the first mode of unlike sections is no sine, as the amplitude asks for; give a uniform beam"
-        )
-    return sqrt(first[1] / first[3])
-
-
-def _figures(piece: Piece) -> tuple[float, float, float, float]:
-    """EI, I, rho A, A. Raises InputError where they are not known."""
-    if piece.second_moment is None or piece.area is None:
-        raise InputError("beam.shape: this figure takes a section's sizes, give its shape, sizes and youngs_modulus")
-    return piece.bending_stiffness, piece.second_moment, piece.mass_per_length, piece.area
+        raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark is of a beam with pinned ends")
+    check_whole("segments", n_segments, 2)
 
 
 def _check_height(height: float, system: ChainSystem) -> None:
     if not 0.0 < height <= 0.1 * system.length:
-        raise InputError(f"amplitude: the middle would stand {height:.3g} m off; give a positive one up to L / 10")
+        raise InputError(f"amplitude: mid-span would stand {height:.3g} m off; give a positive one up to L / 10")
 
 
 def energy_drift(
@@ -199,7 +165,7 @@ def energy_drift(
     periods: float,
     step: float | None,
     tolerance: float,
-    progress: Progress = unheard,
+    progress: Progress = lambda part: None,
 ) -> float:
     """Largest change of the energy of an undamped roller-ended chain, over what it was let go with.
 
@@ -213,22 +179,22 @@ def energy_drift(
     times = np.linspace(0.0, 2.0 * pi * periods / linear, 65)
     start = first_shape(system, amplitude * system.length)
     motion = (
-        simulate(system, start, times, tolerance=tolerance, most=MOST, progress=progress)
+        simulate(system, start, times, tolerance=tolerance, progress=progress)
         if step is None
-        else simulate(system, start, times, method="rk4", step=step, most=MOST, progress=progress)
+        else simulate(system, start, times, method="rk4", step=step, progress=progress)
     )
     _finished(motion)
     kinetic, elastic, _ = motion.energies()
     return float(abs(motion.residual()).max() / (kinetic + elastic)[0])
 
 
-def shaken_imbalance(n_segments: int, tip: Tip, tolerance: float, progress: Progress = unheard) -> float:
-    """What the books of a shaken chain miss at most, over what its dashpots lose.
+def shaken_imbalance(n_segments: int, tip: Tip, tolerance: float, progress: Progress = lambda part: None) -> float:
+    """Largest residual of a chain's energy balance over the loss of its dashpots.
 
-    All that can work on a chain works on this one: a base that turns and swings, a load off its link's middle with a
-    moment, an actuator, dashpots; its tip is free or a roller on an axial spring. Raises InputError.
+    All kinds of work act on this chain: a base that turns and swings, a load off its link's middle with a moment, an
+    actuator, dashpots; its tip is free or a roller on an axial spring. Raises InputError.
     """
-    check_links(n_segments, 3, DENSE_LINKS, "the base, an actuator and the load each have a link of their own")
+    check_whole("segments", n_segments, 3)
     system, stiff = build_system(UNIT_CANTILEVER, n_segments), UNIT_STIFFNESS
     unit, link = sqrt(stiff / UNIT_CANTILEVER.mass_per_length), 1.0 / n_segments
     push = LinkLoad(
@@ -250,7 +216,7 @@ def shaken_imbalance(n_segments: int, tip: Tip, tolerance: float, progress: Prog
     )
     start, _ = project(system, ChainState(np.zeros(n_segments), np.zeros(n_segments)))
     times = np.linspace(0.0, 1.0 / unit, 17)
-    motion = simulate(system, start, times, tolerance=tolerance, most=MOST, progress=progress)
+    motion = simulate(system, start, times, tolerance=tolerance, progress=progress)
     _finished(motion)
     return float(abs(motion.residual()).max() / motion.dissipated[-1])
 
@@ -263,48 +229,30 @@ def transient(
     n_segments: int,
     *,
     step: float | None = None,
-    method: str = "adaptive",
+    method: Method = "adaptive",
     axial_inertia: bool = True,
     tolerance: float | None = None,
-    most: float = MOST,
-    progress: Progress = unheard,
+    progress: Progress = lambda part: None,
 ) -> ChainMotion:
     """The chain from rest under harmonic forces A cos(2 pi f t + phase) on its links.
 
-    `method` is "adaptive" with a tolerance (default 1e-9), "rk4" or "modal" (two kicks) with a step, or "linear" for
-    the exact linear flow, which takes neither and whose links have no inertia along x in any case. Raises InputError,
-    also for a far motion that a second run with another step or tolerance does not confirm (`chain.far`).
+    `method` is "adaptive" with a tolerance (default 1e-9) or "rk4" with a step. Raises InputError, also for a far
+    motion that a second run with another step or tolerance does not confirm (`chain.confirmed`).
     """
-    _check_settings(method, step, tolerance)
-    if method in ("linear", "modal"):
-        check_modes_of(n_segments)
-    check_links(n_segments, 1, 5 * STATIC_LINKS, "a motion takes a time that grows with the cube of its links")
+    if method != "adaptive" and tolerance is not None:
+        raise InputError(f"tolerance = {tolerance!r} is for method = 'adaptive': {method!r} takes none, leave it out")
     system = build_system(beam, n_segments, forces, frequency_hz, axial_inertia=axial_inertia)
-    start = at_rest(system)
-    if method == "linear":
-        return simulate_linear(modal_basis(system), start, times)
-    run = _nonlinear(system, start, times, method)
+
+    def run(value: float) -> ChainMotion:
+        chosen: dict[str, float] = {"step": value} if fixed else {"tolerance": value}
+        return simulate(system, at_rest(system), times, method=method, ledger=False, progress=progress, **chosen)
+
+    fixed = step is not None
     given = (tolerance or 1e-9) if step is None else step
-    motion = run(given, most, progress)
+    motion = run(given)
     _finished(motion)
-    refuse_unknown(motion, method, given, lambda other: run(other, 2.0 * most, unheard))
+    refuse_unknown(motion, "step" if fixed else "tolerance", given, run)
     return motion
-
-
-def _nonlinear(
-    system: ChainSystem, start: ChainState, times: Sequence[float], method: str
-) -> Callable[[float, float, Progress], ChainMotion]:
-    """(step or tolerance, most, progress) -> the motion by a method, without a ledger."""
-    if method == "modal":
-        basis = modal_basis(system)
-        return lambda step, most, progress: simulate_modal(basis, start, times, step=step, most=most)
-    if method == "rk4":
-        return lambda step, most, progress: simulate(
-            system, start, times, method="rk4", step=step, ledger=False, most=most, progress=progress
-        )
-    return lambda tolerance, most, progress: simulate(
-        system, start, times, tolerance=tolerance, ledger=False, most=most, progress=progress
-    )
 
 
 def contact_line_error(
@@ -319,7 +267,7 @@ def contact_line_error(
     from verify.exact.modes import mode_shape
     from verify.segments.linear import solve_modes
 
-    check_modes_of(n_segments, 2)
+    check_whole("segments", n_segments, 2)
     system = build_system(beam, n_segments, wall=wall, grading=grading)
     joints = solve_modes(beam, mode, n_segments, wall=wall, grading=grading).readings["raw"]()[mode - 1]
     size = 1e-6 * beam.length / float(abs(joints).max())
@@ -329,16 +277,6 @@ def contact_line_error(
     exact = mode_shape(beam, mode, edges[0] + xi * np.ptp(edges), 1)
     largest = float(abs(mode_shape(beam, mode, system.nodes, 1)).max())
     return float(abs(found - exact).max()) / largest
-
-
-def _check_settings(method: str, step: float | None, tolerance: float | None) -> None:
-    """Raise InputError for a step or a tolerance that a method does not take, or lacks."""
-    if method in ("rk4", "modal") and step is None:
-        raise InputError(f"step is missing: give a step in seconds with method = {method!r}")
-    if method not in ("rk4", "modal") and step is not None:
-        raise InputError(f"step = {step!r} is for method = 'rk4' or 'modal': {method!r} takes none, leave it out")
-    if method != "adaptive" and tolerance is not None:
-        raise InputError(f"tolerance = {tolerance!r} is for method = 'adaptive': {method!r} takes none, leave it out")
 
 
 def _finished(motion: ChainMotion) -> None:

@@ -12,7 +12,7 @@ WORK_COLUMNS = 20
 HALF, MASS, INERTIA, SPRING, DASHPOT, MOBILITY = range(6)
 """Columns of `Flat.links`."""
 RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
-"""What `march` and `march_modal` return."""
+"""What `march` returns."""
 
 
 class Flat(NamedTuple):
@@ -92,45 +92,6 @@ def idle(n_links: int) -> March:
         scale=np.zeros(6),
         pivots=np.zeros(0, dtype=np.int64),
     )
-
-
-class Modal(NamedTuple):
-    """A splitting in modal coordinates as the kernels see it, and its scratch."""
-
-    kicks: Array
-    """(n_kicks,), shares of the step."""
-    shares_of_step: Array
-    """(n_kicks + 1,), of the flows between them."""
-    flows: Array
-    """(n_kicks + 2, m, 3): turns of those flows, and of the whole step."""
-    spacing: Array
-    """(m, 3): turns between two samples where these are evenly spaced; empty elsewhere."""
-    omega: Array
-    """(m,), rad/s."""
-    modes: Array
-    """(m, N)."""
-    duals: Array
-    """(m, N)."""
-    rest: Array
-    """(N,), angles that the modes are about."""
-    drives: Array
-    """(n_loads, 2), circular frequencies and phases."""
-    shares: Array
-    """(n_loads, m), steady amplitudes."""
-    tilt: float
-    """Metres: how far the last mode moves the tip off the roller's line; 0 without a roller."""
-    loose: Flat
-    """The chain without its roller."""
-    start: Array
-    """(m, 2)."""
-    steady: Array
-    """(m, 2)."""
-    trial: Array
-    """(m, 2)."""
-    vectors: Array
-    """(3, N)."""
-    force: Array
-    """(m,)."""
 
 
 class Elastic(NamedTuple):

@@ -14,8 +14,8 @@ Dynamics Algorithms, 2008, chapter 7; meeting in the middle is the twisted facto
 import numpy as np
 
 from verify.chain.records import DASHPOT, FREE, HALF, MASS, MOBILITY, ROLLER, SPRING, Flat
+from verify.jit import inline
 from verify.models.arrays import Array
-from verify.models.kernels import part
 
 Side = tuple[float, float, float, float, float]
 """A part of the chain seen from its end: mobility (xx, xy, yy) and its acceleration without a force there."""
@@ -23,13 +23,13 @@ SMALL = 0.5
 """Relative angles below this take the short series for sine and cosine."""
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def turned(c: float, s: float, x: float, y: float) -> tuple[float, float]:
     """A vector in a frame turned by the angle with cosine c and sine s."""
     return c * x + s * y, c * y - s * x
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _turned_matrix(c: float, s: float, x11: float, x12: float, x22: float) -> tuple[float, float, float]:
     """A symmetric matrix in a frame turned by the angle with cosine c and sine s."""
     c2, s2 = c * c - s * s, 2.0 * c * s
@@ -38,14 +38,14 @@ def _turned_matrix(c: float, s: float, x11: float, x12: float, x22: float) -> tu
     return mean + d, off, mean - d
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _inverse(x11: float, x12: float, x22: float) -> tuple[float, float, float]:
     """The inverse of a symmetric 2 x 2 matrix."""
     d = 1.0 / (x11 * x22 - x12 * x12)
     return x22 * d, -x12 * d, x11 * d
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def hub_motion(hub: Array, t: float) -> tuple[float, float, float]:
     """Angle, rate and acceleration of the base's prescribed rotation, from `Flat.numbers`."""
     if hub[2] == 0.0:
@@ -55,7 +55,7 @@ def hub_motion(hub: Array, t: float) -> tuple[float, float, float]:
     return hub[0] + hub[1] * t + swing, hub[1] + speed, -hub[3] * hub[3] * swing
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _series(angle: float) -> tuple[float, float]:
     """Cosine and sine of a small angle, to rounding."""
     z = angle * angle
@@ -64,7 +64,7 @@ def _series(angle: float) -> tuple[float, float]:
     return 1.0 - z * (0.5 - z * c), angle * (1.0 - z * (1.0 / 6 - z * s))
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def direction(angle: float) -> tuple[float, float]:
     """Cosine and sine of an angle, by the short series where it is small."""
     if abs(angle) < SMALL:
@@ -72,7 +72,7 @@ def direction(angle: float) -> tuple[float, float]:
     return np.cos(angle), np.sin(angle)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def cosines(angles: Array, work: Array) -> None:
     """Cosine and sine of relative angles into columns 0 and 1."""
     largest = 0.0
@@ -87,7 +87,7 @@ def cosines(angles: Array, work: Array) -> None:
         work[i, 0], work[i, 1] = _series(angles[i])
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def moments(f: Flat, t: float, q: Array, v: Array, work: Array) -> tuple[float, float]:
     """Absolute angles, rates and joint moments into columns 2, 3, 6, forces cleared; (dissipation, hub's power)."""
     angle, rate, _ = hub_motion(f.numbers, t)
@@ -106,7 +106,7 @@ def moments(f: Flat, t: float, q: Array, v: Array, work: Array) -> tuple[float, 
     return lost, hub_power
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def loads(f: Flat, t: float, work: Array) -> None:
     """Point loads: forces along and across each link into columns 4, 5; moments into 6, alone into 13."""
     for k in range(f.loads.shape[0]):
@@ -122,7 +122,7 @@ def loads(f: Flat, t: float, work: Array) -> None:
         work[i, 13] += turn
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def load_power(f: Flat, work: Array) -> float:
     """Power of the point loads, from velocities carried from link to link."""
     last = -1
@@ -142,7 +142,7 @@ def load_power(f: Flat, work: Array) -> float:
     return power
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def weigh(f: Flat, work: Array) -> None:
     """Gravity into columns 4 and 5."""
     gx, gy = f.numbers[5], f.numbers[6]
@@ -153,7 +153,7 @@ def weigh(f: Flat, work: Array) -> None:
             work[i, 5] += f.links[i, MASS] * (c * gy - s * gx)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _terms(f: Flat, i: int, work: Array) -> tuple[float, float, float, float, float, float, float]:
     """A = diag(a, b), O = diag(-a, o) of a link, and its ends' accelerations without joint forces."""
     a, along, inward = (
@@ -173,7 +173,7 @@ def _terms(f: Flat, i: int, work: Array) -> tuple[float, float, float, float, fl
     )
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _from_base(f: Flat, i: int, work: Array, x11: float, x12: float, x22: float, z1: float, z2: float) -> Side:
     """Add link i to the part behind its first joint; the answer stands in the frame of link i."""
     a, b, o, s1, s2, e1, e2 = _terms(f, i, work)
@@ -184,7 +184,7 @@ def _from_base(f: Flat, i: int, work: Array, x11: float, x12: float, x22: float,
     return a - a * a * i11, a * o * i12, b - o * o * i22, e1 + a * r1, e2 - o * r2
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _from_tip(f: Flat, i: int, work: Array, y11: float, y12: float, y22: float, u1: float, u2: float) -> Side:
     """Add link i to the part beyond its second joint (given in the frame of link i)."""
     a, b, o, s1, s2, e1, e2 = _terms(f, i, work)
@@ -195,7 +195,7 @@ def _from_tip(f: Flat, i: int, work: Array, y11: float, y12: float, y22: float, 
     return a - a * a * i11, a * o * i12, b - o * o * i22, s1 - a * r1, s2 + o * r2
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _tip(f: Flat, pull: float, work: Array) -> Side:
     """The last link seen from its first joint: its tip free, or the roller's unknown force eliminated.
 
@@ -215,7 +215,7 @@ def _tip(f: Flat, pull: float, work: Array) -> Side:
     return a - a * a * i11, a * o * i12, b - o * o * i22, s1 - a * r1, s2 + o * r2
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def shortening(f: Flat, work: Array) -> float:
     """How far the tip stands back from the straight chain's, from absolute angles in column 2, metres."""
     total = 0.0
@@ -225,7 +225,7 @@ def shortening(f: Flat, work: Array) -> float:
     return total
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _eliminate(f: Flat, pull: float, work: Array) -> tuple[float, float]:
     """Both sides up to the middle joint; the force there, in the frame of the link behind it."""
     n = f.links.shape[0]
@@ -247,7 +247,7 @@ def _eliminate(f: Flat, pull: float, work: Array) -> tuple[float, float]:
     return i11 * (z1 - u1) + i12 * (z2 - u2), i12 * (z1 - u1) + i22 * (z2 - u2)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _across(f: Flat, i: int, work: Array, p1: float, p2: float) -> tuple[float, float]:
     """The force at the other end of link i (both in its frame), and the link's angular acceleration."""
     a, o = f.links[i, MOBILITY], f.links[i, MOBILITY + 4]
@@ -258,7 +258,7 @@ def _across(f: Flat, i: int, work: Array, p1: float, p2: float) -> tuple[float, 
     return o1, o2
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _substitute(f: Flat, work: Array, p1: float, p2: float) -> None:
     """Joint forces from the middle outwards; the links' angular accelerations into column 12."""
     n = f.links.shape[0]
@@ -275,7 +275,7 @@ def _substitute(f: Flat, work: Array, p1: float, p2: float) -> None:
             b1, b2 = _across(f, i, work, b1, b2)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _solve_transverse(f: Flat, pull: float, work: Array) -> None:
     """The same for links without inertia along x, whose axial forces are static: one unknown for each joint."""
     n = f.links.shape[0]
@@ -303,7 +303,7 @@ def _solve_transverse(f: Flat, pull: float, work: Array) -> None:
         p = beyond
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def solve(f: Flat, pull: float, work: Array) -> None:
     """The links' angular accelerations into column 12 from what stands in columns 0 to 6."""
     if f.axial:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.chain.places import energies, hub
+from verify.chain.kinematics import energies, hub
 from verify.chain.system import ChainState, ChainSystem, link_at
 from verify.checks import check_number
 from verify.errors import InputError

@@ -85,18 +85,12 @@ def gyroscopic(system: ChainSystem, theta: Array) -> Array:
 
 def _refuse_still(system: ChainSystem) -> None:
     """Raise InputError for what keeps its direction while the base turns: there is no equilibrium then."""
-    still = {
-        "a roller": system.tip == "roller",
-        "an actuator": bool(system.actuators),
-        "gravity": any(system.gravity),
-        "a dead force": any(load.frequency_hz == 0.0 and any(load.force) for load in system.loads),
-        "inertia across one direction alone": not system.axial_inertia,
-    }
-    found = [what for what, there in still.items() if there]
-    if found:
+    dead = any(load.frequency_hz == 0.0 and any(load.force) for load in system.loads)
+    still = system.tip == "roller" or system.actuators or any(system.gravity) or dead or not system.axial_inertia
+    if still:
         raise InputError(
-            f"rotation.rate = {system.rotation.rate!r}: {found[0]} does not turn with the base, so that the chain has "
-            "no equilibrium; leave it out or give rate = 0"
+            f"rotation.rate = {system.rotation.rate!r}: a roller, actuators, gravity, dead forces and inertia across "
+            "alone do not turn with the base, so that there is no equilibrium; leave them out or give rate = 0"
         )
 
 

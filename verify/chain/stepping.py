@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import inf
 from time import perf_counter
 from typing import Any, Literal, get_args
 
@@ -13,7 +12,6 @@ from verify.chain.dynamics import PIVOT_LOSS, accelerated, flatten, held_rows, k
 from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
-from verify.chain.work import fixed_steps, per_evaluation, refuse_work
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array
@@ -73,10 +71,7 @@ def simulate(
     method: Method = "adaptive",
     step: float | None = None,
     tolerance: float = 1e-8,
-    dependent: Sequence[int] | None = None,
     ledger: bool = True,
-    limit: float | None = None,
-    most: float = inf,
     progress: Callable[[float], None] = lambda part: None,
 ) -> ChainMotion:
     """The motion from `start`, kept at `times` (ascending, from start.time on).
@@ -84,23 +79,18 @@ def simulate(
     "rk4" takes a fixed `step` and is refused above its stability limit (`step_limit`); "adaptive" is Dormand and
     Prince's pair of orders 5 and 4, its error per step held to `tolerance` of the largest motion so far. Both are of
     order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
-    `limit` is the stability limit where it is known already, which spares finding it.
-    `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. `progress` hears
-    how much of the time is done; a run that will take more than `most` accelerations of links (`chain.work`) is
-    refused as soon as its pace is known. Raises InputError.
+    An interrupt returns what is kept. `progress` is
+    called with the fraction of time done. Raises InputError.
     """
     began = perf_counter()
     _check_method(method, step, tolerance)
     samples = checked_times(start, times)
-    begin, moved = project(system, start, dependent)
+    begin, moved = project(system, start)
     if method == "rk4" and step is not None:
-        refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
-    if step is not None:
-        seconds = float(samples[-1] - start.time)
-        refuse_work(4.0 * fixed_steps(seconds, step) * per_evaluation(system.n_links), most, seconds)
-    run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
+        refuse_unstable(step, step_limit(system, begin))
+    run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, ledger)
     ready = perf_counter()
-    stopped = run.march(most, progress)
+    stopped = run.march(progress)
     return run.motion(method, (ready - began, perf_counter() - ready), stopped, how_started(moved, start))
 
 
@@ -143,7 +133,6 @@ class _Run:
         table: Tableau,
         step: float | None,
         tolerance: float,
-        dependent: Sequence[int] | None,
         ledger: bool,
     ) -> None:
         self.system = system
@@ -164,26 +153,26 @@ class _Run:
             samples=samples,
             kept=np.zeros((len(samples), size)),
             counts=np.zeros(5, dtype=np.int64),
-            clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]),
+            clock=np.array([start.time, first, PIVOT_LOSS]),
             scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0, 0.0]),
-            pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
+            pivots=choose_pivots(rows),
         )
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
 
-    def march(self, most: float, progress: Callable[[float], None]) -> str:
-        """Step until every sample is kept; why it stopped. Raises InputError where that would be too much work."""
+    def march(self, progress: Callable[[float], None]) -> str:
+        """Step until every sample is kept; why it stopped."""
         from verify.chain import kernels
 
         budget = max(_BUDGET // self.system.n_links, 16)
-        pace = _Pace(self, most)
+        begun, end = float(self.m.clock[0]), float(self.m.samples[-1])
         try:
             while True:
                 status = kernels.march(self.flat, self.m, budget, self.work)
                 if status != records.RUNNING:
                     return self.ended(status)
-                progress(pace.part())
-                if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
+                progress((float(self.m.clock[0]) - begun) / (end - begun))
+                if self.flat.held.shape[0] > 1:
                     self.keep_pivots()
         except KeyboardInterrupt:
             return f"interrupted at t = {self.m.clock[0]:.6g} s"
@@ -229,24 +218,6 @@ class _Run:
                 furthest=float(self.m.scale[5]),
             ),
         )
-
-
-class _Pace:
-    """What a run will cost by what it has cost so far."""
-
-    def __init__(self, run: _Run, most: float) -> None:
-        self.run, self.most = run, most
-        self.begun, self.end = float(run.m.clock[0]), float(run.m.samples[-1])
-        self.before = self.begun, 0.0
-
-    def part(self) -> float:
-        """How much of the time is done. Raises InputError where the rest would be too much work."""
-        time, work = float(self.run.m.clock[0]), float(self.run.m.counts[2]) * per_evaluation(self.run.system.n_links)
-        (then, spent), self.before = self.before, (time, work)
-        gone, last = time - self.begun, time - then
-        rest = min(work / gone if gone > 0.0 else inf, (work - spent) / last if last > 0.0 else inf)
-        refuse_work(work + rest * (self.end - time), self.most, self.end - self.begun)
-        return gone / (self.end - self.begun)
 
 
 def _largest(apply: Callable[[Array], Array], n: int) -> float:

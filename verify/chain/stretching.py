@@ -8,7 +8,6 @@ immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
 from time import perf_counter
 from typing import Any
 
@@ -17,7 +16,6 @@ import numpy as np
 from verify.chain import records
 from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
-from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
 from verify.models.arrays import Array
@@ -38,28 +36,19 @@ class ElasticMotion(MovedChain):
 
     @cached_property
     def energies(self) -> Array:
-        """(n,), kinetic, elastic and of gravity together, joule."""
-        return self._kinetic() + self._elastic() - self._lowered()
-
-    def _kinetic(self) -> Array:
-        diagonal, coupling = joint_masses(self.system.masses, self.system.inertias, self.system.lengths)
-        v = self.velocities
-        return np.asarray(0.5 * (v**2).sum(axis=2) @ diagonal + (v[:, 1:] * v[:, :-1]).sum(axis=2) @ coupling)
-
-    def _elastic(self) -> Array:
-        """Of links and of joints, whose bends are differences of the links' directions."""
-        lengths, spans = self.system.lengths, np.diff(self.displacements, axis=1)
+        """(n,), kinetic, elastic (of links and joints) and of gravity together, joule."""
+        system, v = self.system, self.velocities
+        diagonal, coupling = joint_masses(system.masses, system.inertias, system.lengths)
+        kinetic = 0.5 * (v**2).sum(axis=2) @ diagonal + (v[:, 1:] * v[:, :-1]).sum(axis=2) @ coupling
+        lengths, spans = system.lengths, np.diff(self.displacements, axis=1)
         along, across = lengths + spans[..., 0], spans[..., 1]
         squares = spans[..., 0] * (2.0 * lengths + spans[..., 0]) + across**2
         stretches = squares / (np.hypot(along, across) + lengths)
         bends = np.diff(np.arctan2(across, along), axis=1, prepend=0.0)
         bends -= 2.0 * np.pi * np.round(bends / (2.0 * np.pi))
-        return np.asarray(0.5 * (stretches**2 @ (self.axial_stiffness / lengths) + bends**2 @ self.system.stiffness))
-
-    def _lowered(self) -> Array:
-        """What gravity has done since the straight chain."""
-        u = self.displacements @ np.array(self.system.gravity)
-        return np.asarray(0.5 * (u[:, 1:] + u[:, :-1]) @ self.system.masses)
+        elastic = 0.5 * (stretches**2 @ (self.axial_stiffness / lengths) + bends**2 @ system.stiffness)
+        u = self.displacements @ np.array(system.gravity)
+        return np.asarray(kinetic + elastic - 0.5 * (u[:, 1:] + u[:, :-1]) @ system.masses)
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Y of material points on their links, (n, len(x)), metres."""
@@ -82,16 +71,6 @@ def elastic_step_limit(system: ChainSystem, axial_stiffness: float | Array) -> f
     return float(2.0 * np.sqrt(2.0 / fastest.max()))
 
 
-def _step(limit: float, step: float | None) -> float:
-    """The step asked for, or half of what is stable. Raises InputError above that."""
-    if step is None:
-        return 0.5 * limit
-    check_number("step", step, "seconds", above=0)
-    if step > limit:
-        raise InputError(f"step = {step!r} s lies above the stability limit {limit:.4g} s of the stretching chain")
-    return step
-
-
 def simulate_elastic(
     system: ChainSystem,
     axial_stiffness: float | Array,
@@ -100,21 +79,19 @@ def simulate_elastic(
     step: float | None = None,
     immovable: bool = False,
     deflected: Array | None = None,
-    most: float = inf,
 ) -> ElasticMotion:
     """The motion from rest, straight or from joint deflections `deflected` (N + 1,), kept at even `times` from 0.
 
     `axial_stiffness` is EA in newton, of all links or of each (N,); `step` is at most `elastic_step_limit`, half of
     it unless given, shortened to divide the spacing of the times; `immovable` holds the tip along x too. Raises
-    InputError, also for more work than `most` accelerations of links (`chain.work`), and for what stretching links do
-    not know here: actuators, a turning base, an axial spring, links without inertia along x.
+    InputError, also for actuators, a turning base, an axial spring and links without inertia along x.
     """
     began = perf_counter()
     samples = _checked(system, axial_stiffness, times)
-    step = _step(elastic_step_limit(system, axial_stiffness), step)
+    limit = elastic_step_limit(system, axial_stiffness)
+    step = 0.5 * limit if step is None else step
+    check_number("step", step, "seconds", above=0, at_most=limit)
     spacing = float(samples[1])
-    work = fixed_steps(spacing, step) * (len(samples) - 1.0) * system.n_links * PER_STRETCHING_STEP
-    refuse_work(work, most, float(samples[-1]))
     flat = _flattened(system, axial_stiffness, immovable)
     u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
     u[:, 1] = 0.0 if deflected is None else deflected

@@ -8,11 +8,11 @@ straight chain are the state, so that small stretches keep their digits.
 import numpy as np
 
 from verify.chain.records import Elastic
+from verify.jit import inline, jit
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _solve(e: Elastic, force: Array) -> None:
     """Accelerations in the place of forces, (N + 1, 2); zero at held joints."""
     last = force.shape[0] - 1
@@ -25,7 +25,7 @@ def _solve(e: Elastic, force: Array) -> None:
             force[j, axis] -= e.factors[j + 1, axis, 0] * force[j + 1, axis]
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _strain(e: Elastic, i: int, u: Array) -> tuple[float, float, float, float]:
     """Length, cosine and sine of a link, and its stretch."""
     length = e.links[i, 0]
@@ -34,7 +34,7 @@ def _strain(e: Elastic, i: int, u: Array) -> tuple[float, float, float, float]:
     return now, (length + dx) / now, dy / now, (dx * (2.0 * length + dx) + dy * dy) / (now + length)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _turn(force: Array, i: int, now: float, c: float, s: float, moment: float) -> None:
     """A moment on a link as forces across it at both ends."""
     pair = moment / now
@@ -42,7 +42,7 @@ def _turn(force: Array, i: int, now: float, c: float, s: float, moment: float) -
     force[i + 1, 0], force[i + 1, 1] = force[i + 1, 0] - pair * s, force[i + 1, 1] + pair * c
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def _load(e: Elastic, t: float, u: Array, force: Array) -> None:
     """Dead loads shared between the joints of their links."""
     for k in range(e.loads.shape[0]):
@@ -56,7 +56,7 @@ def _load(e: Elastic, t: float, u: Array, force: Array) -> None:
             _turn(force, i, length, c, s, now * moment)
 
 
-@part(fastmath={"contract"})
+@inline(fastmath={"contract"})
 def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
     """Accelerations of all joints, (N + 1, 2), from displacements and velocities."""
     n = e.links.shape[0]
@@ -81,7 +81,7 @@ def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
     _solve(e, out)
 
 
-@lean(fastmath={"contract"})
+@jit(fastmath={"contract"})
 def march(e: Elastic, t: float, h: float, steps: int, u: Array, v: Array, k: Array, w: Array) -> bool:
     """RK4 steps; `k` is (4, N + 1, 2), `w` (2, N + 1, 2). Whether the state is still finite."""
     for step in range(steps):

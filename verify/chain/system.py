@@ -6,7 +6,7 @@ across it. Sections 2 and 7 of the paper's formalism: relative joint coordinates
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite, pi, radians, sin
+from math import pi, radians, sin
 
 import numpy as np
 
@@ -165,21 +165,14 @@ def _check_arrays(system: ChainSystem) -> None:
     n = len(system.lengths)
     if n == 0:
         raise InputError("chain.lengths is empty: give at least one link")
-    limits = {
-        "lengths": "above 0",
-        "masses": "above 0",
-        "inertias": "above 0",
-        "stiffness": "at least 0",
-        "dashpots": "at least 0",
-    }
-    for field, limit in limits.items():
+    for field in ("lengths", "masses", "inertias", "stiffness", "dashpots"):
         check_unmasked(f"chain.{field}", getattr(system, field), "SI")
         values = np.asarray(getattr(system, field), dtype=float)
         if values.shape != (n,):
             raise InputError(f"chain.{field} has the shape {values.shape}: give one value for each of {n} links")
-        for i, value in enumerate(values, start=1):
-            if not isfinite(value) or value < 0 or (value == 0 and limit == "above 0"):
-                raise InputError(f"chain.{field} of link {i} = {float(value)!r}: give a finite number, {limit} (SI)")
+        limit = "at_least" if field in ("stiffness", "dashpots") else "above"
+        for i, value in enumerate(values.tolist(), start=1):
+            check_number(f"chain.{field} of link {i}", value, "SI", **{limit: 0.0})
 
 
 def _check_place(system: ChainSystem, kind: str, link: int, at: float) -> None:

@@ -1,116 +1,77 @@
-"""Run time against error of every method that a scene gives something to do."""
+"""The work-precision benchmarks."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared import command_line, json_alone, load, overridden, progress, scene_name
-
-if TYPE_CHECKING:
-    from verify.bench.found import BenchFound
+from verify.commands.shared import format_options, progress, show
 
 
 @click.command()
-@scene_name
-@overridden
-@click.option("--sets", metavar="LIST", help="Of modes, harmonic, transient, slider, chain. Default: what SCENE asks.")
-@click.option("--counts", metavar="LIST", help="Segments and elements, for instance 24,49,98. Default: the scene's.")
-@click.option("--modes", metavar="LIST", help="Which modes, for instance 1,5,22. Default: the scene's.")
-@click.option("--seconds", metavar="CAP", help="Of work by its estimate: what does not fit is left out. Default: 20.")
-@click.option("--cold", is_flag=True, help="Time compiling too, with nothing kept on disk.")
-@click.option("--push", is_flag=True, help="Push other engines until they break, and say what they did.")
-@json_alone
-@click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
-@click.option("--markdown", "layout", flag_value="markdown", help="Print a Markdown table.")
-@click.option(
-    "--against",
-    type=click.Path(path_type=Path, dir_okay=False),
-    metavar="FILE",
-    help="An earlier --json: ratios between methods are compared, and what moved is said.",
-)
-@click.option(
-    "--keep",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="FOLDER",
-    help="Write a dated Markdown page of this scene there.",
-)
+@click.argument("sets", nargs=-1, metavar="[SET]...")
+@click.option("--scene", metavar="SCENE", help="Take beam, drive and slider from there. Default: the paper's.")
+@click.option("--mode", type=click.IntRange(1), help="Mode of the sets modes and engines. Default: 22.")
+@click.option("--sizes", metavar="LIST", help="Segments and elements. Default: 24,49,98,196,392.")
+@click.option("--seconds", type=float, default=5.0, show_default=True, help="Time limit of a method and of the rounds.")
+@click.option("--against", type=click.Path(path_type=Path, dir_okay=False), help="JSON of an earlier run to compare.")
+@click.option("--charts", metavar="FOLDER", help="Write the charts there as SVG.")
+@format_options
 def bench(
-    scene: str,
-    overrides: tuple[str, ...],
-    sets: str | None,
-    counts: str | None,
-    modes: str | None,
-    seconds: str | None,
-    cold: bool,
-    push: bool,
-    as_json: bool,
-    layout: str | None,
+    sets: tuple[str, ...],
+    scene: str | None,
+    mode: int | None,
+    sizes: str | None,
+    seconds: float,
     against: Path | None,
-    keep: Path | None,
+    charts: str | None,
+    as_json: bool,
+    as_csv: bool,
+    as_markdown: bool,
 ) -> None:
-    """Run time against error: every method, its reference, and one sentence for each comparison.
+    """Measure run time over error of all methods: modes, field, transient, slider, ride, chain, engines.
 
-    Modes by every rule of segments, elements, stock scikit-fem; harmonic fields; motions in time; the slider; the
-    nonlinear chain; other engines where they are installed.
-
-    Example: `verify bench paper --sets modes --counts 25-100:25`
+    Times are processor seconds, medians of interleaved rounds. Example: `verify bench modes chain --json > before.json`
     """
-    from verify.bench.asking import asked_of, job_of
+    import json
+    from dataclasses import replace
 
-    asked = load(scene, overrides)
-    typed = {"sets": sets, "counts": counts, "modes": modes, "seconds": seconds}
-    given = {name: text for name, text in typed.items() if text is not None}
-    request = asked_of(asked, given, cold=cold, push=push)
-    earlier = _earlier(against)
-    if keep is not None:
-        from verify.files import writable_folder
+    from verify.bench import measure, result
+    from verify.bench.methods import SETS, Problem, problem_of, questions
+    from verify.errors import InputError, shown
 
-        writable_folder(keep, "--keep")
-    n_steps, run = job_of(asked, request)
-    with progress(n_steps, quiet=as_json or bool(layout)) as step:
-        found = run(step)
-    if earlier is not None:
-        from verify.bench.against import beside
+    problem = Problem()
+    if scene:
+        from verify.scene.load import load_scene
 
-        found = beside(found, earlier)
-    if keep is not None:
-        options = [word for name, text in given.items() for word in (f"--{name}", text)]
-        options += ["--against", _place(against)] if against is not None else []
-        _keep(found, keep, _place(Path(scene)), overrides, (*options, *["--cold"] * cold, *["--push"] * push))
-    _tell(found, "json" if as_json else layout)
+        problem = problem_of(load_scene(scene))
+    try:
+        counts = tuple(sorted({int(text) for text in sizes.split(",")})) if sizes else problem.sizes
+    except ValueError:
+        raise InputError(f"--sizes = {shown(sizes)}: give whole numbers, for instance 24,49,98") from None
+    problem = replace(problem, sizes=counts, mode=mode or problem.mode)
+    earlier = None
+    if against:
+        try:
+            earlier = json.loads(against.read_text("utf-8"))
+            earlier["questions"]
+        except (OSError, ValueError, KeyError, TypeError):
+            raise InputError(f"--against = {shown(str(against))}: give a file by `verify bench --json`") from None
+    measured = []
+    with progress(quiet=as_json or as_csv or as_markdown) as step:
+        for name in sets or SETS:
+            step(name)
+            try:
+                measured += [(one, measure(one, seconds)) for one in questions([name], problem)]
+            except InputError as error:
+                if sets:
+                    raise
+                click.echo(f"verify: {error}", err=True)  # one of all sets, which this beam or machine does not have
+    found = result(measured, earlier)
+    show(found, as_json=as_json, as_csv=as_csv, as_markdown=as_markdown)
+    if charts:
+        from verify.files import writable_folder, write_whole
+        from verify.report.plotting import figure_svg
 
-
-def _keep(found: "BenchFound", folder: Path, scene: str, overrides: tuple[str, ...], options: tuple[str, ...]) -> None:
-    """Write the page with the line that it was made by."""
-    from verify.bench.keeping import page
-    from verify.files import write_whole
-
-    line = command_line("bench", (scene,), overrides, (*options, "--keep", _place(folder)))
-    write_whole(folder / f"{found.scene}.md", page(found, line), "--keep")
-
-
-def _place(path: Path) -> str:
-    """A path as a page names it: of one that this machine alone has, the last name."""
-    return path.name if path.is_absolute() else path.as_posix()
-
-
-def _earlier(against: Path | None) -> Any:
-    """What an earlier run found, None where none is named. Raises InputError."""
-    if against is None:
-        return None
-    from verify.bench.against import read_earlier
-
-    return read_earlier(against)
-
-
-def _tell(found: "BenchFound", layout: str | None) -> None:
-    """As a person reads it, or in a layout."""
-    if layout:
-        from verify.report.plain import text_of
-
-        click.echo(text_of(found, layout), nl=False)
-    else:
-        from verify.report.terminal import print_found
-
-        print_found(found)
+        folder = writable_folder(Path(charts), "--charts")
+        for figure in found.figures:
+            write_whole(folder / f"{figure.id}.svg", figure_svg(figure))

@@ -38,7 +38,8 @@ def export(
     vtu, pvd and xdmf for ParaView; csv, json and npz for data; tex for tables; png, gif, webp and mp4 for pictures.
     Example: `verify export paper --what modes --to modes.vtu`
     """
-    from verify.io.export import Request, write
+    from verify.io.data import Request
+    from verify.io.export import write
     from verify.scene.load import load_scene
 
     request = Request(what=what, model=model, count=count, mode=mode, samples=samples, solid=solid)

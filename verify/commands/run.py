@@ -42,10 +42,12 @@ def run(
     With --set gates that hold for other values are skipped. Example: `verify run paper --set beam.length=0.4`
     """
     from verify.files import writable_folder
-    from verify.scene.load import packaged_scenes
+    from verify.scene.load import load_scene, packaged_scenes
 
-    reports = None if no_report else writable_folder(Path(folder), "--to")
     names = scenes or packaged_scenes()
+    if len(names) == 1:
+        load_scene(names[0], overrides)  # refused before a folder is made
+    reports = None if no_report else writable_folder(Path(folder), "--to")
     tasks = [Task(name, overrides, reports, keep, _command_line((name,), overrides)) for name in names]
     if len(tasks) == 1:
         _run_one(tasks[0], as_json)
@@ -56,10 +58,8 @@ def run(
 def _run_one(task: Task, as_json: bool) -> None:
     from verify.report.summary import run_data
     from verify.report.terminal import print_run
-    from verify.scene.load import load_scene
     from verify.scene.run import plan, run_scene
 
-    load_scene(task.scene, task.overrides)
     steps = sum(row.runs for row in plan(task.scene, task.overrides)) if not as_json else None
     with progress(steps, quiet=as_json) as step:
         result = run_scene(task.scene, step, task.overrides)

@@ -11,7 +11,7 @@ from verify.errors import InputError, printable
 @click.group(invoke_without_command=True)
 @format_options
 @click.pass_context
-def scenes(context: click.Context, **formats: bool) -> None:
+def scenes(context: click.Context, /, **formats: bool) -> None:
     """List the packaged scenes, show one, or write a new one."""
     if context.invoked_subcommand is None:
         _list(**formats)

@@ -30,6 +30,9 @@ csv_option = click.option("--csv", "as_csv", is_flag=True, help="Print the first
 markdown_option = click.option("--markdown", "as_markdown", is_flag=True, help="Print the first table as Markdown.")
 
 
+charts_option = click.option("--charts", metavar="FOLDER", help="Write the charts to FOLDER as SVG.")
+
+
 def format_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add `--json`, `--csv` and `--markdown`, passed as `as_json`, `as_csv`, `as_markdown` (see `show`)."""
     return json_option(csv_option(markdown_option(command)))
@@ -53,6 +56,19 @@ def show(result: "Result", *, as_json: bool = False, as_csv: bool = False, as_ma
         click.echo(result.tables[0].csv() if as_csv else result.tables[0].markdown(), nl=False)
     else:
         result.print(console())
+
+
+def save_charts(result: "Result", folder: str | None) -> None:
+    """Write every chart of a result as FOLDER/ID.svg; nothing where no folder is given. Raises InputError."""
+    if folder is None:
+        return
+    from pathlib import Path
+
+    from verify.files import writable_folder, write_whole
+    from verify.report.plotting import figure_svg
+
+    for figure in result.figures:
+        write_whole(writable_folder(Path(folder), "--charts") / f"{figure.id}.svg", figure_svg(figure), "--charts")
 
 
 def print_json(value: Any) -> None:

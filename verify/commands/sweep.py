@@ -1,20 +1,50 @@
-"""`verify sweep`: a quantity over its arguments or over values of the scene."""
+"""`verify sweep`: quantities over values of the scene and of their arguments."""
 
 import click
 
-from verify.commands.shared import format_options, overrides_option, scene_argument
+from verify.commands.shared import (
+    charts_option,
+    format_options,
+    overrides_option,
+    progress,
+    save_charts,
+    scene_argument,
+    show,
+)
+from verify.errors import InputError
 
 
 @click.command()
 @scene_argument
-@click.argument("options", nargs=-1, metavar="[KEY=VALUE]...")
+@click.argument("words", nargs=-1, metavar="[QUANTITY]... [KEY=VALUES]...")
 @overrides_option
+@charts_option
 @format_options
-def sweep(scene: str, options: tuple[str, ...], overrides: tuple[str, ...], **formats: bool) -> None:
-    """Evaluate a quantity over one or several axes; KEY=VALUE sets an option of the scene's [sweep].
+def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts: str | None, **formats: bool) -> None:
+    """Evaluate QUANTITY over every combination of the lists; without QUANTITY run the [sweep] of SCENE.
 
-    `verify schema sweep` lists the options.
+    A KEY with a dot is a value of the scene, one without is an argument of the quantities.
+    Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """
     from verify.commands.table import run_study
+    from verify.scene.convert import typed
+    from verify.scene.load import load_scene
+    from verify.studies.sweep import run_sweep
 
-    run_study(scene, "sweep", options, overrides, formats)
+    quantities = [word for word in words if "=" not in word]
+    pairs = [word.partition("=") for word in words if "=" in word]
+    lists = {key: typed(text, tuple[int, ...], key) for key, _, text in pairs}
+    if len(lists) < len(pairs):
+        raise InputError("KEY = VALUES: one key occurs twice, give each once")
+    if not quantities:
+        if lists:
+            raise InputError("QUANTITY is missing: name one before KEY=VALUES, see `verify quantities`")
+        run_study(scene, "sweep", (), overrides, charts, formats)
+        return
+    over = {key: values for key, values in lists.items() if len(values) > 1 or "." in key}
+    arguments = {key: values[0] for key, values in lists.items() if key not in over}
+    loaded = load_scene(scene, overrides)
+    with progress(quiet=any(formats.values())) as step:
+        result = run_sweep(loaded, quantities, over, arguments=arguments, progress=step)
+    show(result, **formats)
+    save_charts(result, charts)

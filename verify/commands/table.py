@@ -2,7 +2,15 @@
 
 import click
 
-from verify.commands.shared import format_options, overrides_option, progress, scene_argument, show
+from verify.commands.shared import (
+    charts_option,
+    format_options,
+    overrides_option,
+    progress,
+    save_charts,
+    scene_argument,
+    show,
+)
 
 
 @click.command()
@@ -10,27 +18,37 @@ from verify.commands.shared import format_options, overrides_option, progress, s
 @click.argument("options", nargs=-1, metavar="[KEY=VALUE]...")
 @click.option("--study", default="convergence", show_default=True, metavar="NAME", help="Section of the study.")
 @overrides_option
+@charts_option
 @format_options
-def table(scene: str, options: tuple[str, ...], study: str, overrides: tuple[str, ...], **formats: bool) -> None:
+def table(
+    scene: str, options: tuple[str, ...], study: str, overrides: tuple[str, ...], charts: str | None, **formats: bool
+) -> None:
     """Run one study of SCENE and print its tables; KEY=VALUE sets an option of the study.
 
     Example: `verify table steel-cantilever modes=1-5 counts=10,20,49 wall=gregory,half`
     """
-    run_study(scene, study, options, overrides, formats)
+    run_study(scene, study, options, overrides, charts, formats)
 
 
 def run_study(
-    scene: str, name: str, options: tuple[str, ...], overrides: tuple[str, ...], formats: dict[str, bool]
+    scene: str,
+    name: str,
+    options: tuple[str, ...],
+    overrides: tuple[str, ...],
+    charts: str | None,
+    formats: dict[str, bool],
 ) -> None:
     """Run a study by its name, with the scene's section, or its defaults, and 'key=value' options."""
     from verify.judge.cache import SolutionCache
+    from verify.scene.convert import convert
     from verify.scene.load import load_scene
     from verify.studies.base import STUDIES, studies_of
 
     STUDIES.named(name)
     loaded = load_scene(scene, (*overrides, *(f"{name}.{option}" for option in options)))
-    study = dict(studies_of(loaded)).get(name) or STUDIES[name]()
+    study = dict(studies_of(loaded)).get(name) or convert({}, STUDIES[name], name)
     study.check(loaded)
     with progress(quiet=any(formats.values())) as step:
         result = study.run(loaded, SolutionCache(loaded.beam), step)
     show(result, **formats)
+    save_charts(result, charts)

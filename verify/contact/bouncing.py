@@ -9,6 +9,7 @@ from math import acos, asin, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from verify.checks import check_number, check_whole
+from verify.contact.layer import root
 from verify.errors import InputError
 
 
@@ -58,13 +59,7 @@ def landing_phase(ratio: float) -> float:
     after = start + step * max(int(fallen / step), 1)
     while above(after) > 0.0:
         after += step
-    low, high = after - step, after
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if above(middle) > 0.0 else (low, middle)
-    return 0.5 * (low + high)
+    return root(above, after - step, after)
 
 
 def bouncing_limits(restitution: float) -> tuple[float, float]:

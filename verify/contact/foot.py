@@ -9,9 +9,7 @@ are over V, the crests', forces over mu N, friction is Coulomb's. Own derivation
 from math import acos, cos, pi, sin
 
 from verify.checks import check_number
-from verify.contact.layer import force, pressed
-
-HALVINGS = 200
+from verify.contact.layer import force, pressed, root
 
 
 def contact_half_angle(load: float) -> float:
@@ -22,13 +20,7 @@ def contact_half_angle(load: float) -> float:
     check_number("load", load, "normal force over kappa A times the length", above=0)
     if load >= 1.0:
         return pi
-    low, high = 0.0, pi
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if pressed(middle, middle) < pi * load else (low, middle)
-    return 0.5 * (low + high)
+    return root(lambda phi: pi * load - pressed(phi, phi), 0.0, pi)
 
 
 def standing_height(load: float) -> float:

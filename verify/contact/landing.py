@@ -10,10 +10,8 @@ whose three branches are this one function.
 from math import asinh, atan2, exp, inf, sqrt
 
 from verify.checks import check_number
+from verify.contact.layer import root
 from verify.errors import InputError
-
-HALVINGS = 2000
-"""Of an interval around a root: until the middle is one of its ends, before."""
 
 
 def contact_time(damping_ratio: float) -> float:
@@ -47,15 +45,10 @@ def damping_ratio_for(wanted: float) -> float:
     check_number("restitution", wanted, "speed after over speed before", above=0)
     if wanted > 1.0:
         raise InputError(f"restitution = {wanted!r}: nothing leaves faster than it lands, give at most 1")
-    low, high = 0.0, 1.0
+    high = 1.0
     while restitution(high) > wanted:
-        low, high = high, 2.0 * high
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if restitution(middle) > wanted else (low, middle)
-    return 0.5 * (low + high)
+        high *= 2.0
+    return root(lambda zeta: restitution(zeta) - wanted, 0.0, high)
 
 
 def lift_off_ratio(frequency_ratio: float, damping_ratio: float = 0.0) -> float:

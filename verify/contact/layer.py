@@ -17,8 +17,6 @@ from verify.errors import InputError
 
 NARROWEST = 1e-3
 """Half angle of a contact, radians, below which sines and cosines leave fewer than nine digits of what is pressed."""
-HALVINGS = 200
-"""Of an interval around a root: until the middle is one of its ends, long before."""
 ROUNDING = 4e-15
 """Of a stretch: one that has just stopped slipping is that near to its limit."""
 
@@ -54,9 +52,9 @@ def no_load_speed(phi: float, epsilon: float = 0.0) -> float:
     if epsilon >= 1.0 / phi - cos(phi) / sin(phi) and phi < pi:
         return sin(phi) / phi  # it sticks throughout
     if epsilon > 0.0:
-        return _root(lambda r: force(phi, r, epsilon), min(cos(phi), 0.0), 1.0)
+        return root(lambda r: force(phi, r, epsilon), min(cos(phi), 0.0), 1.0)
     half = 0.5 * pressed(phi, phi)
-    return cos(_root(lambda s: half - pressed(s, phi), 0.0, phi))
+    return cos(root(lambda s: half - pressed(s, phi), 0.0, phi))
 
 
 def efficiency(phi: float, r: float) -> float:
@@ -93,14 +91,15 @@ def _check(phi: float, epsilon: float) -> None:
     check_number("epsilon", epsilon, "2 mu kappa / (kappa_t k h)", at_least=0)
 
 
-def _root(falls: Callable[[float], float], low: float, high: float) -> float:
-    """Where a falling function is zero, by halving."""
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if falls(middle) > 0.0 else (low, middle)
-    return 0.5 * (low + high)
+def root(falls: Callable[[float], float], low: float, high: float) -> float:
+    """Zero of a falling function between two ends, to rounding; an end where the sign does not change."""
+    from scipy.optimize import brentq
+
+    if falls(low) <= 0.0:
+        return low
+    if falls(high) >= 0.0:
+        return high
+    return float(brentq(falls, low, high, xtol=1e-300, rtol=1e-15))
 
 
 def _stretched(phi: float, r: float, epsilon: float) -> float:
@@ -154,7 +153,7 @@ def _slips_at(s: float, phi: float, r: float, epsilon: float, c: float) -> tuple
     turns = sorted(at for way in (1, -1) for at in _even_at(r, way * epsilon) if s + 1e-12 < at < phi)
     for before, after in pairwise((s, *turns, phi)):
         reached = [
-            (_root(lambda at, way=way: room(at, way), before, after), way)  # type: ignore[misc]
+            (root(lambda at, way=way: room(at, way), before, after), way)  # type: ignore[misc]
             for way in (1, -1)
             if room(after, way) < -ROUNDING
         ]

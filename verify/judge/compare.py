@@ -21,6 +21,8 @@ EIGENVALUE_FLOOR = 2e-14
 """Relative frequency error that rounding may leave (measured: 1.1e-14 up to 10^4 segments or elements)."""
 ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
 """Below this an error is too close to rounding to speak of an order."""
+ASTRAY = 1.0
+"""How far orders between neighbouring sizes may lie apart in the asymptotic range."""
 RESTING = 1e-11
 """Share of its typical size below which a shape is at rest: mode 3 of a pinned beam at the nodes of three parts."""
 LIKENESS = 0.5

@@ -10,7 +10,7 @@ _CONDITIONS = ("not-a-knot", "clamped", "natural")
 
 
 def natural_or_flat(nodes: Array, values: Any, ends: Ends) -> Any:
-    """scipy's CubicSpline through values (k, N + 1), real or complex: (x, derivative) -> (k, len(x)).
+    """Scipy's CubicSpline through values (k, N + 1), real or complex: (x, derivative) -> (k, len(x)).
 
     Where the last two pieces are one cubic, one piece alone is straight there, and two at both ends are one parabola.
     """

@@ -2,30 +2,13 @@
 
 import numpy as np
 
+from verify.jit import FAST, inline
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
-from verify.motion.records import (
-    DAMPED,
-    DRIVEN,
-    GIVEN_END,
-    LOSS,
-    MOVING,
-    ON_BEAM,
-    ON_SLIDER,
-    POWER,
-    PULL,
-    RUBBED,
-    SIGMA,
-    SURFACE,
-    TURNED,
-    Books,
-    Drive,
-    Space,
-    Surface,
-)
+from verify.motion import records as rec
+from verify.motion.records import Books, Drive, Space, Surface
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def power(drive: Drive, books: Books, time: float, factors: Array) -> float:
     """Power of the driving forces, watts."""
     angle = drive.omega * (drive.origin + time)
@@ -37,57 +20,57 @@ def power(drive: Drive, books: Books, time: float, factors: Array) -> float:
     for f in range(loads.shape[0]):
         speed = 0.0
         for j in range(loads.shape[1]):
-            speed += loads[f, j] * factors[MOVING, j]
+            speed += loads[f, j] * factors[rec.MOVING, j]
         total += grown * (forces[0, f] * c - forces[1, f] * s) * speed
     return total
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def loss(modes: Array, answers: Array, factors: Array) -> float:
     """Power lost in the modes, watts."""
     total, n = 0.0, modes.shape[1]
     for j in range(n):
-        rate = factors[MOVING, j]
+        rate = factors[rec.MOVING, j]
         for d in range(answers.shape[1]):
-            rate += answers[j, d] * factors[MOVING, n + d]
-        total += 2.0 * modes[SIGMA, j] * rate * rate
+            rate += answers[j, d] * factors[rec.MOVING, n + d]
+        total += 2.0 * modes[rec.SIGMA, j] * rate * rate
     return total
 
 
-@part()
+@inline
 def correct_powers(time: float, surface: Surface, books: Books, space: Space) -> None:
     """Powers at the end of a step with what the contact has added to the speeds since its start, half at mid-step."""
     seen = space.seen
     driven = power(surface.drive, books, time, space.factors)
     damped = loss(surface.modes, books.answers, space.factors)
-    seen[1, POWER] += 0.5 * (driven - seen[2, POWER])
-    seen[1, LOSS] += 0.5 * (damped - seen[2, LOSS])
-    seen[2, POWER], seen[2, LOSS] = driven, damped
+    seen[1, rec.POWER] += 0.5 * (driven - seen[2, rec.POWER])
+    seen[1, rec.LOSS] += 0.5 * (damped - seen[2, rec.LOSS])
+    seen[2, rec.POWER], seen[2, rec.LOSS] = driven, damped
 
 
-@part()
+@inline
 def by_parts(v: float, v1: float, moved: float, dt: float, mass: float, seen: Array) -> float:
     """Work of a step's friction on a beam that does not feel it: of friction times the surface's line, by parts.
 
     As if nothing else moved the slider; `pulled` tells of what does.
     """
-    mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
-    rise = seen[2, SURFACE] - seen[0, SURFACE]
+    mean = (seen[0, rec.SURFACE] + 4.0 * seen[1, rec.SURFACE] + seen[2, rec.SURFACE]) / 6.0
+    rise = seen[2, rec.SURFACE] - seen[0, rec.SURFACE]
     return float(-mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved))
 
 
-@part()
+@inline
 def pulled(v: float, v1: float, moved: float, dt: float, mass: float, seen: Array, took: Array) -> tuple[float, float]:
     """Work of the turning tangent and of gravity along it in a step: (on the slider, at the speed of the surface)."""
-    start, end = mass * dt / 6.0 * seen[0, PULL], mass * dt / 6.0 * seen[2, PULL]
-    middle = mass * took[GIVEN_END] - start - end
-    mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
-    half = 0.5 * (seen[2, SURFACE] - seen[0, SURFACE])
+    start, end = mass * dt / 6.0 * seen[0, rec.PULL], mass * dt / 6.0 * seen[2, rec.PULL]
+    middle = mass * took[rec.GIVEN_END] - start - end
+    mean = (seen[0, rec.SURFACE] + 4.0 * seen[1, rec.SURFACE] + seen[2, rec.SURFACE]) / 6.0
+    half = 0.5 * (seen[2, rec.SURFACE] - seen[0, rec.SURFACE])
     own = start * v + middle * (1.5 * moved / dt - 0.25 * (v + v1)) + end * v1
     return own, start * (mean - half) + middle * mean + end * (mean + half)
 
 
-@part()
+@inline
 def account(
     v: float, v1: float, pressed: float, turned: float, dt: float, mass: float, ledger: Array, seen: Array
 ) -> None:
@@ -95,10 +78,10 @@ def account(
 
     `pressed` is the work of friction on the beam, `turned` that of all else on the slider.
     """
-    ledger[DRIVEN] += dt * (seen[0, POWER] + 4.0 * seen[1, POWER] + seen[2, POWER]) / 6.0
-    ledger[DAMPED] += dt * (seen[0, LOSS] + 4.0 * seen[1, LOSS] + seen[2, LOSS]) / 6.0
+    ledger[rec.DRIVEN] += dt * (seen[0, rec.POWER] + 4.0 * seen[1, rec.POWER] + seen[2, rec.POWER]) / 6.0
+    ledger[rec.DAMPED] += dt * (seen[0, rec.LOSS] + 4.0 * seen[1, rec.LOSS] + seen[2, rec.LOSS]) / 6.0
     on_slider = 0.5 * mass * (v1 * v1 - v * v)
-    ledger[ON_BEAM] += pressed
-    ledger[ON_SLIDER] += on_slider
-    ledger[TURNED] += turned
-    ledger[RUBBED] -= on_slider - turned + pressed
+    ledger[rec.ON_BEAM] += pressed
+    ledger[rec.ON_SLIDER] += on_slider
+    ledger[rec.TURNED] += turned
+    ledger[rec.RUBBED] -= on_slider - turned + pressed

@@ -2,37 +2,15 @@
 
 import numpy as np
 
+from verify.jit import FAST, inline
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
+from verify.motion import records as rec
 from verify.motion.friction_kernels import hold, slip
-from verify.motion.records import (
-    CLIMB,
-    FALL,
-    FULL_IM,
-    FULL_RE,
-    HALF_IM,
-    HEIGHT,
-    LEVEL,
-    LEVER,
-    LIFT,
-    NORMAL,
-    OMEGA,
-    READ,
-    SIGMA,
-    STILL,
-    SURFACE,
-    Z_IM,
-    Z_RE,
-    Here,
-    Law,
-    Rider,
-    Space,
-    Surface,
-)
+from verify.motion.records import Here, Law, Rider, Space, Surface
 from verify.motion.surface_kernels import carried, climbed, material
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float) -> Here:
     """How unit forces on the surface at x load every mode: a tangential one -(h/2) on its slope, w' on its rise.
 
@@ -45,7 +23,7 @@ def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float
     slope, deflection = 0.0, 0.0
     for d in range(table.shape[1] - 1, -1, -1):
         slope = slope * at + deflection
-        deflection = deflection * at + local[STILL, d]
+        deflection = deflection * at + local[rec.STILL, d]
     slope /= length
     stretch, above = np.sqrt(1.0 + slope * slope), (x - edges[piece]) / length
     lean = slope * half / length
@@ -56,12 +34,12 @@ def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float
             value = value * at + table[piece, d, j]
             turn = turn * above + here
             here = here * above + table[piece, d, j]
-        modes[LEVER, j] = (slope * value - half * first / length) / stretch
-        modes[LIFT, j] = value + lean * turn
+        modes[rec.LEVER, j] = (slope * value - half * first / length) / stretch
+        modes[rec.LIFT, j] = value + lean * turn
     return Here(piece, at, above, slope)
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float) -> None:
     """How far every mode lifts the slider at x, with what slides under it."""
     table, edges, modes = surface.table, surface.edges, surface.modes
@@ -70,7 +48,7 @@ def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float)
     slope, deflection = 0.0, 0.0
     for d in range(table.shape[1] - 1, -1, -1):
         slope = slope * at + deflection
-        deflection = deflection * at + local[STILL, d]
+        deflection = deflection * at + local[rec.STILL, d]
     above, lean = (x - edges[piece]) / length, slope * half / (length * length)
     for j in range(modes.shape[1]):
         value, here, turn = 0.0, 0.0, 0.0
@@ -78,10 +56,10 @@ def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float)
             value = value * at + table[piece, d, j]
             turn = turn * above + here
             here = here * above + table[piece, d, j]
-        modes[READ, j] = value + lean * turn
+        modes[rec.READ, j] = value + lean * turn
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _mobilities(modes: Array) -> tuple[float, float, float, float]:
     """Tangential speed of the surface after a constant unit force has acted for half a step and a whole one, m/s per N.
 
@@ -89,50 +67,50 @@ def _mobilities(modes: Array) -> tuple[float, float, float, float]:
     """
     half, full, across_half, across = 0.0, 0.0, 0.0, 0.0
     for j in range(modes.shape[1]):
-        lever, omega = modes[LEVER, j], modes[OMEGA, j]
-        lift = modes[LIFT, j]
-        half += lever * lever * modes[HALF_IM, j] / omega
-        full += lever * lever * modes[FULL_IM, j] / omega
-        across_half += lever * lift * modes[HALF_IM, j] / omega
-        across += lever * lift * modes[FULL_IM, j] / omega
+        lever, omega = modes[rec.LEVER, j], modes[rec.OMEGA, j]
+        lift = modes[rec.LIFT, j]
+        half += lever * lever * modes[rec.HALF_IM, j] / omega
+        full += lever * lever * modes[rec.FULL_IM, j] / omega
+        across_half += lever * lift * modes[rec.HALF_IM, j] / omega
+        across += lever * lift * modes[rec.FULL_IM, j] / omega
     return half, full, across_half, across
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _compliances(modes: Array) -> tuple[float, float]:
     """How far constant unit forces lift the surface under the slider in a step, a normal and a tangential one, m/N."""
     by_normal, by_push = 0.0, 0.0
     for j in range(modes.shape[1]):
-        decay, omega = modes[SIGMA, j], modes[OMEGA, j]
-        gain = 1.0 - modes[FULL_RE, j] - modes[FULL_IM, j] * decay / omega
-        lifted = modes[READ, j] * gain / (omega * omega + decay * decay)
-        by_normal += modes[LIFT, j] * lifted
-        by_push += modes[LEVER, j] * lifted
+        decay, omega = modes[rec.SIGMA, j], modes[rec.OMEGA, j]
+        gain = 1.0 - modes[rec.FULL_RE, j] - modes[rec.FULL_IM, j] * decay / omega
+        lifted = modes[rec.READ, j] * gain / (omega * omega + decay * decay)
+        by_normal += modes[rec.LIFT, j] * lifted
+        by_push += modes[rec.LEVER, j] * lifted
     return by_normal, by_push
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _press(along: float, across: float, modes: Array) -> None:
     """Add what constant forces over the whole step add to the modes: (1 - turn) about the shifted rest position."""
     for j in range(modes.shape[1]):
-        decay, omega = modes[SIGMA, j], modes[OMEGA, j]
-        real = (along * modes[LEVER, j] + across * modes[LIFT, j]) / (omega * omega + decay * decay)
+        decay, omega = modes[rec.SIGMA, j], modes[rec.OMEGA, j]
+        real = (along * modes[rec.LEVER, j] + across * modes[rec.LIFT, j]) / (omega * omega + decay * decay)
         imaginary = -real * decay / omega
-        modes[Z_RE, j] += real - (modes[FULL_RE, j] * real - modes[FULL_IM, j] * imaginary)
-        modes[Z_IM, j] += imaginary - (modes[FULL_RE, j] * imaginary + modes[FULL_IM, j] * real)
+        modes[rec.Z_RE, j] += real - (modes[rec.FULL_RE, j] * real - modes[rec.FULL_IM, j] * imaginary)
+        modes[rec.Z_IM, j] += imaginary - (modes[rec.FULL_RE, j] * imaginary + modes[rec.FULL_IM, j] * real)
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _given_ways(modes: Array) -> tuple[float, float]:
     """How far the free modes have moved the surface along the levers of a tangential force and of a normal one."""
     along, across = 0.0, 0.0
     for j in range(modes.shape[1]):
-        along += modes[LEVER, j] * modes[Z_RE, j]
-        across += modes[LIFT, j] * modes[Z_RE, j]
+        along += modes[rec.LEVER, j] * modes[rec.Z_RE, j]
+        across += modes[rec.LIFT, j] * modes[rec.Z_RE, j]
     return along, across
 
 
-@part()
+@inline
 def _reaction(dt: float, modes: Array, motion: Array, law: Law, seen: Array) -> tuple[float, float]:
     """The normal reaction, mean over a step, that keeps a slider with inertia on the surface.
 
@@ -144,11 +122,11 @@ def _reaction(dt: float, modes: Array, motion: Array, law: Law, seen: Array) -> 
     stiff = 2.0 * law.mass / (dt * dt)
     by_normal, by_push = _compliances(modes)
     own = 1.0 + stiff * by_normal
-    free = law.load + stiff * (seen[2, LEVEL] - motion[HEIGHT] - dt * motion[CLIMB])
+    free = law.load + stiff * (seen[2, rec.LEVEL] - motion[rec.HEIGHT] - dt * motion[rec.CLIMB])
     return free / own, stiff * by_push / own
 
 
-@part()
+@inline
 def _balance(
     v: float, stuck: bool, half: float, full: float, static: float | None, law: Law, dt: float, space: Space
 ) -> float:
@@ -181,7 +159,7 @@ def _balance(
     return float(force)
 
 
-@part()
+@inline
 def push_back(
     v: float, stuck: bool, dt: float, here: Here, surface: Surface, rider: Rider, space: Space
 ) -> tuple[float, float]:
@@ -195,8 +173,8 @@ def push_back(
     normal, per_push = 0.0, 0.0
     if law.held:
         normal, per_push = _reaction(dt, modes, rider.motion, law, seen)
-        seen[1, SURFACE] -= normal * across_half
-        seen[2, SURFACE] -= normal * across
+        seen[1, rec.SURFACE] -= normal * across_half
+        seen[2, rec.SURFACE] -= normal * across
         half, full = half - per_push * across_half, full - per_push * across
     force = _balance(v, stuck, half, full, law.static, law, dt, space)
     along, up = _given_ways(modes)
@@ -206,25 +184,25 @@ def push_back(
         normal -= per_push * force
         _bear(normal, dt, rider)
     _press(-force, -normal, modes)
-    seen[1, SURFACE] -= force * half
-    seen[2, SURFACE] -= force * full
+    seen[1, rec.SURFACE] -= force * half
+    seen[2, rec.SURFACE] -= force * full
     along, up = _given_ways(modes)
     return -force * (way + along), -normal * (climb + up)
 
 
-@part()
+@inline
 def _bear(normal: float, dt: float, rider: Rider) -> None:
     """Give a normal reaction to the slider."""
     motion, law = rider.motion, rider.law
     gained = dt * (normal - law.load) / law.mass
-    motion[HEIGHT] += dt * (motion[CLIMB] + 0.5 * gained)
-    motion[CLIMB] += gained
-    motion[NORMAL] = normal
+    motion[rec.HEIGHT] += dt * (motion[rec.CLIMB] + 0.5 * gained)
+    motion[rec.CLIMB] += gained
+    motion[rec.NORMAL] = normal
 
 
-@part()
+@inline
 def feel(dt: float, motion: Array, law: Law, seen: Array) -> None:
     """The slider's normal reaction and how fast the surface falls away under it, where it does not push back."""
-    lift = 4.0 * (seen[0, LEVEL] - 2.0 * seen[1, LEVEL] + seen[2, LEVEL]) / (dt * dt)
-    motion[NORMAL] = law.load + (law.mass * lift if law.held else 0.0)
-    motion[FALL] = -lift if -lift > motion[FALL] else motion[FALL]
+    lift = 4.0 * (seen[0, rec.LEVEL] - 2.0 * seen[1, rec.LEVEL] + seen[2, rec.LEVEL]) / (dt * dt)
+    motion[rec.NORMAL] = law.load + (law.mass * lift if law.held else 0.0)
+    motion[rec.FALL] = -lift if -lift > motion[rec.FALL] else motion[rec.FALL]

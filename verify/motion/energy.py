@@ -1,4 +1,4 @@
-"""The books of a beam without a slider: work of the forces against what is in it and what was damped."""
+"""Energy balance of a beam without a slider in closed form: work of the forces, energy, damping."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,6 @@ import numpy as np
 
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.time_basis import TimeBasis
-from verify.motion.exponentials import multiplied, weighted_powers
 from verify.motion.forcing import Modal, forced_powers, free_part, some, state_of, turns
 from verify.motion.result import Ledger
 from verify.motion.surface import Stage, free_at
@@ -19,6 +18,9 @@ STEEP = 3.0
 """sigma / omega_d from which a mode's own motion is hardly a turn, and its two exponentials cancel in the square."""
 TURN = 21
 """Powers of an angle below a radian that e^{i angle} is made of: 1/21! is rounding."""
+
+ABOVE = 40
+"""Powers above the highest, and half as many as that, from which the downward recursion starts."""
 
 
 class _Drive(msgspec.Struct, frozen=True, eq=False):
@@ -173,3 +175,40 @@ def _energies(modes: Modal, z: Array) -> Array:
     """Of free modes, (n,), joules."""
     q, rates = state_of(modes, z)
     return np.asarray(0.5 * (rates**2 + modes.squares * q**2))
+
+
+def weighted_powers(z: ComplexArray, end: ComplexArray, highest: int) -> ComplexArray:
+    """Integrals of p^k e^{z p} over 0 <= p <= 1 for k = 0..highest, (highest + 1, n); z (n,) with Re z <= 0.
+
+    `end` is e^z, (n,), as whoever asks has it: of a long motion its phase is that of the state at its end, to the last
+    digit. Parts give I_k = (e^z - k I_{k-1}) / z, which loses nothing upwards while k <= |z|, and downwards beyond
+    (as F. W. J. Olver, D. W. Lozier, R. F. Boisvert, C. W. Clark, NIST Handbook of Mathematical Functions, 2010, 3.6).
+    """
+    size = abs(z)
+    found = _downwards(np.where(size <= highest + 1, z, 0.0), highest)
+    far = size >= 1.0
+    up = np.where(far, z, 1.0)
+    found[0] = np.where(far, (end - 1.0) / up, found[0])
+    for k in range(1, highest + 1):
+        found[k] = np.where(far & (k <= size), (end - k * found[k - 1]) / up, found[k])
+    return found
+
+
+def _downwards(z: ComplexArray, highest: int) -> ComplexArray:
+    """The same from above: right for the powers k > |z|, (highest + 1, n)."""
+    end, last = np.exp(z), highest + highest // 2 + ABOVE
+    value = np.asarray(end / (last + 1.0), dtype=complex)
+    found = np.empty((highest + 1, len(z)), dtype=complex)
+    for k in range(last, 0, -1):
+        value = (end - z * value) / k
+        if k <= highest + 1:
+            found[k - 1] = value
+    return found
+
+
+def multiplied(a: Array | ComplexArray, b: Array | ComplexArray) -> ComplexArray:
+    """Coefficients of the product of polynomials, row by row, (n, j) and (n, k) -> (n, j + k - 1)."""
+    found = np.zeros((len(b), a.shape[1] + b.shape[1] - 1), dtype=complex)
+    for power in range(a.shape[1]):
+        found[:, power : power + b.shape[1]] += a[:, power, None] * b
+    return found

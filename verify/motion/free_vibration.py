@@ -1,22 +1,22 @@
-"""A beam let go from a shape, without forces: exact in the modes of its model, damped by a ratio of every mode."""
+"""Free vibration of a beam from an initial shape and velocity, exact in the modes of its model."""
 
 from collections.abc import Callable, Sequence
 from math import sqrt
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import msgspec
 import numpy as np
+from msgspec import Struct
 
 from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown
-from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.fields import LARGEST_SLOPE
 from verify.models.intervals import extremes
 from verify.models.places import Numbers, as_typed, places_in_a_row, real_array
-from verify.models.time_basis import Ratio, TimeBasis, damping_in, damping_in_words
+from verify.models.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import check_free_phases, free_part, modal, state_of
 from verify.motion.result import EndState
 from verify.motion.surface import basis_of
@@ -44,13 +44,12 @@ ENDS = 33
 """Places at which a shape's size is seen, both ends among them."""
 NEAR = 1e-3
 """Of its largest value: what a mode's shape has where it first moves off its left end."""
-
-
 CORNERED = 0.05
-"""Of the elastic energy: what the faster half of the modes have of a shape without corners at most."""
+"""Share of the faster half of the modes in the elastic energy above which the shape has corners."""
+CORNERS = "energies: the initial shape has corners, its elastic energy grows with the number of modes"
 
 
-class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
+class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     """A beam that vibrates freely from an initial shape and velocity."""
 
     model: str
@@ -62,7 +61,7 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     times: Array
     """(n,), seconds from the release."""
     points: Array
-    """(p,), metres: where the deflection was asked for."""
+    """(p,), metres: places of the deflection."""
     deflection: Array
     """(n, p), metres."""
     velocity: Array
@@ -70,8 +69,7 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     kinetic: Array
     """(n,), joules."""
     elastic: Array
-    """(n,), joules; what is missing from the sum at the start is damped. Of a shape with corners it grows with the
-    modes that are kept, as `notes` say."""
+    """(n,), joules. Of a shape with corners it grows with the number of modes, as `notes` state."""
     frequencies_hz: Array
     """(m,), of the model's modes, undamped, ascending."""
     amplitudes: Array
@@ -80,14 +78,9 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     """What the modes leave of the initial shape, rms over rms (weighted by mass, turns of bodies by their rotary
     inertia); 0 without one."""
     end: EndState
-    """From where `simulate` can go on (`continue_from`)."""
+    """State from which `simulate` continues (`continue_from`)."""
     notes: tuple[str, ...]
-    """Where the modes come from, and what damps them."""
-
-    def faster_half(self, of: Literal["kinetic", "elastic"]) -> float:
-        """Which part of an energy, at the end, the faster half of the modes have; little of one that is the shape's."""
-        kinetic = of == "kinetic"
-        return _of_the_faster(self.end.rates if kinetic else 2.0 * np.pi * self.frequencies_hz * self.end.q)
+    """Method of the modes; corners of the initial shape."""
 
 
 class _Known(msgspec.Struct, frozen=True, eq=False):
@@ -122,26 +115,46 @@ def free_vibration(
     at: Numbers = (),
     samples: int = 201,
 ) -> FreeVibration:
-    """A beam let go at t = 0 from a shape (metres) with a velocity (m/s), and left alone for `duration` seconds.
+    """A beam released at t = 0 from a shape (metres) with a velocity (m/s), without forces.
 
-    `shape` and `velocity` are each a function of x, a pair (x, values) with straight lines between the places, which
-    lead from 0 to L, or None for nothing. `shape` may be a mode's number with `amplitude`, its largest deflection in
-    metres, positive where it first moves off its left end; a number for `velocity` is refused, and a shape that is not
-    0 where the beam is held. Bodies turn as the shape does where they stand, at a corner by the mean of both sides.
-    What a model cannot take of a shape is left out in the mean square weighted by mass and rotary inertia, which gives
-    every mode its share phi^T M w (`unread`; `notes` say what is missed at a table's own places); then every mode is
+    The shape's share in each mode is phi^T M w, least squares weighted by mass and rotary inertia; then every mode is
     q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
-    Vibrations, 1967, ch. 5). Damping is a ratio zeta of every mode; unless given what the
-    beam's loss factor comes to at each mode's frequency, half of it where all of the beam's stiffness has it. The exact
-    beam keeps `modes` modes, 400 unless given, the others all they have. `at` are p places in metres, or one, where
-    `samples` values are kept from 0 to `duration`. A beam that supports and springs leave free to move as a whole is
-    refused, as its shape may have a part in that. No slider rides here: let `simulate` go on with one
-    (`continue_from`). Raises InputError.
+    Vibrations, 1967, ch. 5). Bodies turn as the shape does where they stand, at a corner by the mean of both sides.
+
+    Parameters
+    ----------
+    beam : Beam
+        Without rigid-body motions.
+    shape, velocity : callable, pair, int or None
+        Each a function of x, a pair (x, values) with straight lines between the places from 0 to L, or None for zero.
+        `shape` may be a mode number with `amplitude`; it is 0 where the beam is held.
+    duration : float
+        Seconds.
+    amplitude : float, optional
+        Largest deflection of that mode, metres, positive where it first moves off its left end.
+    model, count, modes : str, int, int
+        Model, its number of segments or elements, and the modes of the exact beam (400 unless given).
+    modal_damping : float, optional
+        Damping ratio of every mode; unless given that of the beam's loss factor at each mode.
+    at : float or sequence
+        Places of deflection and velocity, (p,), metres.
+    samples : int
+        Number of times from 0 to `duration`.
+
+    Returns
+    -------
+    FreeVibration
+        `simulate` continues it with a slider or forces (`continue_from`).
+
+    Raises
+    ------
+    InputError
+        For bad arguments, and for a beam with rigid-body motions.
     """
     zeta = 0.5 * beam.loss_factor if modal_damping is None else modal_damping
     check_number("duration", duration, "seconds", above=0)
-    said = "half of beam.loss_factor" if modal_damping is None else "modal_damping"
-    check_number(said, zeta, "ratio of every mode", at_least=0, below=1)
+    field = "half of beam.loss_factor" if modal_damping is None else "modal_damping"
+    check_number(field, zeta, "ratio of every mode", at_least=0, below=1)
     check_whole("samples", samples, 2)
     if samples > MOST_SAMPLES:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
@@ -151,8 +164,7 @@ def free_vibration(
     damping = damping_in(basis, modal_damping)
     check_free_phases(basis, damping, duration)
     q, rates, unread = _start(basis, shape, amplitude, velocity)
-    found = _told(basis, damping, points, np.linspace(0.0, duration, samples), q, rates, unread)
-    return msgspec.structs.replace(found, notes=(*found.notes, *_missed(basis, shape, q)))
+    return _motion(basis, damping, points, np.linspace(0.0, duration, samples), q, rates, unread)
 
 
 def _start(
@@ -226,18 +238,6 @@ def _check_held(beam: Beam, shape: Shape) -> None:
                 f"shape = {float(value)!r} m at x = {place!r} m, where the beam is {support}: let it be 0 there, or "
                 "give the beam another support"
             )
-
-
-def _missed(basis: TimeBasis, shape: Shape | None, q: Array) -> tuple[str, ...]:
-    """By how much the start leaves a table at its own places, in words; nothing of another shape."""
-    if shape is None or isinstance(shape, int) or callable(shape):
-        return ()
-    x, values = (np.asarray(part, dtype=float) for part in shape)
-    off = q @ basis.shapes(x, 0) - values
-    worst = int(np.argmax(abs(off)))
-    return (
-        f"start: {float(off[worst]):+.2g} m off the shape at x = {float(x[worst]):g} m, the most at its own places",
-    )
 
 
 def _shares(known: "_Known", name: str, given: Shape | None) -> tuple[Array, float]:
@@ -327,7 +327,7 @@ def _quadrature(basis: TimeBasis, breaks: Array) -> _Known:
     return _Known(beam.length, x, places[turns], marks, every, shapes)
 
 
-def _told(
+def _motion(
     basis: TimeBasis, damping: Ratio, points: Array, times: Array, q: Array, rates: Array, unread: float
 ) -> FreeVibration:
     """The motion from (q, dq/dt) at 0, in blocks of times that fit in memory."""
@@ -343,6 +343,8 @@ def _told(
         velocity.append(speed @ shapes)
         kinetic.append(0.5 * (speed**2).sum(axis=1))
         elastic.append(0.5 * now**2 @ modes.squares)
+    energies = q**2 * modes.squares
+    corners = energies[len(q) // 2 :].sum() > CORNERED * energies.sum()
     return FreeVibration(
         model=basis.model,
         count=basis.count,
@@ -364,35 +366,5 @@ def _told(
             q=now[-1],
             rates=speed[-1],
         ),
-        notes=(
-            f"modes: {_kept(basis)}",
-            f"damping: {damping_in_words(damping, basis.beam)}",
-            *_cornered(q**2 * modes.squares),
-        ),
+        notes=(f"modes: {basis.method}", *((CORNERS,) if corners else ())),
     )
-
-
-def _cornered(energies: Array) -> tuple[str, ...]:
-    """That the elastic energy at the start is no figure of the shape, where the faster half of the modes have of it.
-
-    A corner, as where straight lines of a table meet, takes endlessly much; so does a slope where the beam is clamped.
-    """
-    share = _of_the_faster(np.sqrt(energies))
-    if share <= CORNERED:
-        return ()
-    return (
-        f"energies: {100.0 * share:.2g} % of the elastic energy at the start is in the faster half of the modes, as of "
-        "a shape with corners, and grows with their number: give a smooth function for an energy that is the shape's",
-    )
-
-
-def _of_the_faster(sizes: Array) -> float:
-    """The part of a sum of squares, by rising frequency, that its later half has."""
-    squares = sizes**2
-    total, slower = float(squares.sum()), len(squares) // 2
-    return float(squares[slower:].sum()) / total if total > 0.0 else 0.0
-
-
-def _kept(basis: TimeBasis) -> str:
-    """Which modes move; those that are cut off take no part of the start."""
-    return f"the first {len(basis.omegas)}, the others left out" if basis.tail else basis.method

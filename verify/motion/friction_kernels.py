@@ -5,29 +5,13 @@ A slider on a belt, at the end of the file, is friction alone.
 
 import numpy as np
 
+from verify.jit import inline, jit
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
-from verify.motion.records import (
-    CHANGE,
-    FIRST_EVENT,
-    GIVEN_END,
-    GIVEN_MIDDLE,
-    N_EVENTS,
-    NOUGHT,
-    PULL,
-    RELATIVE,
-    SLIPS,
-    SPANS,
-    STICKING,
-    STICKS,
-    SURFACE,
-    TURNS,
-    Law,
-    Space,
-)
+from verify.motion import records as rec
+from verify.motion.records import Law, Space
 
 
-@lean()
+@jit
 def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> float:
     """What friction -b tanh(slope r) adds to a slider's speed in dt, while r' = -b tanh(slope r) - a exactly.
 
@@ -54,7 +38,7 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
     return float(side * added / slope)
 
 
-@part()
+@inline
 def _brief_change(rho: float, alpha: float, tau: float) -> float:
     """What friction adds to rho in a short tau, in which logarithms cancel: four stages, off by less than 3e-11 tau."""
     first = np.tanh(rho)
@@ -64,7 +48,7 @@ def _brief_change(rho: float, alpha: float, tau: float) -> float:
     return float(-tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0)
 
 
-@part()
+@inline
 def _swept_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), alpha > 1: there is no speed at rest with the surface.
 
@@ -91,13 +75,13 @@ def _swept_change(rho: float, alpha: float, tau: float) -> float:
     return float(change)
 
 
-@part()
+@inline
 def _ln_cosh(delta: float) -> float:
     """Ln(2 cosh delta), without overflow."""
     return float(abs(delta) + np.log1p(np.exp(-2.0 * abs(delta))))
 
 
-@part()
+@inline
 def _held_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1: rho tends to rest = -artanh alpha.
 
@@ -123,17 +107,17 @@ def _held_change(rho: float, alpha: float, tau: float) -> float:
     return float(side * _arsinh_exp(level) + rest - rho)
 
 
-@part()
+@inline
 def _ln_sinh(eta: float) -> float:
     return float(np.log(np.sinh(eta))) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
 
 
-@part()
+@inline
 def _arsinh_exp(level: float) -> float:
     return float(np.arcsinh(np.exp(level))) if level < 20.0 else level + np.log(2.0)
 
 
-@lean()
+@jit
 def coulomb_span(
     r: float, a0: float, a1: float, kinetic: float, static: float, dt: float, stuck: bool
 ) -> tuple[float, float, bool, float]:
@@ -145,24 +129,24 @@ def coulomb_span(
     """
     rate = (a1 - a0) / dt
     if stuck and abs(a0) > static * (1.0 + 1e-12):
-        return 0.0, 0.0, False, SLIPS
+        return 0.0, 0.0, False, rec.SLIPS
     if stuck:
         for bound in (static, -static):
             beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
             if beyond > 0.0 and rate != 0.0:
                 at = (bound - a0) / rate
                 at = 0.0 if at < 0.0 else at
-                return dt if dt < at else at, 0.0, False, SLIPS
+                return dt if dt < at else at, 0.0, False, rec.SLIPS
         return dt, 0.0, True, 0.0
     side = np.sign(r) if r != 0.0 else -np.sign(a0 if a0 != 0.0 else rate)
     slowing = kinetic * side + a0  # r(t) = r - slowing t - rate t^2 / 2
     used = _first_zero(r, slowing, rate, dt)
     if used >= dt:
         return dt, r - slowing * dt - 0.5 * rate * dt * dt, False, 0.0
-    return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
+    return used, 0.0, abs(a0 + rate * used) <= static, rec.STICKS if abs(a0 + rate * used) <= static else rec.TURNS
 
 
-@part()
+@inline
 def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     """The first t in (0, dt) where r - slowing t - rate t^2/2 changes sign, else dt."""
     if r == 0.0:
@@ -182,7 +166,7 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     return best
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _grip(r: float, slope: float | None) -> float:
     """Share of full friction under Eq. (3). Numba drops a branch for what is None, and only then: hence twice."""
     if slope is None:
@@ -190,7 +174,7 @@ def _grip(r: float, slope: float | None) -> float:
     return float(np.tanh(slope * r))
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _tanh_slip(r: float, a: float, b: float, slope: float | None, dt: float) -> float:
     """`tanh_speed_change` where the law has a slope."""
     if slope is None:
@@ -198,7 +182,7 @@ def _tanh_slip(r: float, a: float, b: float, slope: float | None, dt: float) -> 
     return tanh_speed_change(r, a, b, slope, dt)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def friction(r: float, static: float | None, law: Law) -> float:
     """Friction per mass at relative speed r where it does not depend on sticking; `static` is the law's."""
     if static is None:
@@ -206,7 +190,7 @@ def friction(r: float, static: float | None, law: Law) -> float:
     return float(-law.kinetic * np.sign(r))
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def slip(
     v: float,
     stuck: bool,
@@ -227,35 +211,35 @@ def slip(
     slipping located on it.
     """
     seen, took = space.seen, space.slip
-    s0 = seen[0, SURFACE]
-    sm = seen[1, SURFACE] - took[GIVEN_MIDDLE] + push * half
-    s1 = seen[2, SURFACE] - took[GIVEN_END] + push * full
-    took[STICKING], took[N_EVENTS] = 0.0, 0.0
+    s0 = seen[0, rec.SURFACE]
+    sm = seen[1, rec.SURFACE] - took[rec.GIVEN_MIDDLE] + push * half
+    s1 = seen[2, rec.SURFACE] - took[rec.GIVEN_END] + push * full
+    took[rec.STICKING], took[rec.N_EVENTS] = 0.0, 0.0
     if static is None:
         mean, rise = (s0 + 4.0 * sm + s1) / 6.0, s1 - s0
-        took[CHANGE] = _tanh_slip(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
-        return float(took[CHANGE])
+        took[rec.CHANGE] = _tanh_slip(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
+        return float(took[rec.CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
-    r, used, took[RELATIVE] = 0.0 if stuck else v - s0, 0.0, 0.0
+    r, used, took[rec.RELATIVE] = 0.0 if stuck else v - s0, 0.0, 0.0
     if abs(r) <= 1e-9 * law.kinetic * dt and abs(a0) <= static:
         r, stuck = 0.0, True  # put on a surface at rest, to rounding
-    for _ in range(SPANS):
+    for _ in range(rec.SPANS):
         slips, before = not stuck, r
         span, r, stuck, event = coulomb_span(r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, static, dt - used, stuck)
         used += span
         if slips:  # r is a parabola
-            took[RELATIVE] += 0.5 * span * (before + r) + (a1 - a0) / dt * span * span * span / 12.0
-        if event in (STICKS, SLIPS):
-            here = FIRST_EVENT + 2 * int(took[N_EVENTS])
+            took[rec.RELATIVE] += 0.5 * span * (before + r) + (a1 - a0) / dt * span * span * span / 12.0
+        if event in (rec.STICKS, rec.SLIPS):
+            here = rec.FIRST_EVENT + 2 * int(took[rec.N_EVENTS])
             took[here], took[here + 1] = used, event
-            took[N_EVENTS] += 1.0
+            took[rec.N_EVENTS] += 1.0
         if used >= dt or (span <= 0.0 and event == 0.0):
             break
-    took[CHANGE], took[STICKING] = r + s1 - v, 1.0 if stuck else 0.0
-    return float(took[CHANGE])
+    took[rec.CHANGE], took[rec.STICKING] = r + s1 - v, 1.0 if stuck else 0.0
+    return float(took[rec.CHANGE])
 
 
-@part()
+@inline
 def hold(v: float, full: float, static: float, law: Law, dt: float, seen: Array, took: Array) -> float:
     """Speed change in one step of a slider at rest on a surface that feels it; fills `took`, which holds the last one.
 
@@ -263,26 +247,26 @@ def hold(v: float, full: float, static: float, law: Law, dt: float, seen: Array,
     decide: at rest where what holds it is within static friction. Else it slips, from where the line through this mean
     and the last step's passes static friction: what a slip before the step would have spared is taken off in it.
     """
-    needed = (seen[2, SURFACE] - took[GIVEN_END] - v) / (dt + law.mass * full)
-    size, before = abs(needed), took[CHANGE] / dt * np.sign(needed)
-    known = took[STICKING] > 0.0 and took[N_EVENTS] == 0.0
-    took[STICKING], took[N_EVENTS], took[CHANGE] = 1.0, 0.0, needed * dt
+    needed = (seen[2, rec.SURFACE] - took[rec.GIVEN_END] - v) / (dt + law.mass * full)
+    size, before = abs(needed), took[rec.CHANGE] / dt * np.sign(needed)
+    known = took[rec.STICKING] > 0.0 and took[rec.N_EVENTS] == 0.0
+    took[rec.STICKING], took[rec.N_EVENTS], took[rec.CHANGE] = 1.0, 0.0, needed * dt
     if size > static:
         stays = (static - before) / (size - before) - 0.5 if known else 0.0
         mean = stays * 0.5 * (0.5 * (before + size) + static) + (1.0 - stays) * law.kinetic
-        took[STICKING], took[N_EVENTS], took[CHANGE] = 0.0, 1.0, np.sign(needed) * mean * dt
-        took[FIRST_EVENT], took[FIRST_EVENT + 1] = stays * dt, SLIPS
-    return float(took[CHANGE])
+        took[rec.STICKING], took[rec.N_EVENTS], took[rec.CHANGE] = 0.0, 1.0, np.sign(needed) * mean * dt
+        took[rec.FIRST_EVENT], took[rec.FIRST_EVENT + 1] = stays * dt, rec.SLIPS
+    return float(took[rec.CHANGE])
 
 
-@part()
+@inline
 def give(dt: float, seen: Array, took: Array) -> None:
     """What everything but friction adds to the speed by the middle and the end of a step."""
-    took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
-    took[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+    took[rec.GIVEN_MIDDLE] = dt * (5.0 * seen[0, rec.PULL] + 8.0 * seen[1, rec.PULL] - seen[2, rec.PULL]) / 24.0
+    took[rec.GIVEN_END] = dt * (seen[0, rec.PULL] + 4.0 * seen[1, rec.PULL] + seen[2, rec.PULL]) / 6.0
 
 
-@part()
+@inline
 def _tanh_on_belt(
     dt: float, kinetic: float, slope: float | None, belt: float, stiffness: float, pull: float, state: Array
 ) -> None:
@@ -300,7 +284,7 @@ def _tanh_on_belt(
     state[0], state[1] = x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
 
 
-@part()
+@inline
 def _step_on_belt(
     end: float,
     dt: float,
@@ -335,7 +319,7 @@ def _step_on_belt(
     return n_events
 
 
-@lean()
+@jit
 def slide_on_belt(
     n_steps: int, dt: float, law: Law, belt: float, stiffness: float, pull: float, state: Array, events: Array
 ) -> int:
@@ -344,7 +328,7 @@ def slide_on_belt(
     `state` is (x, v, stuck) and is advanced in place; `stiffness` is k/m, `pull` an acceleration. `events` is
     (capacity, 3): time, kind, x; a turn of the velocity relative to the surface is an event as well.
     """
-    n_events = NOUGHT
+    n_events = rec.NOUGHT
     for step in range(n_steps):
         n_events = _step_on_belt((step + 1) * dt, dt, law.static, law, belt, stiffness, pull, state, events, n_events)
     return n_events

@@ -2,60 +2,18 @@
 
 import numpy as np
 
-from verify.models.arrays import Array, Indices
-from verify.models.kernels import lean, part
+from verify.jit import inline, jit
+from verify.models.arrays import Array
+from verify.motion import records as rec
 from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power, pulled
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import friction, give, slip
-from verify.motion.records import (
-    AT_END,
-    AT_START,
-    BEFORE,
-    CHANGE,
-    CLIMB,
-    DONE,
-    DRIFT,
-    EVENTS,
-    FALL,
-    FIRST_EVENT,
-    GIVEN_END,
-    HEIGHT,
-    KEPT_FRICTION,
-    KEPT_NORMAL,
-    KEPT_SURFACE,
-    KEPT_V,
-    KEPT_X,
-    LEVEL,
-    LIFTED,
-    LOSS,
-    N_EVENTS,
-    NORMAL,
-    NOT_FINITE,
-    NOUGHT,
-    OFF_PIECES,
-    POWER,
-    PULL,
-    SAMPLES,
-    STEP,
-    STILL,
-    STUCK,
-    SURFACE,
-    Books,
-    Given,
-    Here,
-    Kept,
-    Law,
-    Rider,
-    Space,
-    Surface,
-    V,
-    X,
-)
+from verify.motion.records import Books, Given, Here, Kept, Law, Rider, Space, Surface
 from verify.motion.surface_kernels import between, climb, find_piece, rotate_half, set_factors, set_local, touch
 from verify.motion.way_kernels import advance, felt_way, until_caught, way
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _see(
     row: int,
     time: float,
@@ -75,29 +33,22 @@ def _see(
         set_local(surface.table, piece, factors, local)
     touch(local, surface.edges, piece, x, v, law, seen, row)
     if books.open:
-        seen[row, POWER] = power(surface.drive, books, time, factors)
-        seen[row, LOSS] = loss(surface.modes, books.answers, factors)
+        seen[row, rec.POWER] = power(surface.drive, books, time, factors)
+        seen[row, rec.LOSS] = loss(surface.modes, books.answers, factors)
 
 
-@part()
-def _remember(local: Array) -> None:
-    """Keep the deflection at the start of a step."""
-    for d in range(local.shape[1]):
-        local[BEFORE, d] = local[STILL, d]
-
-
-@part()
+@inline
 def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: Law, space: Space) -> None:
     """Inertia and drift along the surface at the end of a step with what the contact has added, half at mid-step."""
     seen = space.seen
-    surface, pull, drift = seen[2, SURFACE], seen[2, PULL], seen[2, DRIFT]
-    touch(space.local, edges, piece, x, v, law, seen, AT_END)
-    seen[2, SURFACE] = surface
-    seen[1, DRIFT] += 0.5 * (seen[2, DRIFT] - drift)
-    space.slip[GIVEN_END] += 0.5 * dt * (seen[2, PULL] - pull)
+    surface, pull, drift = seen[2, rec.SURFACE], seen[2, rec.PULL], seen[2, rec.DRIFT]
+    touch(space.local, edges, piece, x, v, law, seen, rec.AT_END)
+    seen[2, rec.SURFACE] = surface
+    seen[1, rec.DRIFT] += 0.5 * (seen[2, rec.DRIFT] - drift)
+    space.slip[rec.GIVEN_END] += 0.5 * dt * (seen[2, rec.PULL] - pull)
 
 
-@part()
+@inline
 def _answer(
     end: float, dt: float, x: float, v: float, here: Here, surface: Surface, rider: Rider, books: Books, space: Space
 ) -> tuple[float, float]:
@@ -107,10 +58,10 @@ def _answer(
         set_reads(surface, here.piece, space.local, x, law.half)
     else:
         feel(dt, motion, law, space.seen)
-    works = push_back(motion[V], motion[STUCK] > 0.0, dt, here, surface, rider, space)
+    works = push_back(motion[rec.V], motion[rec.STUCK] > 0.0, dt, here, surface, rider, space)
     if law.held:
-        fall = (law.load - motion[NORMAL]) / law.mass
-        motion[FALL] = fall if fall > motion[FALL] else motion[FALL]
+        fall = (law.load - motion[rec.NORMAL]) / law.mass
+        motion[rec.FALL] = fall if fall > motion[rec.FALL] else motion[rec.FALL]
     set_factors(end, surface.modes, surface.drive, space.factors)
     if books.open:
         correct_powers(end, surface, books, space)
@@ -120,24 +71,15 @@ def _answer(
     return works
 
 
-@part()
-def _put_on(piece: int, edges: Array, motion: Array, law: Law, space: Space) -> None:
-    """Height and climb of a slider that was seen at the start of a step, and what presses it on."""
-    seen = space.seen
-    seen[2, SURFACE] = seen[0, SURFACE]
-    motion[HEIGHT], motion[NORMAL] = seen[0, LEVEL], law.load
-    motion[CLIMB] = climb(space.local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law.half)
-
-
-@part(forceinline=True)
+@inline(forceinline=True)
 def _starts(v: float, grip: float, dt: float, two_way: bool | None, seen: Array) -> float:
     """The slider's acceleration at the start of a step, by which its place in the step is foreseen."""
     if two_way is None:
-        grip = until_caught(grip, v - seen[0, SURFACE], dt)
-    return float(seen[0, PULL] + grip)
+        grip = until_caught(grip, v - seen[0, rec.SURFACE], dt)
+    return float(seen[0, rec.PULL] + grip)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _step(
     number: int,
     dt: float,
@@ -155,7 +97,7 @@ def _step(
     `two_way` is the rider's, by itself so that numba drops what a step has not.
     """
     motion, law, seen = rider.motion, rider.law, space.seen
-    x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
+    x, v, stuck = motion[rec.X], motion[rec.V], motion[rec.STUCK] > 0.0
     here, pressed, lifted, x1, v1, grip, rate, along = Here(piece, 0.0, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0, 0.0
     for row in range(1 if looking else 3):
         t = 0.5 * row * dt
@@ -164,14 +106,17 @@ def _step(
             x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
         _see(row, (number + 0.5 * row) * dt, x1, v1, piece, fresh or row > 0, surface, law, books, space)
         if row == 0:
-            grip = 0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law)
-            rate, along = _starts(v, grip, dt, two_way, seen), v + seen[0, DRIFT]
+            grip = 0.0 if stuck else friction(v - seen[0, rec.SURFACE], law.static, law)
+            rate, along = _starts(v, grip, dt, two_way, seen), v + seen[0, rec.DRIFT]
         if two_way is not None and row == 0:
-            _remember(space.local)
+            for d in range(space.local.shape[1]):
+                space.local[rec.BEFORE, d] = space.local[rec.STILL, d]
         if two_way is not None and row == 1:
             here = set_levers(surface, piece, space.local, x1, law.half)
-    if looking:
-        _put_on(piece, surface.edges, motion, law, space)
+    if looking:  # height, climb and load of a slider that is put on
+        seen[2, rec.SURFACE] = seen[0, rec.SURFACE]
+        motion[rec.HEIGHT], motion[rec.NORMAL] = seen[0, rec.LEVEL], law.load
+        motion[rec.CLIMB] = climb(space.local, surface.edges, piece, x, v + seen[0, rec.DRIFT], law.half)
         return
     give(dt, seen, space.slip)
     if two_way is not None:
@@ -185,14 +130,14 @@ def _step(
     if books.open:
         turned, spared = 0.0, 0.0
         if law.following:
-            turned, spared = pulled(v, motion[V], moved, dt, law.mass, seen, space.slip)
+            turned, spared = pulled(v, motion[rec.V], moved, dt, law.mass, seen, space.slip)
         if two_way is None:
-            pressed = by_parts(v, motion[V], moved, dt, law.mass, seen) + spared
-        account(v, motion[V], pressed, turned, dt, law.mass, books.ledger, seen)
-        books.ledger[LIFTED] += lifted
+            pressed = by_parts(v, motion[rec.V], moved, dt, law.mass, seen) + spared
+        account(v, motion[rec.V], pressed, turned, dt, law.mass, books.ledger, seen)
+        books.ledger[rec.LIFTED] += lifted
 
 
-@lean()
+@jit
 def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books, kept: Kept, space: Space) -> int:
     """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
@@ -201,52 +146,50 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
     agree whenever the caller is interrupted.
     """
     motion, tally, took = rider.motion, kept.tally, space.slip
-    piece, fresh, looking = NOUGHT, True, n_steps == 0
+    piece, fresh, looking = rec.NOUGHT, True, n_steps == 0
     for _ in range(1 if looking else n_steps):
-        here = find_piece(surface.edges, motion[X], piece)
+        here = find_piece(surface.edges, motion[rec.X], piece)
         if here < 0:
-            return OFF_PIECES
+            return rec.OFF_PIECES
         fresh = fresh or here != piece or rider.two_way is not None
-        piece, number = here, tally[STEP]
+        piece, number = here, tally[rec.STEP]
         _step(number, dt, piece, fresh, looking, rider.two_way, surface, rider, books, space)
         fresh = False
-        tally[STEP] += not looking
-        if not np.isfinite(motion[V] + space.factors[STILL, 0]):
-            return NOT_FINITE
-        if took[N_EVENTS] > 0.0:
-            _note_events(surface.drive.origin + number * dt, motion[X], took, kept.events, tally)
-        if tally[STEP] % kept.every == 0:
+        tally[rec.STEP] += not looking
+        if not np.isfinite(motion[rec.V] + space.factors[rec.STILL, 0]):
+            return rec.NOT_FINITE
+        if took[rec.N_EVENTS] > 0.0:
+            began = surface.drive.origin + number * dt
+            for i in range(int(took[rec.N_EVENTS])):  # all are counted, as many recorded as there is room for
+                row, at = tally[rec.EVENTS], rec.FIRST_EVENT + 2 * i
+                if row < len(kept.events):
+                    kept.events[row, 0], kept.events[row, 1] = began + took[at], took[at + 1]
+                    kept.events[row, 2] = motion[rec.X]
+                tally[rec.EVENTS] += 1
+        if tally[rec.STEP] % kept.every == 0:
             _keep(dt, motion, rider.law, kept, space)
-            tally[SAMPLES] += 1
-    return DONE
+            tally[rec.SAMPLES] += 1
+    return rec.DONE
 
 
-@part()
-def _note_events(time: float, x: float, took: Array, events: Array, tally: Indices) -> None:
-    """Write down all events of a step, as long as there is room; all of them are counted."""
-    for i in range(int(took[N_EVENTS])):
-        row, here = tally[EVENTS], FIRST_EVENT + 2 * i
-        if row < len(events):
-            events[row, 0], events[row, 1], events[row, 2] = time + took[here], took[here + 1], x
-        tally[EVENTS] += 1
-
-
-@part()
+@inline
 def _keep(dt: float, motion: Array, law: Law, kept: Kept, space: Space) -> None:
     """Write one sample; friction that sticks is the step's mean."""
-    surface, row, points, rows = space.seen[2, SURFACE], kept.tally[SAMPLES], kept.points, kept.kept
-    rows[row, KEPT_X], rows[row, KEPT_V], rows[row, KEPT_SURFACE] = motion[X], motion[V], surface
-    rows[row, KEPT_NORMAL] = motion[NORMAL]
-    mean = space.slip[CHANGE] / dt
-    rows[row, KEPT_FRICTION] = mean if motion[STUCK] > 0.0 else friction(motion[V] - surface, law.static, law)
+    surface, row, points, rows = space.seen[2, rec.SURFACE], kept.tally[rec.SAMPLES], kept.points, kept.kept
+    rows[row, rec.KEPT_X], rows[row, rec.KEPT_V], rows[row, rec.KEPT_SURFACE] = motion[rec.X], motion[rec.V], surface
+    rows[row, rec.KEPT_NORMAL] = motion[rec.NORMAL]
+    mean = space.slip[rec.CHANGE] / dt
+    rows[row, rec.KEPT_FRICTION] = (
+        mean if motion[rec.STUCK] > 0.0 else friction(motion[rec.V] - surface, law.static, law)
+    )
     for p in range(points.shape[0]):
         total = 0.0
         for j in range(points.shape[1]):
-            total += points[p, j] * space.factors[STILL, j]
+            total += points[p, j] * space.factors[rec.STILL, j]
         kept.deflections[row, p] = total
 
 
-@lean()
+@jit
 def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array, space: Space) -> int:
     """The same steps on a surface that is given at every half step, one way; how many were done on its piece.
 
@@ -254,23 +197,23 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
     """
     motion, law, seen, edges = rider.motion, rider.law, space.seen, given.edges
     for number in range(n_steps + 1):
-        x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
+        x, v, stuck = motion[rec.X], motion[rec.V], motion[rec.STUCK] > 0.0
         if x < edges[0] or x > edges[1]:
             return number - 1 if number > 0 else 0
-        touch(given.local[2 * number], edges, NOUGHT, x, v, law, seen, AT_START)
-        seen[0, SURFACE] += between(given.along[2 * number], edges, NOUGHT, x)
-        r = v - seen[0, SURFACE]
+        touch(given.local[2 * number], edges, rec.NOUGHT, x, v, law, seen, rec.AT_START)
+        seen[0, rec.SURFACE] += between(given.along[2 * number], edges, rec.NOUGHT, x)
+        r = v - seen[0, rec.SURFACE]
         grip = 0.0 if stuck else friction(r, law.static, law)
-        kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
-        kept[number, KEPT_FRICTION] = space.slip[CHANGE] / dt if stuck else grip
+        kept[number, rec.KEPT_X], kept[number, rec.KEPT_V], kept[number, rec.KEPT_SURFACE] = x, v, seen[0, rec.SURFACE]
+        kept[number, rec.KEPT_FRICTION] = space.slip[rec.CHANGE] / dt if stuck else grip
         if number == n_steps:
             break
-        rate, ahead = seen[0, PULL] + until_caught(grip, r, dt), v + seen[0, DRIFT]
+        rate, ahead = seen[0, rec.PULL] + until_caught(grip, r, dt), v + seen[0, rec.DRIFT]
         for row in range(1, 3):
             t, half = 0.5 * row * dt, 2 * number + row
             there = x + t * ahead + 0.5 * t * t * rate
-            touch(given.local[half], edges, NOUGHT, there, v + t * rate, law, seen, row)
-            seen[row, SURFACE] += between(given.along[half], edges, NOUGHT, there)
+            touch(given.local[half], edges, rec.NOUGHT, there, v + t * rate, law, seen, row)
+            seen[row, rec.SURFACE] += between(given.along[half], edges, rec.NOUGHT, there)
         give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
         moved = way(v, rate, dt, law.slope, law, seen, space.slip)

@@ -1,8 +1,9 @@
 """What a simulation returns: times, what was asked to be kept, what it cost, where the energy went."""
 
+from msgspec import Struct
+
 from verify.beam import Beam
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.motion.contact import Coupling, Margins
 from verify.slider import Slider
@@ -11,7 +12,7 @@ END, INTERRUPTED = "end", "interrupted"
 """Why a run stopped that went as far as it was asked to."""
 
 
-class Statistics(Value, frozen=True, kw_only=True):
+class Statistics(Struct, frozen=True, kw_only=True):
     """What a run cost and why it ended, of a beam or of a chain."""
 
     steps: int
@@ -26,8 +27,6 @@ class Statistics(Value, frozen=True, kw_only=True):
     """Wall time of the run itself."""
     loop_s: float = 0.0
     """Processor time of a slider's compiled loop, of the one thread that runs it; 0 without one."""
-    estimated_s: float = 0.0
-    """Wall time that a motor's run was thought to take, from above; of others 0."""
     moved: float | None = None
     """Part of a slider's way by which halving the step last moved it; None where no second run judged the step."""
     stopped: str
@@ -44,7 +43,7 @@ class Statistics(Value, frozen=True, kw_only=True):
         return self.stopped.partition(" ")[0] == INTERRUPTED
 
 
-class Ledger(Value, frozen=True, kw_only=True):
+class Ledger(Struct, frozen=True, kw_only=True):
     """Where the energy went, joules, from the start of the run to its end."""
 
     kinetic: float
@@ -69,7 +68,7 @@ class Ledger(Value, frozen=True, kw_only=True):
     """Work on a slider that follows the surface of the tangent's turning and of gravity along it."""
 
 
-class EndState(Value, frozen=True, eq=False, kw_only=True):
+class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """From where a run can go on."""
 
     beam: Beam
@@ -100,7 +99,7 @@ class EndState(Value, frozen=True, eq=False, kw_only=True):
     """What the slider had done that left the surface it ran on, from where it cannot go on; empty otherwise."""
 
 
-class Ride(Value, frozen=True, eq=False, kw_only=True):
+class Ride(Struct, frozen=True, eq=False, kw_only=True):
     """What a slider did on a surface in motion, of a linear beam or of a nonlinear chain."""
 
     times: Array

@@ -1,7 +1,4 @@
-"""A slider on a rigid surface of constant speed, pulled or held by a spring: friction laws on their own.
-
-The same compiled friction steps as on a beam; nothing here knows a closed form of what it measures.
-"""
+"""A slider on a rigid surface of constant speed, pulled or held by a spring, by the friction steps of the beam runs."""
 
 from math import pi, sqrt
 
@@ -9,6 +6,7 @@ import numpy as np
 
 from verify.checks import check_number
 from verify.errors import InputError
+from verify.models.arrays import Array
 from verify.motion.records import SLIPS, STICKS, Law
 from verify.slider import GRAVITY
 
@@ -21,7 +19,7 @@ DOUBLINGS = 60
 """Of the step, from the time that friction takes to act."""
 MOST_STEPS = 40_000_000
 LARGE = 1e100
-"""Of a mass, a stiffness, a force; the least mass is one over it."""
+"""Of a mass, a stiffness, a force; the least is one over it."""
 
 
 def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Law:
@@ -39,37 +37,33 @@ def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Law:
     )
 
 
-def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
-    """Speed that tanh friction leaves of `speed` after `time` on a surface at rest, m/s."""
+def _slide(n: int, dt: float, law: Law, belt: float, stiffness: float, pull: float, state: Array, events: Array) -> int:
+    """`slide_on_belt`, compiled at its first use."""
     from verify.motion.friction_kernels import slide_on_belt
 
+    return int(slide_on_belt(n, dt, law, belt, stiffness, pull, state, events))
+
+
+def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
+    """Speed that tanh friction leaves of `speed` after `time` on a surface at rest, m/s."""
     state = np.array([0.0, speed, 0.0])
-    slide_on_belt(STEPS, time / STEPS, _law(False, mu * gravity, 0.0, slope), 0.0, 0.0, 0.0, state, np.zeros((0, 3)))
+    _slide(STEPS, time / STEPS, _law(False, mu * gravity, 0.0, slope), 0.0, 0.0, 0.0, state, np.zeros((0, 3)))
     return float(state[1])
 
 
 def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) -> float:
     """Speed at which a slider under the constant acceleration `pull` creeps in the end, m/s. Raises InputError."""
-    from verify.motion.friction_kernels import slide_on_belt
-
     if not abs(pull) <= HELD * mu * gravity:
         raise InputError(f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull")
     state, law = np.array([0.0, 0.0, 0.0]), _law(False, mu * gravity, 0.0, slope)
     step = 1.0 / (mu * gravity * slope)
     for _ in range(DOUBLINGS):
         before = state[1]
-        slide_on_belt(100, step, law, 0.0, 0.0, pull, state, np.zeros((0, 3)))
+        _slide(100, step, law, 0.0, 0.0, pull, state, np.zeros((0, 3)))
         if abs(state[1] - before) <= 1e-15 * abs(state[1]):
             break
         step *= 2.0
     return float(state[1])
-
-
-def _check_sizes(mass: float, **given: float) -> None:
-    """Raise InputError for sizes whose quotients are no numbers any more."""
-    check_number("mass", mass, "kg", at_least=1.0 / LARGE, at_most=LARGE)
-    for name, value in given.items():
-        check_number(name, value, "SI", at_most=LARGE)
 
 
 def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: float, speed: float) -> tuple[float, float]:
@@ -77,13 +71,12 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
 
     Raises InputError where it does not stick and slip.
     """
-    from verify.motion.friction_kernels import slide_on_belt
-
     if kinetic >= static:
         raise InputError(
             f"kinetic = {kinetic!r} is not below static = {static!r}: without a drop nothing slips, lower it"
         )
-    _check_sizes(mass, stiffness=stiffness, static=static, kinetic=kinetic)
+    for name, value in (("mass", mass), ("stiffness", stiffness), ("static", static), ("speed", speed)):
+        check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     period = 2.0 * pi * sqrt(mass / stiffness)
     step = period / STEPS_PER_PERIOD
     stretching = static / stiffness / speed  # seconds until the belt has stretched the spring
@@ -94,7 +87,7 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
         )
     events, state = np.zeros((EVENTS, 3)), np.array([0.0, speed, 1.0])
     law = _law(True, kinetic / mass, static / mass, 0.0)
-    n = slide_on_belt(int(steps), step, law, speed, stiffness / mass, 0.0, state, events)
+    n = _slide(int(steps), step, law, speed, stiffness / mass, 0.0, state, events)
     kinds = events[:n, 1]
     sticks, slips = events[:n][kinds == STICKS, 0], events[:n][kinds == SLIPS, 0]
     if len(sticks) < 2 or len(slips) < 2:
@@ -107,14 +100,13 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
 
 def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
     """Amplitude that a spring-mass oscillator on a floor with Coulomb friction `force` loses in a cycle, metres."""
-    from verify.motion.friction_kernels import slide_on_belt
-
-    _check_sizes(mass, stiffness=stiffness, force=force)
+    for name, value in (("mass", mass), ("stiffness", stiffness), ("force", force)):
+        check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     period = 2.0 * pi * sqrt(mass / stiffness)
     start = 12.5 * force / stiffness
     events, state = np.zeros((EVENTS, 3)), np.array([start, 0.0, 0.0])
     law = _law(True, force / mass, force / mass, 0.0)
-    n = slide_on_belt(2 * STEPS_PER_PERIOD, period / STEPS_PER_PERIOD, law, 0.0, stiffness / mass, 0.0, state, events)
+    n = _slide(2 * STEPS_PER_PERIOD, period / STEPS_PER_PERIOD, law, 0.0, stiffness / mass, 0.0, state, events)
     turns = events[:n, 2]
     ahead = turns[turns > 0.0]
     return float(start - ahead[0])

@@ -1,14 +1,21 @@
-"""Which errors a run carries that no step size removes: the theory's, the division's, and those of linear theory."""
+"""Errors of a run that no step size removes: beam theory, discretisation, linearisation, lift-off."""
 
 from math import pi
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from verify.beam import Beam
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
 from verify.exact.error_laws import LAWS, expected_error, leading_error
+from verify.models.fields import lossless_wavenumber
+from verify.motion.contact import Margins
+from verify.slider import GRAVITY
 
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
+    from verify.motion.request import Request
+    from verify.motion.surface import Stage
 
 NONLINEAR = 1e-3
 """From this (kL)^2 <theta^2> on, the linear chain is not the paper's chain."""
@@ -22,15 +29,11 @@ def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float
     millisecond from rest departs from the linear chain at mid-span by 0.6 of it in the rms, and by 3 at its end; at the
     tenths of the beam that end lies between 0.4 and 3.8 (the study of axial inertia).
     """
-    from verify.models.fields import lossless_wavenumber
-
     return float(abs(lossless_wavenumber(beam, frequency_hz)) ** 2 * beam.length**2 * mean_square_slope)
 
 
 def field_size(field: "HarmonicField") -> float:
     """The same of a steady field, averaged over the beam and a period."""
-    import numpy as np
-
     slopes = abs(field.slope(np.linspace(0.0, field.beam.length, 400)))
     return axial_inertia_size(field.beam, field.frequency_hz, 0.5 * float((slopes**2).mean()))
 
@@ -71,3 +74,22 @@ def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -
     if "clamped" in beam.supports and LAWS[model].feels_clamps:
         return expected_error(model, beam, mode, count)
     return leading_error(model, beam.supports, mode, count)
+
+
+def margins_of(request: "Request", stage: "Stage", fall: float | None = None) -> Margins:
+    """Margins of a run whose last stage this is.
+
+    `fall` is the largest downward acceleration of the surface under the slider in the run, m/s^2; without a slider
+    the largest of the steady motion along the beam.
+    """
+    x = np.linspace(0.0, request.beam.length, 400)
+    steady, slopes = stage.drive_shapes(x, 0)[:2], stage.drive_shapes(x, 1)[:2]
+    falling = request.omega**2 * float(np.hypot(*steady).max()) if fall is None else fall
+    pressing = request.slider.effective_gravity if request.slider else GRAVITY
+    square = 0.5 * float((slopes**2).sum(axis=0).mean())
+    return Margins(
+        lift_off=falling / pressing if pressing else float("inf"),
+        nonlinearity=axial_inertia_size(request.beam, request.frequency_hz, square),
+        model_form=model_form(request.beam, request.frequency_hz),
+        discretisation=discretisation(request.beam, request.model, request.count, request.frequency_hz),
+    )

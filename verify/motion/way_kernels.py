@@ -6,34 +6,17 @@ ends tell nothing. So its way is that of the surface and what the relative speed
 
 import numpy as np
 
+from verify.jit import inline
 from verify.models.arrays import Array
-from verify.models.kernels import part
+from verify.motion import records as rec
 from verify.motion.friction_kernels import friction
-from verify.motion.records import (
-    CHANGE,
-    DRIFT,
-    FIRST_EVENT,
-    GIVEN_END,
-    GIVEN_MIDDLE,
-    HARDEST,
-    N_EVENTS,
-    PULL,
-    PUSHED,
-    RELATIVE,
-    STICKING,
-    STUCK,
-    SURFACE,
-    SWEPT,
-    Law,
-    V,
-    X,
-)
+from verify.motion.records import Law
 
 STIFF = 0.25
 """K mu N / m times a step: below it Eq. (3) is smooth in a step, whose ends tell the way to 1e-5 of r dt."""
 
 
-@part()
+@inline
 def _planck(w: float) -> float:
     """The integral of u / (e^u - 1) from 0 to w, by Bernoulli's numbers: off by less than 1e-15 for |w| <= ln 2."""
     s = w * w
@@ -42,7 +25,7 @@ def _planck(w: float) -> float:
     return float(w * (1.0 - 0.25 * w + s * (1.0 / 36.0 - s * (1.0 / 3600.0 - s * next_last))))
 
 
-@part()
+@inline
 def _by_coth(eta: float) -> float:
     """The integral of x coth x from 0 to eta >= 0; far out by Euler's reflection of the dilogarithm."""
     y = 2.0 * eta
@@ -52,7 +35,7 @@ def _by_coth(eta: float) -> float:
     return float(0.5 * (eta * eta + np.pi * np.pi / 6.0 - _planck(w) - y * w))
 
 
-@part()
+@inline
 def _by_tanh(delta: float) -> float:
     """The integral of x tanh x from 0 to delta."""
     y = 2.0 * abs(delta)
@@ -61,14 +44,14 @@ def _by_tanh(delta: float) -> float:
     return float(np.copysign(0.5 * found, delta))
 
 
-@part()
+@inline
 def _ln_cosh_change(start: float, end: float) -> float:
     """Ln cosh start - ln cosh end, without overflow."""
     first, last = abs(start), abs(end)
     return float(first - last + np.log1p(np.exp(-2.0 * first)) - np.log1p(np.exp(-2.0 * last)))
 
 
-@part()
+@inline
 def _held_way(rho: float, end: float, alpha: float, tau: float) -> float:
     """The integral of rho over tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1, from rho to `end`.
 
@@ -81,7 +64,7 @@ def _held_way(rho: float, end: float, alpha: float, tau: float) -> float:
     return float(rest * tau + side * told / (1.0 - alpha * alpha))
 
 
-@part()
+@inline
 def _swept_way(rho: float, end: float, alpha: float) -> float:
     """The same, alpha > 1: (alpha^2 - 1) d tau = -(alpha - tanh delta) d delta, delta = rho + artanh(1/alpha)."""
     lead = np.arctanh(1.0 / alpha)
@@ -91,7 +74,7 @@ def _swept_way(rho: float, end: float, alpha: float) -> float:
     return float((straight - told) / (alpha * alpha - 1.0))
 
 
-@part()
+@inline
 def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: float) -> float:
     """The integral of r over dt while r' = -b tanh(slope r) - a and friction adds `change` to the slider's speed.
 
@@ -110,47 +93,51 @@ def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: 
     return float(side * way / (slope * slope * b))
 
 
-@part()
+@inline
 def on_surface(dt: float, seen: Array) -> float:
     """The way of the surface in a step."""
-    return float(dt * (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0)
+    return float(dt * (seen[0, rec.SURFACE] + 4.0 * seen[1, rec.SURFACE] + seen[2, rec.SURFACE]) / 6.0)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _ended(v: float, seen: Array, took: Array) -> float:
     """The slider's speed at the end of a step."""
-    return float(seen[2, SURFACE] if took[STICKING] > 0.0 else v + took[GIVEN_END] + took[CHANGE])
+    return float(seen[2, rec.SURFACE] if took[rec.STICKING] > 0.0 else v + took[rec.GIVEN_END] + took[rec.CHANGE])
 
 
-@part()
+@inline
 def smooth_way(v: float, rate: float, dt: float, law: Law, seen: Array, took: Array) -> float:
     """The distance that the slider's own speed makes in a step, by its speed and acceleration at both ends, order 4.
 
     `rate` is its acceleration at the start.
     """
     v1, rate1 = _ended(v, seen, took), rate
-    if took[STICKING] <= 0.0:
-        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], law.static, law)
+    if took[rec.STICKING] <= 0.0:
+        rate1 = seen[2, rec.PULL] + friction(v1 - seen[2, rec.SURFACE], law.static, law)
     return float(0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0)
 
 
-@part()
+@inline
 def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: Array, took: Array) -> float:
     """The same however hard friction grips; `took` is what `slip` made of it, `seen` the surface that has felt it.
 
     `slope` is the law's, by itself so that numba drops the branch of the other law.
     """
     if slope is None:
-        return float(on_surface(dt, seen) + took[RELATIVE])
+        return float(on_surface(dt, seen) + took[rec.RELATIVE])
     if slope * law.kinetic * dt < STIFF:
         return smooth_way(v, rate, dt, law, seen, took)
-    s0, sm, s1 = seen[0, SURFACE], seen[1, SURFACE] - took[GIVEN_MIDDLE], seen[2, SURFACE] - took[GIVEN_END]
+    s0, sm, s1 = (
+        seen[0, rec.SURFACE],
+        seen[1, rec.SURFACE] - took[rec.GIVEN_MIDDLE],
+        seen[2, rec.SURFACE] - took[rec.GIVEN_END],
+    )
     rise = s1 - s0  # of the line that `slip` puts in the surface's place
     start = v - (s0 + 4.0 * sm + s1) / 6.0 + 0.5 * rise
-    return float(on_surface(dt, seen) + relative_way(start, rise / dt, law.kinetic, slope, dt, took[CHANGE]))
+    return float(on_surface(dt, seen) + relative_way(start, rise / dt, law.kinetic, slope, dt, took[rec.CHANGE]))
 
 
-@part()
+@inline
 def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Array, took: Array) -> float:
     """The same on a surface that feels the slider, which `hold` may have held till the end or till friction gave way.
 
@@ -158,25 +145,25 @@ def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Arra
     """
     if not stuck:
         return way(v, rate, dt, law.slope, law, seen, took)
-    slips = 0.0 if took[STICKING] > 0.0 else dt - took[FIRST_EVENT]
-    return float(on_surface(dt, seen) + 0.5 * slips * (_ended(v, seen, took) - seen[2, SURFACE]))
+    slips = 0.0 if took[rec.STICKING] > 0.0 else dt - took[rec.FIRST_EVENT]
+    return float(on_surface(dt, seen) + 0.5 * slips * (_ended(v, seen, took) - seen[2, rec.SURFACE]))
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def until_caught(grip: float, r: float, dt: float) -> float:
     """Friction per mass as it acts in the mean of a step in which it takes no slider past the surface's speed."""
     return float(-r / dt if abs(grip) * dt > abs(r) else grip)
 
 
-@part(forceinline=True)
+@inline(forceinline=True)
 def _hardest(grip: float, dt: float, slope: float | None, law: Law, took: Array) -> float:
     """The largest friction per mass of a step: where it slips, the law's at its start; what grips hard, its mean."""
     if slope is None:
-        return abs(took[CHANGE]) / dt if took[STICKING] > 0.0 and took[N_EVENTS] == 0.0 else law.kinetic
-    return abs(grip) if slope * law.kinetic * dt < STIFF else abs(took[CHANGE]) / dt
+        return abs(took[rec.CHANGE]) / dt if took[rec.STICKING] > 0.0 and took[rec.N_EVENTS] == 0.0 else law.kinetic
+    return abs(grip) if slope * law.kinetic * dt < STIFF else abs(took[rec.CHANGE]) / dt
 
 
-@part()
+@inline
 def advance(
     moved: float, grip: float, dt: float, slope: float | None, law: Law, motion: Array, seen: Array, took: Array
 ) -> None:
@@ -184,11 +171,11 @@ def advance(
 
     `grip` is friction per mass at its start by the law, `slope` the law's, by itself so that numba drops the other.
     """
-    before = motion[V] + took[GIVEN_END]
-    motion[V] = _ended(motion[V], seen, took)
-    motion[PUSHED] += motion[V] - before
-    motion[SWEPT] += on_surface(dt, seen)
+    before = motion[rec.V] + took[rec.GIVEN_END]
+    motion[rec.V] = _ended(motion[rec.V], seen, took)
+    motion[rec.PUSHED] += motion[rec.V] - before
+    motion[rec.SWEPT] += on_surface(dt, seen)
     hard = _hardest(grip, dt, slope, law, took)
-    motion[HARDEST] = hard if hard > motion[HARDEST] else motion[HARDEST]
-    motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
-    motion[STUCK] = took[STICKING]
+    motion[rec.HARDEST] = hard if hard > motion[rec.HARDEST] else motion[rec.HARDEST]
+    motion[rec.X] += moved + dt * (seen[0, rec.DRIFT] + 4.0 * seen[1, rec.DRIFT] + seen[2, rec.DRIFT]) / 6.0
+    motion[rec.STUCK] = took[rec.STICKING]

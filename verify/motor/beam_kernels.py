@@ -9,34 +9,11 @@ begins; within it the surface has, on the average, half of what the forces give 
 
 import numpy as np
 
+from verify.jit import FAST, inline
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, part
 from verify.motion.records import OMEGA, Z_IM
-from verify.motor.records import (
-    ABOVE,
-    AFTER,
-    AHEAD,
-    AT,
-    FACE,
-    GAINED,
-    GRIP,
-    HELD,
-    IMAGE,
-    INVERSE_MASS,
-    MEAN,
-    MU,
-    PULL,
-    PUSH,
-    RUB,
-    SLOPE,
-    STUCK,
-    SURFACE,
-    SURFACE_BEFORE,
-    WEIGHT,
-    BeamAnswer,
-    Feet,
-    V,
-)
+from verify.motor import records as rec
+from verify.motor.records import BeamAnswer, Feet
 
 WIDER = 1.125
 """Of the most that friction is: sought so far, since where a point slides one way Newton's step ends on 1."""
@@ -45,7 +22,7 @@ ENOUGH = 1e-13
 """Of mu N: as far as sweeps go on changing a force, they go on."""
 
 
-@part()
+@inline
 def _lever(d: int, at: float, slope: float, lever: float, length: float) -> float:
     """What coefficient d adds to the surface's way along the tangent."""
     value = at**d
@@ -53,16 +30,16 @@ def _lever(d: int, at: float, slope: float, lever: float, length: float) -> floa
     return float((slope * value - lever * first) / np.sqrt(1.0 + slope * slope))
 
 
-@part()
+@inline
 def _lift(i: int, d: int, lever: float, length: float, touch: Array) -> float:
     """What coefficient d adds to the height of the surface under point i, as its depth reads it."""
-    value = touch[i, AT] ** d
+    value = touch[i, rec.AT] ** d
     if d > 0:
-        value += touch[i, SLOPE] * lever * d * touch[i, ABOVE] ** (d - 1) / length
+        value += touch[i, rec.SLOPE] * lever * d * touch[i, rec.ABOVE] ** (d - 1) / length
     return float(value)
 
 
-@part()
+@inline
 def _add(
     i: int, along: float, across: float, dt: float, length: float, half: float, feet: Feet, beam: BeamAnswer
 ) -> None:
@@ -71,16 +48,16 @@ def _add(
     Of two beams that are each other's mirror image one is kept, with the mean of what points below and above give.
     """
     touch, piece = feet.touch, feet.piece[i]
-    lever, degree = half * feet.points[i, FACE] * feet.points[i, IMAGE], beam.load.shape[1]
-    at, slope = touch[i, AT], touch[i, SLOPE]
+    lever, degree = half * feet.points[i, rec.FACE] * feet.points[i, rec.IMAGE], beam.load.shape[1]
+    at, slope = touch[i, rec.AT], touch[i, rec.SLOPE]
     for d in range(degree):
         way = along * _lever(d, at, slope, lever, length) + across * _lift(i, d, lever, length, touch)
-        impulse = feet.points[i, WEIGHT] * dt * way
+        impulse = feet.points[i, rec.WEIGHT] * dt * way
         beam.load[piece, d] += impulse
         _spread(0.5 * impulse, piece * degree + d, beam)
 
 
-@part(fastmath=FAST)
+@inline(fastmath=FAST)
 def _spread(impulse: float, column: int, beam: BeamAnswer) -> None:
     """What an impulse on one coefficient adds to all rates."""
     degree, row = beam.load.shape[1], beam.span[0] * beam.load.shape[1]
@@ -90,7 +67,7 @@ def _spread(impulse: float, column: int, beam: BeamAnswer) -> None:
             row += 1
 
 
-@part()
+@inline
 def clear(feet: Feet, beam: BeamAnswer) -> None:
     """Nothing is pushed yet, on the pieces from the first to the last that a point stands on."""
     first = last = feet.piece[0]
@@ -102,39 +79,39 @@ def clear(feet: Feet, beam: BeamAnswer) -> None:
             beam.load[p, d], beam.added[p, d] = 0.0, 0.0
 
 
-@part()
+@inline
 def bear(dt: float, edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
     """The surface takes the normal forces, and those of friction that are known."""
     for i in range(feet.points.shape[0]):
-        force = feet.touch[i, PUSH]
+        force = feet.touch[i, rec.PUSH]
         if force > 0.0:
             length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
-            along = -feet.touch[i, RUB] if feet.points[i, GRIP] > 0.0 else 0.0
-            _add(i, along, -feet.points[i, FACE] * feet.points[i, IMAGE] * force, dt, length, half, feet, beam)
+            along = -feet.touch[i, rec.RUB] if feet.points[i, rec.GRIP] > 0.0 else 0.0
+            _add(i, along, -feet.points[i, rec.FACE] * feet.points[i, rec.IMAGE] * force, dt, length, half, feet, beam)
 
 
-@part()
+@inline
 def _given(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> float:
     """What the forces so far add to the mean speed of the surface under point i, m/s."""
-    lever, piece, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], feet.piece[i], 0.0
+    lever, piece, total = half * feet.points[i, rec.FACE] * feet.points[i, rec.IMAGE], feet.piece[i], 0.0
     for d in range(beam.load.shape[1]):
-        total += _lever(d, feet.touch[i, AT], feet.touch[i, SLOPE], lever, length) * beam.added[piece, d]
+        total += _lever(d, feet.touch[i, rec.AT], feet.touch[i, rec.SLOPE], lever, length) * beam.added[piece, d]
     return total
 
 
-@part()
+@inline
 def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: BeamAnswer) -> float:
     """What a unit force along the surface at point i adds to its mean speed there, m/s per newton."""
-    lever, degree, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], beam.load.shape[1], 0.0
-    at, slope, first = feet.touch[i, AT], feet.touch[i, SLOPE], feet.piece[i] * beam.load.shape[1]
+    lever, degree, total = half * feet.points[i, rec.FACE] * feet.points[i, rec.IMAGE], beam.load.shape[1], 0.0
+    at, slope, first = feet.touch[i, rec.AT], feet.touch[i, rec.SLOPE], feet.piece[i] * beam.load.shape[1]
     for d in range(degree):
         own = _lever(d, at, slope, lever, length)
         for e in range(degree):
             total += own * beam.answer[first + d, first + e] * _lever(e, at, slope, lever, length)
-    return float(0.5 * dt * feet.points[i, WEIGHT] * total)
+    return float(0.5 * dt * feet.points[i, rec.WEIGHT] * total)
 
 
-@part()
+@inline
 def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None, beam: BeamAnswer) -> None:
     """The mean speeds of the sliders at which every point's friction suits its own slip: sweeps from point to point.
 
@@ -145,45 +122,47 @@ def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None,
     """
     touch, points, riders, means, largest = feet.touch, feet.points, feet.riders, feet.means, 0.0
     for b in range(feet.body.shape[0]):
-        means[b, MEAN] = feet.body[b, V] + 0.5 * dt * riders[b, INVERSE_MASS] * (riders[b, PULL] + means[b, HELD])
+        means[b, rec.MEAN] = feet.body[b, rec.V] + 0.5 * dt * riders[b, rec.INVERSE_MASS] * (
+            riders[b, rec.PULL] + means[b, rec.HELD]
+        )
     for i in range(points.shape[0]):
-        if points[i, GRIP] == 0.0:
-            touch[i, RUB], touch[i, STUCK] = 0.0, 0.0
-            gained = touch[i, SURFACE] - touch[i, SURFACE_BEFORE] - touch[i, GAINED]
-            touch[i, AHEAD] = touch[i, SURFACE] - 0.5 * gained - feet.body[feet.owner[i], V]
-            most = riders[feet.owner[i], MU] * touch[i, PUSH]
+        if points[i, rec.GRIP] == 0.0:
+            touch[i, rec.RUB], touch[i, rec.STUCK] = 0.0, 0.0
+            gained = touch[i, rec.SURFACE] - touch[i, rec.SURFACE_BEFORE] - touch[i, rec.GAINED]
+            touch[i, rec.AHEAD] = touch[i, rec.SURFACE] - 0.5 * gained - feet.body[feet.owner[i], rec.V]
+            most = riders[feet.owner[i], rec.MU] * touch[i, rec.PUSH]
             largest = most if most > largest else largest
     for _ in range(SWEEPS):
         changed = 0.0
         for i in range(points.shape[0]):
-            if touch[i, PUSH] > 0.0 and points[i, GRIP] == 0.0:
+            if touch[i, rec.PUSH] > 0.0 and points[i, rec.GRIP] == 0.0:
                 length, b = edges[feet.piece[i] + 1] - edges[feet.piece[i]], feet.owner[i]
-                gain = 0.5 * dt * riders[b, INVERSE_MASS]
-                slip = touch[i, SURFACE] - means[b, MEAN] + _given(i, length, half, feet, beam)
+                gain = 0.5 * dt * riders[b, rec.INVERSE_MASS]
+                slip = touch[i, rec.SURFACE] - means[b, rec.MEAN] + _given(i, length, half, feet, beam)
                 ease = gain + _ease(i, dt, length, half, feet, beam)
-                force = _suited(i, slip + ease * touch[i, RUB], ease, feet, slope)
-                more = force - touch[i, RUB]
-                touch[i, RUB] = force
-                means[b, MEAN] += gain * more
+                force = _suited(i, slip + ease * touch[i, rec.RUB], ease, feet, slope)
+                more = force - touch[i, rec.RUB]
+                touch[i, rec.RUB] = force
+                means[b, rec.MEAN] += gain * more
                 _add(i, -more, 0.0, dt, length, half, feet, beam)
                 changed = abs(more) if abs(more) > changed else changed
         if changed <= ENOUGH * largest:
             break
     for b in range(feet.body.shape[0]):
-        means[b, AFTER] = 2.0 * means[b, MEAN] - feet.body[b, V]
+        means[b, rec.AFTER] = 2.0 * means[b, rec.MEAN] - feet.body[b, rec.V]
 
 
-@part()
+@inline
 def _suited(i: int, slip: float, ease: float, feet: Feet, slope: float | None) -> float:
     """Friction of point i where `slip` is what the surface is ahead by without it and `ease` what it takes of that."""
-    most = feet.riders[feet.owner[i], MU] * feet.touch[i, PUSH]
+    most = feet.riders[feet.owner[i], rec.MU] * feet.touch[i, rec.PUSH]
     if slope is not None:
         return slide_by_tanh(most, slip, ease, slope)
-    force, feet.touch[i, STUCK] = turn(most, feet.touch[i, AHEAD], slip, ease)
+    force, feet.touch[i, rec.STUCK] = turn(most, feet.touch[i, rec.AHEAD], slip, ease)
     return force
 
 
-@part()
+@inline
 def turn(most: float, ahead: float, slip: float, ease: float) -> tuple[float, float]:
     """(mean friction of a step, 1 if it ends sticking) by Coulomb's law of a surface that is ahead as the step begins.
 
@@ -206,7 +185,7 @@ def turn(most: float, ahead: float, slip: float, ease: float) -> tuple[float, fl
     return float(force), stuck
 
 
-@part()
+@inline
 def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
     """Force = most tanh(slope (slip - ease force)), which falls as the force rises."""
     low, high, force = -WIDER * most, WIDER * most, 0.0
@@ -227,7 +206,7 @@ def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
     return float(force)
 
 
-@part()
+@inline
 def leave(table: Array, modes: Array, beam: BeamAnswer) -> None:
     """Give the step's impulses to the modes, in its middle."""
     for p in range(beam.span[0], beam.span[1] + 1):
@@ -238,10 +217,10 @@ def leave(table: Array, modes: Array, beam: BeamAnswer) -> None:
                     modes[Z_IM, j] -= table[p, d, j] * impulse / modes[OMEGA, j]
 
 
-@part()
+@inline
 def moved(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> tuple[float, float]:
     """What all forces of a step add to the mean rates under point i: (along, across), m/s."""
-    lever, piece, across = half * feet.points[i, FACE] * feet.points[i, IMAGE], feet.piece[i], 0.0
+    lever, piece, across = half * feet.points[i, rec.FACE] * feet.points[i, rec.IMAGE], feet.piece[i], 0.0
     for d in range(beam.load.shape[1]):
         across += _lift(i, d, lever, length, feet.touch) * beam.added[piece, d]
     return _given(i, length, half, feet, beam), across

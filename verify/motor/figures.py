@@ -6,19 +6,16 @@ One that bounces without a pattern is read over ever longer windows, with how fa
 which moves along the beam and lets the speed swing within a period, is the check on them.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.field_docs import Value
-from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
-from verify.motor.case import MotorCase
-from verify.motor.gripping import creeps, dragged_at, taken_up, widened
-from verify.motor.repeated import blocks
+from verify.motor.case import MotorCase, blocks
 from verify.motor.result import MotorRun, uninterrupted
 from verify.motor.settling import (
     BALANCED,
@@ -27,14 +24,16 @@ from verify.motor.settling import (
     SMALL,
     Means,
     apart,
+    creeps,
+    dragged_at,
     means_of,
     missed,
     rows,
     spread_of,
+    taken_up,
     told_by_balance,
+    widened,
 )
-from verify.motor.withheld import not_settled
-from verify.patience import check_work, waited_for
 
 Reading: TypeAlias = Literal["force", "normal force", "shares", "powers"]
 """What may settle or not by itself."""
@@ -42,7 +41,6 @@ READINGS: tuple[Reading, ...] = get_args(Reading)
 STAYS = 1.0 - 1e-9
 """Share of contact from which on nothing leaves, to rounding."""
 MOST_BLOCKS = 60
-FEWER = "give fewer modes, segments or points of contact"
 PERIODS = 46_080
 """At most, unless asked for otherwise, that are run until the means settle."""
 REACHED = 1.0 - np.exp(-1.0)
@@ -60,7 +58,7 @@ UNKNOWN = Means(*6 * (np.inf,))
 """How far a first block is off."""
 
 
-class AtSpeed(Value, frozen=True, kw_only=True):
+class AtSpeed(Struct, frozen=True, kw_only=True):
     """A motor whose slider is held at one speed, means over the last block of periods, or over half of all."""
 
     speed: float
@@ -131,33 +129,19 @@ def at_speed(case: MotorCase, speed: float, before: MotorRun | None = None, peri
 def held(
     case: MotorCase, speed: float, before: MotorRun | None = None, periods: int = PERIODS
 ) -> tuple[AtSpeed, MotorRun]:
-    """The same with the last run of periods; `before`, a run held at its place too, is settled already.
+    """The same with the last run of periods; `before` is a converged run, held at its place too.
 
-    Blocks go on until two agree and carry what presses on, or take longer than is waited for. A motion that does not
-    repeat itself so runs on in windows, each as long as all before it, until the spread of its means is small: for
-    `periods` at most, and likewise. A slider that a block at its speed would not make slip is dragged before, until
-    that has settled across the beam: what presses less on its way there would let go more. Those periods come on top.
+    Blocks of periods run until two agree and carry the preload. A motion that does not repeat itself so runs on in
+    windows, each as long as all before it, until the spread of its means is small or `periods` are run. A slider that
+    a block at its speed would not make slip is dragged first; those periods come on top.
     """
-    return _held(case, speed, before, periods)[:2]
-
-
-def _held(case: MotorCase, speed: float, before: MotorRun | None, periods: int) -> tuple[AtSpeed, MotorRun, float]:
-    """The same with the estimated time of all its runs, seconds, those in which it is dragged among them."""
     most = min(MOST_BLOCKS, periods // BLOCK)
     fast = dragged_at(case.slider, speed, BLOCK * case.period)
-    slipping, dragged = before, 0
-    if fast is not None:
-        first, slipping = _in_blocks(case, fast, before, most)
-        dragged = first.periods
+    slipping = before if fast is None else _in_blocks(case, fast, before, most)[1]
     found, run = _in_blocks(case, speed, slipping, most)
-    while found.unsettled and 2 * found.periods <= periods and waited_for(next_seconds(run, found.periods)):
+    while found.unsettled and 2 * found.periods <= periods:
         found, run = _in_window(case, found, run)
-    return found, run, next_seconds(run, dragged + found.periods)
-
-
-def next_seconds(run: MotorRun, periods: int) -> float:
-    """An estimate from above of the time that so many periods take, held as in a run of whole periods."""
-    return run.statistics.estimated_s * periods / (len(run.times) - 1)
+    return found, run
 
 
 def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int) -> tuple[AtSpeed, MotorRun]:
@@ -166,9 +150,7 @@ def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int
     run = _whole(block(before))
     means, number = means_of(run), 1
     found = _found(case, speed, means, UNKNOWN, BLOCK, BLOCK)
-    if most > 1:
-        check_work("periods", 2 * BLOCK, next_seconds(run, 2 * BLOCK), FEWER)
-    while number < most and (number < 2 or waited_for(next_seconds(run, BLOCK * (number + 1)))):
+    while number < most:
         number, last, run = number + 1, run, _whole(block(run))
         earlier, means = means, means_of(run)
         off = missed(case.slider, last.state, run)
@@ -204,7 +186,6 @@ def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | 
         held_speed=speed,
         frozen=True,
         samples=periods + 1,
-        patient=False,
     )
 
 
@@ -255,16 +236,6 @@ def _unsettled(case: MotorCase, found: AtSpeed) -> tuple[Reading, ...]:
     return tuple(one for one, is_wide in wide.items() if is_wide)
 
 
-def stall(case: MotorCase) -> AtSpeed:
-    """The motor held still: its force is the stall force."""
-    return at_speed(case, 0.0)
-
-
-def force_speed(case: MotorCase, speeds: Sequence[float]) -> tuple[AtSpeed, ...]:
-    """The motor at each speed, m/s."""
-    return tuple(at_speed(case, float(speed)) for speed in speeds)
-
-
 def no_load(
     case: MotorCase, reach: float | None = None, before: MotorRun | None = None, periods: int = PERIODS
 ) -> AtSpeed:
@@ -272,33 +243,36 @@ def no_load(
 
     Unless given, `reach` is twice the largest speed of the surface at the slider; `before` and `periods` as for
     `held`. Where the force is within its spread the search ends. Raises InputError where the force has the same sign
-    at both ends, or has not settled where the search ends, and where it takes longer in all than is waited for.
+    at both ends, or has not converged where the search ends.
     """
     wide = 2.0 * crest_speed(case) if reach is None else reach
-    low, high, spent = -wide, wide, 0.0
+    low, high = -wide, wide
     for end, way in ((low, 1.0), (high, -1.0)):
-        found, _, took = _held(case, end, before, periods)
-        spent += took
+        found = at_speed(case, end, before, periods)
         if not found.way:
-            raise InputError(not_settled(case, found, ("force",), periods))
+            raise InputError(not_converged(found, periods))
         if found.way != way:
             raise InputError(
-                f"reach = {wide!r} m/s: friction does not change its way up to there, so that no speed without load "
-                "is between: press the slider on more, or give a larger reach"
+                f"reach = {wide!r} m/s: friction keeps its sign up to there, so that no speed without load lies "
+                "between: give more slider.preload, or a larger reach"
             )
-    found, _, took = _held(case, 0.0, before, periods)
-    spent += took
+    found = at_speed(case, 0.0, before, periods)
     for _ in range(HALVINGS):
         low, high = (found.speed, high) if found.way > 0.0 else (low, found.speed)
         if not found.way or high - low <= 1e-6 * wide:
             break
-        between = f"the speed without load lies between {low:.6g} and {high:.6g} m/s, where means settle slowly"
-        check_work("reach", wide, spent, between)
-        found, _, took = _held(case, 0.5 * (low + high), before, periods)
-        spent += took
+        found = at_speed(case, 0.5 * (low + high), before, periods)
     if "force" in found.unsettled:
-        raise InputError(not_settled(case, found, ("force",), periods))
+        raise InputError(not_converged(found, periods))
     return found
+
+
+def not_converged(found: AtSpeed, periods: int) -> str:
+    """Message for a mean friction force that has not converged."""
+    return (
+        f"periods = {periods!r}: at {found.speed:.6g} m/s the mean friction {found.force:.4g} +- {found.spread:.1g} N "
+        "has not converged, give more periods, slider.contact.damping or slider.preload"
+    )
 
 
 def crest_speed(case: MotorCase) -> float:
@@ -307,7 +281,7 @@ def crest_speed(case: MotorCase) -> float:
     return standing_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
-class Timed(Value, frozen=True, eq=False, kw_only=True):
+class Timed(Struct, frozen=True, eq=False, kw_only=True):
     """How a motor gets from one speed to another."""
 
     start_speed: float
@@ -322,7 +296,14 @@ class Timed(Value, frozen=True, eq=False, kw_only=True):
 
 def started(case: MotorCase, target: float, periods: int = LONGEST) -> Timed:
     """From rest, without load: how long until 1 - 1/e of the `target` speed (m/s) is reached."""
-    return _timed(case.run(periods * case.period, samples=periods + 1, patient=False), case.slider.speed, target)
+    return _timed(
+        case.run(
+            periods * case.period,
+            samples=periods + 1,
+        ),
+        case.slider.speed,
+        target,
+    )
 
 
 def stopped(case: MotorCase, before: MotorRun, periods: int = LONGEST) -> Timed:
@@ -331,13 +312,13 @@ def stopped(case: MotorCase, before: MotorRun, periods: int = LONGEST) -> Timed:
     One-way, on a steady field, which ends with its forces: a beam that rings down brakes longer than that.
     """
     still = case.driven(1e-12)
-    run = still.run(periods * case.period, samples=periods + 1, patient=False, continue_from=before)
+    run = still.run(periods * case.period, samples=periods + 1, continue_from=before)
     return _timed(run, before.state.speed, 0.0)
 
 
 def reversed_way(case: MotorCase, before: MotorRun, target: float, periods: int = LONGEST) -> Timed:
     """After a run, the phase turned round at once: how long until 1 - 1/e of the way to `target` (m/s) is made."""
-    run = case.turned().run(periods * case.period, samples=periods + 1, patient=False, continue_from=before)
+    run = case.turned().run(periods * case.period, samples=periods + 1, continue_from=before)
     return _timed(run, before.state.speed, target)
 
 
@@ -392,8 +373,3 @@ def comes_to_speed(run: MotorRun, last: int, crests: float) -> bool:
         return alike
     off = abs(float(run.normal_force[-last:].mean()) - slider.normal_force)
     return alike and off <= CARRIED * slider.normal_force
-
-
-def phase_portrait(run: MotorRun) -> tuple[Array, Array]:
-    """(height, its rate) of the first foot at the samples, metres and m/s, the rate by differences."""
-    return run.height[:, 0], np.gradient(run.height[:, 0], run.times)

@@ -2,78 +2,34 @@
 
 import numpy as np
 
+from verify.jit import inline, jit
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
 from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import between, find_piece, rotate_half, set_factors
+from verify.motor import records as rec
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
-from verify.motor.cross_kernels import cross
-from verify.motor.feet_kernels import drift, gone, kick, place, press, see, stored
-from verify.motor.logging_kernels import keep, note
-from verify.motor.records import (
-    AFTER,
-    ALONG,
-    ANSWER,
-    BEYOND,
-    CLOSING,
-    DEPTH,
-    DONE,
-    FACE,
-    FREE,
-    GAINED,
-    HEIGHT,
-    HELD,
-    IMAGE,
-    INVERSE_MASS,
-    LIFT,
-    LIFTED,
-    MEAN,
-    MEAN_PUSH,
-    MEAN_RUB,
-    MU,
-    NOT_FINITE,
-    OFF_BEAM,
-    OFFSET,
-    PULL,
-    PULLED,
-    PUSH,
-    RUB,
-    RUBBED,
-    STEP,
-    STICKING,
-    STUCK,
-    SURFACE,
-    TOUCHING,
-    BeamAnswer,
-    Feet,
-    GivenSurface,
-    Line,
-    Log,
-    Rubbing,
-    V,
-    X,
-)
-from verify.motor.rub_kernels import agree, hold, stretch
-from verify.motor.surface_kernels import draw
+from verify.motor.feet_kernels import draw, drift, gone, keep, kick, note, place, press, see, stored
+from verify.motor.friction_kernels import agree, cross, hold, stretch
+from verify.motor.records import BeamAnswer, Feet, GivenSurface, Line, Log, Rubbing
 
 GIVES_WAY = 4
 """Times that dashpots and the beam under them are matched: each leaves half of c times the beam's answer in a step."""
 
 
-@part()
+@inline
 def _stand(t: float, edges: Array, feet: Feet) -> bool:
     """Find the piece that every point stands on t seconds on, before anything moves; whether all are on the beam."""
     for i in range(feet.points.shape[0]):
         b = feet.owner[i]
-        on = t * feet.body[b, V] * feet.riders[b, FREE]
-        piece = find_piece(edges, feet.body[b, X] + on + feet.points[i, OFFSET], feet.piece[i])
+        on = t * feet.body[b, rec.V] * feet.riders[b, rec.FREE]
+        piece = find_piece(edges, feet.body[b, rec.X] + on + feet.points[i, rec.OFFSET], feet.piece[i])
         if piece < 0:
             return False
         feet.piece[i] = piece
     return True
 
 
-@part()
+@inline
 def _look(number: int, surface: Surface, given: GivenSurface, half: float, line: Line, feet: Feet) -> None:
     """Every point sees the surface under it, in the middle of a step of that number."""
     edges, reckoned = surface.edges, len(given.local) == 0
@@ -83,52 +39,38 @@ def _look(number: int, surface: Surface, given: GivenSurface, half: float, line:
             if reckoned:
                 draw(surface.table, piece, line)
             else:
-                _copy(given.local[number], piece, line)
+                for d in range(given.local.shape[3]):
+                    line.local[piece, STILL, d] = given.local[number, piece, STILL, d]
+                    line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]
             line.stamp[piece] = number
         see(i, x, edges[piece], edges[piece + 1] - edges[piece], gone(i, feet), half, line, feet)
         if not reckoned:
-            feet.touch[i, SURFACE] += between(given.along[number], edges, piece, x)
+            feet.touch[i, rec.SURFACE] += between(given.along[number], edges, piece, x)
 
 
-@part()
-def _copy(local: Array, piece: int, line: Line) -> None:
-    """The polynomials of a piece as they are given."""
-    for d in range(local.shape[2]):
-        line.local[piece, STILL, d], line.local[piece, MOVING, d] = local[piece, STILL, d], local[piece, MOVING, d]
-
-
-@part()
+@inline
 def _rub(dt: float, feet: Feet, slope: float | None, before: Array) -> None:
     """Friction where the beam does not feel it, and what speeds the sliders have by it."""
     hold(dt, feet, before)
     means, riders, touch = feet.means, feet.riders, feet.touch
     for b in range(feet.body.shape[0]):
-        first, last, v, mu = feet.first[b], feet.first[b + 1], feet.body[b, V], riders[b, MU]
-        light, pull = dt * riders[b, INVERSE_MASS], riders[b, PULL] + means[b, HELD]
+        first, last, v, mu = feet.first[b], feet.first[b + 1], feet.body[b, rec.V], riders[b, rec.MU]
+        light, pull = dt * riders[b, rec.INVERSE_MASS], riders[b, rec.PULL] + means[b, rec.HELD]
         if slope is None:
-            means[b, MEAN], means[b, AFTER] = cross(first, last, light, pull, v, mu, touch, feet.points)
+            means[b, rec.MEAN], means[b, rec.AFTER] = cross(first, last, light, pull, v, mu, touch, feet.points)
         else:
-            means[b, MEAN], means[b, AFTER] = agree(first, last, light, pull, v, mu, slope, touch)
+            means[b, rec.MEAN], means[b, rec.AFTER] = agree(first, last, light, pull, v, mu, slope, touch)
 
 
-@part()
+@inline
 def _close(i: int, across: float, feet: Feet) -> None:
     """How fast the gap at point i closes, with what the forces of the step give to the beam across there."""
-    answer = feet.points[i, IMAGE] * feet.points[i, FACE] * across
-    feet.touch[i, CLOSING] += answer - feet.touch[i, ANSWER]
-    feet.touch[i, ANSWER] = answer
+    answer = feet.points[i, rec.IMAGE] * feet.points[i, rec.FACE] * across
+    feet.touch[i, rec.CLOSING] += answer - feet.touch[i, rec.ANSWER]
+    feet.touch[i, rec.ANSWER] = answer
 
 
-@part()
-def _give_way(edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
-    """The beam gives way under the forces so far, which dashpots feel."""
-    for i in range(feet.points.shape[0]):
-        if feet.touch[i, DEPTH] > 0.0:
-            length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
-            _close(i, moved(i, length, half, feet, beam)[1], feet)
-
-
-@part()
+@inline
 def _rub_back(
     dt: float,
     damped: bool,
@@ -143,7 +85,10 @@ def _rub_back(
     for _ in range(GIVES_WAY if damped else 0):
         clear(feet, beam)
         bear(dt, surface.edges, half, feet, beam)
-        _give_way(surface.edges, half, feet, beam)
+        for i in range(feet.points.shape[0]):  # dashpots act on the closing speed with the beam's response
+            if feet.touch[i, rec.DEPTH] > 0.0:
+                length = surface.edges[feet.piece[i] + 1] - surface.edges[feet.piece[i]]
+                _close(i, moved(i, length, half, feet, beam)[1], feet)
         press(dt, feet, before)
     hold(dt, feet, before)
     clear(feet, beam)
@@ -152,59 +97,59 @@ def _rub_back(
     for i in range(feet.points.shape[0]):
         piece = feet.piece[i]
         along, across = moved(i, surface.edges[piece + 1] - surface.edges[piece], half, feet, beam)
-        feet.touch[i, SURFACE] += along
-        feet.touch[i, GAINED] = along
-        if feet.touch[i, PUSH] > 0.0:
-            feet.touch[i, LIFT] += feet.points[i, IMAGE] * across
+        feet.touch[i, rec.SURFACE] += along
+        feet.touch[i, rec.GAINED] = along
+        if feet.touch[i, rec.PUSH] > 0.0:
+            feet.touch[i, rec.LIFT] += feet.points[i, rec.IMAGE] * across
             _close(i, across, feet)
-            feet.sums[feet.owner[i], LIFTED] -= dt * feet.touch[i, RUB] * feet.touch[i, SURFACE]
+            feet.sums[feet.owner[i], rec.LIFTED] -= dt * feet.touch[i, rec.RUB] * feet.touch[i, rec.SURFACE]
     leave(surface.table, surface.modes, beam)
 
 
-@part()
+@inline
 def _book(dt: float, feet: Feet) -> None:
     """What a step adds to the sums; shares are of all points of a slider. Then it has its speed at the end."""
     touch, sums, means, riders = feet.touch, feet.sums, feet.means, feet.riders
     for b in range(feet.body.shape[0]):
-        mean, rubbed, n = means[b, MEAN], 0.0, feet.first[b + 1] - feet.first[b]
+        mean, rubbed, n = means[b, rec.MEAN], 0.0, feet.first[b + 1] - feet.first[b]
         for i in range(feet.first[b], feet.first[b + 1]):
-            push, rub = touch[i, PUSH], touch[i, RUB]
+            push, rub = touch[i, rec.PUSH], touch[i, rec.RUB]
             if push > 0.0:
-                sums[b, ALONG] += dt * (rub * touch[i, SURFACE] + touch[i, BEYOND])
-                sums[b, RUBBED] += dt * (rub * (touch[i, SURFACE] - mean) + touch[i, BEYOND])
-                sums[b, MEAN_RUB] += dt * rub
-                sums[b, MEAN_PUSH] += dt * push
-                sums[b, TOUCHING] += dt / n
-                sums[b, STICKING] += dt * touch[i, STUCK] / n
+                sums[b, rec.ALONG] += dt * (rub * touch[i, rec.SURFACE] + touch[i, rec.BEYOND])
+                sums[b, rec.RUBBED] += dt * (rub * (touch[i, rec.SURFACE] - mean) + touch[i, rec.BEYOND])
+                sums[b, rec.MEAN_RUB] += dt * rub
+                sums[b, rec.MEAN_PUSH] += dt * push
+                sums[b, rec.TOUCHING] += dt / n
+                sums[b, rec.STICKING] += dt * touch[i, rec.STUCK] / n
                 rubbed += rub
-        sums[b, PULLED] += dt * mean * (riders[b, PULL] if riders[b, INVERSE_MASS] > 0.0 else -rubbed)
-        feet.body[b, V] = means[b, AFTER]
+        sums[b, rec.PULLED] += dt * mean * (riders[b, rec.PULL] if riders[b, rec.INVERSE_MASS] > 0.0 else -rubbed)
+        feet.body[b, rec.V] = means[b, rec.AFTER]
 
 
-@part()
+@inline
 def _finite(feet: Feet) -> bool:
     """Whether every slider is where a number says."""
     total = 0.0
     for b in range(feet.body.shape[0]):
-        total += feet.body[b, V]
+        total += feet.body[b, rec.V]
     for f in range(feet.state.shape[0]):
-        total += feet.state[f, HEIGHT]
+        total += feet.state[f, rec.HEIGHT]
     return bool(np.isfinite(total))
 
 
-@part()
+@inline
 def _take(middle: float, dt: float, before: Array, feet: Feet, log: Log) -> bool:
     """The feet take the forces of a step, whose middle was at that time, and end it; whether all are finite."""
     kick(dt, feet)
     stretch(dt, feet, before)
     _book(dt, feet)
     drift(0.5 * dt, feet)
-    log.tally[STEP] += 1
+    log.tally[rec.STEP] += 1
     note(middle, dt, before, feet, log)
     return _finite(feet)
 
 
-@lean()
+@jit
 def ride(
     n_steps: int,
     dt: float,
@@ -225,10 +170,10 @@ def ride(
     """
     modes, tally = surface.modes, log.tally
     for _ in range(n_steps):
-        number = tally[STEP]
+        number = tally[rec.STEP]
         if not _stand(0.5 * dt, surface.edges, feet):
             stored(dt, feet)
-            return OFF_BEAM
+            return rec.OFF_BEAM
         drift(0.5 * dt, feet)
         rotate_half(modes)
         set_factors((number + 0.5) * dt, modes, surface.drive, line.factors)
@@ -240,11 +185,11 @@ def ride(
             _rub_back(dt, damped, surface, feet, rubbing.half, rubbing.slope, beam, before)
         rotate_half(modes)
         if not _take(surface.drive.origin + (number + 0.5) * dt, dt, before, feet, log):
-            return NOT_FINITE
-        if tally[STEP] % log.every == 0:
+            return rec.NOT_FINITE
+        if tally[rec.STEP] % log.every == 0:
             if len(log.points) > 0:
                 set_factors((number + 1.0) * dt, modes, surface.drive, line.factors)
             stored(dt, feet)
             keep(dt, feet, line, log)
     stored(dt, feet)
-    return DONE
+    return rec.DONE

@@ -6,55 +6,32 @@ from time import perf_counter
 import numpy as np
 from msgspec.structs import replace
 
-from verify.chain.confirmed import check_known, from_rest
+from verify.chain.confirmed import from_rest
 from verify.chain.result import ChainMotion
+from verify.chain.ride import joint_steps, line_rows, piece_at
 from verify.chain.stretching import ElasticMotion
-from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
-from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
+from verify.chain.system import axial_stiffness, build_system
+from verify.checks import check_whole
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.places import SLACK
 from verify.models.underfoot import LEFT_BEAM
 from verify.motion.records import READ, Drive, Surface
-from verify.motion.request import Modelled, Request
+from verify.motion.request import Request
 from verify.motion.surface import Stage
 from verify.motor import records
-from verify.motor.carry import begin
 from verify.motor.combine import CHAIN
 from verify.motor.feet import Placed
 from verify.motor.outcome import Ended, outcome
-from verify.motor.plan import Plan, lay_out
 from verify.motor.records import GivenSurface
 from verify.motor.result import MotorRun
+from verify.motor.setup import Setup, begin, lay_out
 from verify.motor.stepping import Riding, fresh_line, in_chunks, span_of
 from verify.options import Links
-from verify.segments.reading import contact_line
 
 BESIDE = 2
 """Links beside those under the feet on which the slider may run."""
 TOLERANCE = 1e-9
-
-
-def check_links_asked(modelled: Modelled, links: str) -> None:
-    """Raise InputError for links that no chain has, for no number of them, and for modes, which it does not keep."""
-    check_known(links)
-    if modelled.count is None:
-        raise InputError("count is missing: give the number of links for model = chain")
-    if modelled.modes is not None:
-        raise InputError(
-            f"modes = {modelled.modes!r} is for model = analytic: a nonlinear chain has none, leave it out"
-        )
-
-
-def check_chain(request: Request, soft_start_periods: float) -> None:
-    """Raise InputError for a start that a chain does not make: it is at rest, undamped, under forces of full size."""
-    given = {"start": request.start, "soft_start_periods": soft_start_periods, "modal_damping": request.damping}
-    for name, rest in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
-        if given[name] != rest:
-            raise InputError(
-                f"{name} = {given[name]!r}: a nonlinear chain starts at rest, undamped, under forces of full size; "
-                f"give {rest!r}"
-            )
 
 
 def run_on_chain(
@@ -69,26 +46,25 @@ def run_on_chain(
         raise InputError(
             f"at = {request.points.tolist()!r}: a nonlinear chain under a slider keeps no deflections, leave it out"
         )
-    plan = lay_out(request, placed, ())
+    setup = lay_out(request, placed, ())
     assert request.count is not None
-    check_links(request.count, 2, STATIC_LINKS, "a slider's contact line goes through two links or more")
-    stage = plan.stages[0]
+    check_whole("count", request.count, 2)
+    stage = setup.stages[0]
     times: Array = np.linspace(0.0, stage.duration, 2 * stage.n_steps + 1)
-    check_kept(len(times), request.count, f"duration = {stage.duration!r} s in steps of {stage.dt:.3g} s")
     system = build_system(request.beam, request.count, request.forces, request.frequency_hz, load="reciprocal")
     axial = axial_stiffness(request.beam, request.count)
-    moved = from_rest(system, links, axial, times, tolerance=TOLERANCE, most=MOST, progress=progress)
+    moved = from_rest(system, links, axial, times, tolerance=TOLERANCE, progress=progress)
     ready = perf_counter()
     note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
-    given, edges = surface_given(moved, plan)
-    runs = [_ride(replace(plan, placed=(one,)), given, edges - one.start, (began, ready), progress) for one in placed]
+    given, edges = surface_given(moved, setup)
+    runs = [_ride(replace(setup, placed=(one,)), given, edges - one.start, (began, ready), progress) for one in placed]
     return tuple(
         replace(run, model=CHAIN, state=replace(run.state, model=CHAIN), notes=(note, *run.notes[1:])) for run in runs
     )
 
 
 def _ride(
-    plan: Plan,
+    setup: Setup,
     given: GivenSurface,
     edges: Array,
     begun: tuple[float, float],
@@ -98,48 +74,33 @@ def _ride(
 
     `edges` are metres from where the slider starts.
     """
-    stage = plan.stages[0]
-    riding = Riding.fresh(plan.placed, plan.request, False)
+    from verify.motor import kernels
+
+    stage = setup.stages[0]
+    riding = Riding.fresh(setup.placed, setup.request, False)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
-    begin(plan, riding, ())
+    begin(setup, riding, ())
     riding.look(stage.dt)
     riding.first = np.zeros(0)
     offsets = riding.feet.points[:, records.OFFSET]
     riding.feet.piece[:] = np.clip(np.searchsorted(edges[1:-1], offsets), 0, len(edges) - 2)
-    drawn = _drawn(given, riding)
-    stopped = _run(given, edges, stage, riding, progress)
-    stopped = _gone(edges, stage, riding) if stopped == LEFT_BEAM else stopped
-    state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
-    began, ready = begun
-    run = outcome(0, plan, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
-    return replace(run, motor_margins=replace(run.motor_margins, drawn=drawn))
-
-
-def _drawn(given: GivenSurface, riding: Riding) -> float:
-    """Speed along x of the links under all points, m/s, rms over time and over the links' ends."""
     first, last = int(riding.feet.piece.min()), int(riding.feet.piece.max())
-    return float(np.sqrt(np.mean(given.along[:, first : last + 2] ** 2)))
-
-
-def _run(given: GivenSurface, edges: Array, stage: Stage, riding: Riding, progress: Callable[[float], None]) -> str:
-    """All steps on a surface that is given; why it ended."""
-    from verify.motor import kernels
-
-    pieces, _, terms = given.local.shape[1:]
-    line, surface = fresh_line(pieces, terms, 0), _without_modes(edges)
+    drawn = float(np.sqrt(np.mean(given.along[:, first : last + 2] ** 2)))
+    drive = Drive(omega=0.0, origin=0.0, unit=1.0, growth=np.zeros(0))
+    surface = Surface(np.zeros((READ + 1, 0)), drive, np.zeros((0, 0, 0)), edges)  # no modes, the surface is given
+    line = fresh_line(given.local.shape[1], given.local.shape[3], 0)
 
     def advance(steps: int) -> int:
         return kernels.ride(
             steps, stage.dt, surface, given, riding.feet, riding.rubbing, None, line, riding.before, riding.log
         )
 
-    return in_chunks(stage.n_steps, riding, advance, lambda n: progress(n / stage.n_steps))
-
-
-def _without_modes(edges: Array) -> Surface:
-    """Pieces that neither modes nor a drive move."""
-    drive = Drive(omega=0.0, origin=0.0, unit=1.0, growth=np.zeros(0))
-    return Surface(np.zeros((READ + 1, 0)), drive, np.zeros((0, 0, 0)), edges)
+    stopped = in_chunks(stage.n_steps, riding, advance, lambda n: progress(n / stage.n_steps))
+    stopped = _gone(edges, stage, riding) if stopped == LEFT_BEAM else stopped
+    state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
+    began, ready = begun
+    run = outcome(0, setup, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
+    return replace(run, motor_margins=replace(run.motor_margins, drawn=drawn))
 
 
 def _gone(edges: Array, stage: Stage, riding: Riding) -> str:
@@ -150,45 +111,23 @@ def _gone(edges: Array, stage: Stage, riding: Riding) -> str:
     return stage.ends[end] if stepped else "left the links that it was put on"
 
 
-def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> tuple[GivenSurface, Array]:
+def surface_given(moved: ChainMotion | ElasticMotion, setup: Setup) -> tuple[GivenSurface, Array]:
     """The contact line on the links under all feet and beside them, at every other time kept: in mid-steps; its edges.
 
     Edges are metres from the left end. Links beyond a step of the surface are left out.
     """
-    system, ground = moved.system, plan.stages[0].edges
+    system, ground = moved.system, setup.stages[0].edges
     near = SLACK * system.length
     ends = [
         one.start + foot.offset + side * 0.5 * foot.length
-        for one in plan.placed
+        for one in setup.placed
         for foot in one.slider.feet
         for side in (-1.0, 1.0)
     ]
-    first = max(_link_at(system, min(ends)) - BESIDE, _link_at(system, ground[0] + near))
-    last = min(_link_at(system, max(ends)) + BESIDE, _link_at(system, ground[-1] - near))
-    heights, rises, along = (part[1::2] for part in _moved(moved))
-    rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
+    first = max(piece_at(system, min(ends)) - BESIDE, piece_at(system, ground[0] + near))
+    last = min(piece_at(system, max(ends)) + BESIDE, piece_at(system, ground[-1] - near))
+    heights, rises, along = (part[1::2] for part in joint_steps(moved))
+    rows = line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
     local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)
     edges = system.nodes[first : last + 2]
     return GivenSurface(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 2])), edges
-
-
-def _link_at(system: ChainSystem, x: float) -> int:
-    return int(np.clip(np.searchsorted(system.nodes, x, side="right") - 1, 0, system.n_links - 1))
-
-
-def _line_rows(system: ChainSystem) -> Array:
-    """What a step up at each joint adds to the line's polynomials, (N, pieces, 4), powers of the local coordinate."""
-    up = np.triu(np.ones((system.n_links, system.n_links + 1)), 1)
-    powers = contact_line(straight_chain(system), up).c[::-1]  # (4, pieces, N)
-    lengths = np.diff(system.nodes)
-    return np.asarray(np.moveaxis(powers * lengths[None, :, None] ** np.arange(4)[:, None, None], 0, 2).swapaxes(0, 1))
-
-
-def _moved(moved: ChainMotion | ElasticMotion) -> tuple[Array, Array, Array]:
-    """Steps across from joint to joint and their rates, (n, N) each, and the joints' speeds along x, (n, N + 1)."""
-    if isinstance(moved, ElasticMotion):
-        heights, rises = (np.diff(parts[:, :, 1], axis=1) for parts in (moved.displacements, moved.velocities))
-        return heights, rises, moved.velocities[:, :, 0]
-    theta, lengths, spins = moved.directions(), moved.system.lengths, np.cumsum(moved.rates, axis=1)
-    back = np.cumsum(-lengths * np.sin(theta) * spins, axis=1)
-    return lengths * np.sin(theta), lengths * np.cos(theta) * spins, np.pad(back, ((0, 0), (1, 0)))

@@ -12,7 +12,7 @@ from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.models.arrays import Array
 from verify.motion.pure_wave import wave_stage
-from verify.motion.surface import Stage, cut
+from verify.motion.surface import cut
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of, fresh_log
 from verify.motor.figures import AtSpeed
@@ -46,53 +46,32 @@ def over_a_wave(
     check_number("epsilon", epsilon, "2 mu kappa / (kappa_t k h)", at_least=0)
     check_whole("points", points, 2)
     check_whole("steps_per_period", steps_per_period, 4)
-    stage = _stage(beam, amplitude, frequency_hz, steps_per_period)
-    k = float(np.sqrt(stage.omega / beam.wave_constant))
-    crest = beam.surface_distance * k * stage.omega * amplitude
-    slider = _slider(mu, epsilon, k, 2.0 * beam.surface_distance, 2.0 * pi / k, points)
-    riding = _riding(slider, beam, -speed_ratio * crest, amplitude * cos(contact_half_angle), WARM + 1)
-    run_stages([stage], [stage.table(0, len(stage.edges) - 1)], np.zeros((2, 0)), riding, lambda n: None)
-    return _means(riding, stage, -speed_ratio * crest), crest
-
-
-def _stage(beam: Beam, amplitude: float, frequency_hz: float, steps: int) -> Stage:
-    """Some periods of the wave, sampled once in each."""
     one = wave_stage(beam, amplitude, frequency_hz)
-    length = 2.0 * pi / float(np.sqrt(one.omega / beam.wave_constant))
-    cells = int(np.ceil(2.0 * pi / 0.3))
-    laid = cut((WARM + 1) * one.duration, one.duration / steps * (1.0 + 1e-9), WARM + 1)
-    edges: Array = np.linspace(-0.01 * length, 1.01 * length, cells + 2)
-    return replace(one, edges=edges, n_steps=laid.n, dt=laid.dt, every=laid.every)
-
-
-def _slider(mu: float, epsilon: float, k: float, thickness: float, length: float, points: int) -> Slider:
-    """Of unit stiffness for each metre, and what follows along the surface."""
+    k = float(np.sqrt(one.omega / beam.wave_constant))
+    length, thickness = 2.0 * pi / k, 2.0 * beam.surface_distance
+    laid = cut((WARM + 1) * one.duration, one.duration / steps_per_period * (1.0 + 1e-9), WARM + 1)
+    edges: Array = np.linspace(-0.01 * length, 1.01 * length, int(np.ceil(2.0 * pi / 0.3)) + 2)
+    stage = replace(one, edges=edges, n_steps=laid.n, dt=laid.dt, every=laid.every)
+    crest = beam.surface_distance * k * stage.omega * amplitude
     along = 2.0 * mu / (epsilon * k * thickness) if epsilon else None
-    return Slider(
+    slider = Slider(
         mass=1.0,
         mu=mu,
         law="coulomb",
         contact=Contact(layer_stiffness=1.0, layer_tangential_stiffness=along),
         foot=(Foot(length=length, points=points, offset=0.5 * length, pitches=False),),
     )
-
-
-def _riding(slider: Slider, beam: Beam, speed: float, height: float, samples: int) -> Riding:
-    """The foot at its height, which nothing changes."""
-    placed = (Placed(slider, 0.0, speed, True),)
+    placed = (Placed(slider, 0.0, -speed_ratio * crest, True),)
     feet = feet_of(placed)
     feet.given[:, records.FOOT_INVERSE_MASS] = 0.0
-    feet.state[:, records.HEIGHT] = height
-    return Riding.of(feet, placed, beam, fresh_log(samples, feet, np.zeros((0, 2)), 1), np.empty(0), False)
-
-
-def _means(riding: Riding, stage: Stage, speed: float) -> AtSpeed:
-    """Of the last period, the way of the wave's crests being -x."""
-    last, before = riding.log.kept[-1, 0], riding.log.kept[-2, 0]
-    seconds = stage.duration / (WARM + 1)
-    spreads = np.abs(last - before)
+    feet.state[:, records.HEIGHT] = amplitude * cos(contact_half_angle)
+    log = fresh_log(WARM + 1, feet, np.zeros((0, 2)), 1)
+    riding = Riding.of(feet, placed, beam, log, np.empty(0), False)
+    run_stages([stage], [stage.table(0, len(stage.edges) - 1)], np.zeros((2, 0)), riding, lambda n: None)
+    last, seconds = riding.log.kept[-1, 0], stage.duration / (WARM + 1)
+    spreads = np.abs(last - riding.log.kept[-2, 0])
     return AtSpeed(
-        speed=speed,
+        speed=-speed_ratio * crest,
         force=float(last[records.KEPT_RUB]),
         normal_force=float(last[records.KEPT_PUSH]),
         contact_share=float(last[records.KEPT_TOUCHING]),
@@ -106,4 +85,4 @@ def _means(riding: Riding, stage: Stage, speed: float) -> AtSpeed:
         periods=WARM + 1,
         window=1,
         unsettled=(),
-    )
+    ), crest

@@ -1,20 +1,21 @@
-"""What came of a run of a slider on feet."""
+"""Result of a run of a slider on feet, from the arrays of the kernels."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from verify.models.arrays import Array
 from verify.models.fields import travelling_wavenumber
 from verify.models.underfoot import standing_at
-from verify.motion.carried import reached
 from verify.motion.result import Statistics
+from verify.motion.slider_run import reached
 from verify.motor import records
-from verify.motor.feet import Placed
-from verify.motor.plan import Plan
 from verify.motor.result import MotorLedger, MotorMargins, MotorRun, MotorState
-from verify.motor.stepping import Riding, span_of
+from verify.motor.stepping import Riding
 from verify.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.motor.setup import Setup
 
 
 class Ended(NamedTuple):
@@ -28,16 +29,17 @@ class Ended(NamedTuple):
     """(n,), dq/dt."""
     set_up_s: float
     wall_s: float
-    estimated_s: float = 0.0
-    """What the loop was thought to take, from above."""
 
 
-def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
+def outcome(b: int, setup: "Setup", riding: Riding, ended: Ended) -> MotorRun:
     """The run of slider b, with its first sample as it was put down."""
-    request, one, n = plan.request, plan.placed[b], int(riding.log.tally[records.SAMPLES])
-    stages = (stage.origin + stage.sample_times for stage in plan.stages)
-    times = np.concatenate([[plan.stages[0].origin], *stages])[: n + 1]
-    events, notes = _events(riding, b, times)
+    request, one, n = setup.request, setup.placed[b], int(riding.log.tally[records.SAMPLES])
+    stages = (stage.origin + stage.sample_times for stage in setup.stages)
+    times = np.concatenate([[setup.stages[0].origin], *stages])[: n + 1]
+    log, feet, put, (events, notes) = riding.log, riding.feet, riding.put_down, _events(riding, b)
+    own, own_feet = feet.owner == b, feet.keeper == b
+    beam = standing_at(request.beam, one.start)
+    k = travelling_wavenumber(beam, request.frequency_hz)
     assert riding.first is not None
     return MotorRun(
         model=request.model,
@@ -46,18 +48,45 @@ def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
         start=one.start,
         times=times,
         points=request.points,
-        deflection=np.concatenate([riding.first[None], riding.log.deflections[:n]]),
+        deflection=np.concatenate([riding.first[None], log.deflections[:n]]),
         **_along(b, n, one.slider, riding),
-        **_across(b, n, riding),
-        point_offsets=riding.feet.points[riding.feet.owner == b, records.OFFSET] - (one.start - plan.placed[0].start),
+        height=np.concatenate([put[None, own_feet, records.HEIGHT], log.heights[:n, own_feet, 0]]),
+        pitch=np.concatenate([put[None, own_feet, records.PITCH], log.heights[:n, own_feet, 1]]),
+        pressures=np.concatenate([riding.pressed[None, own], log.pressures[:n, own]]),
+        point_offsets=feet.points[own, records.OFFSET] - (one.start - setup.placed[0].start),
         events=events,
-        notes=(*plan.notes, *_who_left(plan, riding, ended), *notes),
-        coupling=plan.coupling,
-        beam_margins=plan.margins,
-        motor_margins=motor_margins(plan, one),
+        notes=(*setup.notes, *notes),
+        coupling=setup.coupling,
+        beam_margins=setup.margins,
+        motor_margins=MotorMargins(
+            epsilon=layer_epsilon(one.slider, k, 2.0 * beam.surface_distance),
+            step=setup.contact_rate * setup.stages[-1].dt,
+            sag=setup.sag,
+            sag_taken=setup.coupling.two_way,
+            chain=setup.margins.nonlinearity,
+        ),
         ledger=ledger(riding, b),
-        state=_state(b, reached(plan.stages, riding.steps), plan, riding, ended),
-        statistics=_statistics(plan, riding, ended),
+        state=MotorState(
+            beam=request.beam,
+            model=request.model,
+            count=request.count,
+            time=reached(setup.stages, riding.steps),
+            q=ended.q,
+            rates=ended.rates,
+            steady=request.start == "steady",
+            travelled=float(feet.body[b, records.X]),
+            speed=float(feet.body[b, records.V]),
+            feet=feet.state[own_feet].copy(),
+            touch=feet.touch[own].copy(),
+        ),
+        statistics=Statistics(
+            steps=riding.steps,
+            evaluations=riding.steps,
+            step_s=setup.stages[-1].dt,
+            set_up_s=ended.set_up_s,
+            wall_s=ended.wall_s,
+            stopped=ended.stopped,
+        ),
     )
 
 
@@ -78,91 +107,19 @@ def _along(b: int, n: int, slider: Slider, riding: Riding) -> dict[str, Array]:
     return {name: np.concatenate([[first], kept[column]]) for name, (first, column) in columns.items()}
 
 
-def _across(b: int, n: int, riding: Riding) -> dict[str, Array]:
-    """What the feet of slider b did across the beam, (n + 1, feet), and its points, (n + 1, points)."""
-    log, put, feet, points = riding.log, riding.put_down, riding.feet.keeper == b, riding.feet.owner == b
-    return {
-        "height": np.concatenate([put[None, feet, records.HEIGHT], log.heights[:n, feet, 0]]),
-        "pitch": np.concatenate([put[None, feet, records.PITCH], log.heights[:n, feet, 1]]),
-        "pressures": np.concatenate([riding.pressed[None, points], log.pressures[:n, points]]),
-    }
-
-
-def _state(b: int, time: float, plan: Plan, riding: Riding, ended: Ended) -> MotorState:
-    """From where slider b can go on."""
-    feet = riding.feet
-    return MotorState(
-        beam=plan.request.beam,
-        model=plan.request.model,
-        count=plan.request.count,
-        time=time,
-        q=ended.q,
-        rates=ended.rates,
-        steady=plan.request.start == "steady",
-        travelled=float(feet.body[b, records.X]),
-        speed=float(feet.body[b, records.V]),
-        feet=feet.state[feet.keeper == b].copy(),
-        touch=feet.touch[feet.owner == b].copy(),
-    )
-
-
-def _statistics(plan: Plan, riding: Riding, ended: Ended) -> Statistics:
-    return Statistics(
-        steps=riding.steps,
-        evaluations=riding.steps,
-        step_s=plan.stages[-1].dt,
-        set_up_s=ended.set_up_s,
-        wall_s=ended.wall_s,
-        estimated_s=ended.estimated_s,
-        stopped=ended.stopped,
-    )
-
-
-def _events(riding: Riding, b: int, times: Array) -> tuple[Array, tuple[str, ...]]:
-    """(events of slider b's points, numbered from its first; what to say of them)."""
+def _events(riding: Riding, b: int) -> tuple[Array, tuple[str, ...]]:
+    """(events of slider b's points, numbered from its first; notes on lost events and lost contact)."""
     log, feet = riding.log, riding.feet
-    n = int(log.tally[records.EVENTS])
+    n, points = int(log.tally[records.EVENTS]), np.arange(feet.first[b], feet.first[b + 1])
     found = log.events[: min(n, len(log.events))]
-    found = found[np.isin(found[:, records.EVENT_POINT], np.arange(feet.first[b], feet.first[b + 1]))].copy()
+    found = found[np.isin(found[:, records.EVENT_POINT], points)].copy()
     found[:, records.EVENT_POINT] -= feet.first[b]
-    lost = (f"events: the first {len(log.events)} of {n}",) if n > len(log.events) else ()
+    notes = [f"events: the first {len(log.events)} of {n}"] * (n > len(log.events))
     push = log.kept[: int(log.tally[records.SAMPLES]), b, records.KEPT_PUSH]
-    return found, (*lost, *_lost(push, found, times))
-
-
-def _who_left(plan: Plan, riding: Riding, ended: Ended) -> tuple[str, ...]:
-    """Which of several sliders went where none goes on, at which the runs of all end; empty otherwise."""
-    stage, n = plan.stages[-1], len(plan.placed)
-    spans = [span_of(riding, stage.dt, b) for b in range(n)]
-    gone = [b + 1 for b, (first, last) in enumerate(spans) if first < stage.edges[0] or last > stage.edges[-1]]
-    if n == 1 or not gone or ended.stopped not in stage.ends:
-        return ()
-    if len(gone) == n:
-        return (f"all {n} sliders {ended.stopped}, and their runs end there",)
-    which = f"number{'s' * (len(gone) > 1)} {' and '.join(map(str, gone))}"
-    return (f"of {n} sliders {which} {ended.stopped}, and the runs of all end there",)
-
-
-def _lost(push: Array, events: Array, times: Array) -> tuple[str, ...]:
-    """Since when nothing has touched, where nothing does at the end; empty otherwise."""
-    if not len(push) or push[-1] > 0.0:
-        return ()
-    left = events[events[:, records.EVENT_KIND] == records.LEAVES, records.EVENT_TIME]
-    since = float(left[-1]) if len(left) else float(times[0])
-    return (f"the slider is off the beam at the end, {times[-1]:.6g} s, and has been since {since:.6g} s",)
-
-
-def motor_margins(plan: Plan, one: Placed) -> MotorMargins:
-    """What the contact's assumptions leave out."""
-    beam = standing_at(plan.request.beam, one.start)
-    k, thickness = travelling_wavenumber(beam, plan.request.frequency_hz), 2.0 * beam.surface_distance
-    return MotorMargins(
-        epsilon=layer_epsilon(one.slider, k, thickness),
-        step=plan.contact_rate * plan.stages[-1].dt,
-        sag=plan.sag,
-        sag_taken=plan.coupling.two_way,
-        chain=plan.margins.nonlinearity,
-    )
+    if len(push) and push[-1] <= 0.0:
+        left = found[found[:, records.EVENT_KIND] == records.LEAVES, records.EVENT_TIME]
+        notes.append(f"contact: lost at the end, since {left[-1]:.6g} s" if len(left) else "contact: none")
+    return found, tuple(notes)
 
 
 def layer_epsilon(slider: Slider, wavenumber: float | None, thickness: float) -> float | None:

@@ -1,13 +1,14 @@
 """What a run of a slider on feet returns."""
 
+from msgspec import Struct
+
 from verify.beam import Beam
-from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.motion.contact import Margins
 from verify.motion.result import Ride
 
 
-class MotorMargins(Value, frozen=True, kw_only=True):
+class MotorMargins(Struct, frozen=True, kw_only=True):
     """How far a run can be believed beside what its beam says; each is small where its assumption holds."""
 
     epsilon: float | None
@@ -29,7 +30,7 @@ class MotorMargins(Value, frozen=True, kw_only=True):
     chain in. None of a linear field, which leaves that out."""
 
 
-class MotorLedger(Value, frozen=True, kw_only=True):
+class MotorLedger(Struct, frozen=True, kw_only=True):
     """Where the slider's energy went, joules, from the start of the run to its end."""
 
     kinetic: float
@@ -59,7 +60,7 @@ class MotorLedger(Value, frozen=True, kw_only=True):
     """What the books miss: springs over a step (order 2)."""
 
 
-class MotorState(Value, frozen=True, eq=False, kw_only=True):
+class MotorState(Struct, frozen=True, eq=False, kw_only=True):
     """From where a run can go on."""
 
     beam: Beam

@@ -1,41 +1,27 @@
-"""Sliders that may leave the surface, on a beam in time: `run_motor` of one, `run_motors` of several together."""
+"""Sliders that may leave the surface, on a beam in time: `run_motor` for one, `run_motors` for several together."""
 
 from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import Any
 
-import msgspec
+import numpy as np
 
 from verify.beam import Beam
-from verify.checks import check_kind, check_number, plain, several
-from verify.errors import InputError
+from verify.checks import check_kind, check_number, check_word, plain, several
+from verify.errors import InputError, written
 from verify.models.places import Forces, Numbers, as_forces, as_typed
-from verify.motion.request import Driven, Modelled, Started, Watched, requested
-from verify.motor.carry import carry_out
-from verify.motor.combine import CHAIN, check_goes_on, check_together
+from verify.motion.request import Request, check_same_beam, requested
+from verify.motor.combine import CHAIN, check_together
 from verify.motor.feet import Placed
-from verify.motor.going_on import check_runs
-from verify.motor.plan import lay_out
 from verify.motor.result import MotorRun
-from verify.options import Links, Start
+from verify.motor.setup import carry_out, lay_out
+from verify.options import LINKS, Links, Start
 from verify.slider import Slider
 
 MODES = 80
-"""Of the exact beam, unless asked for otherwise."""
+"""Of the exact beam, unless given."""
 STEPS_PER_PERIOD = 61
-"""A prime: points that stand evenly in a wave do not all meet the turn of friction at the same phases of it."""
-
-
-class Asked(msgspec.Struct, frozen=True, eq=False):
-    """A run as it is asked for, whatever the sliders."""
-
-    driven: Driven
-    modelled: Modelled
-    started: Started
-    watched: Watched
-    links: Links
-    progress: Callable[[float], None]
-    patient: bool
+"""A prime: points that stand evenly in a wave do not all reverse their friction at the same phases of it."""
 
 
 @as_typed
@@ -61,25 +47,33 @@ def run_motor(
     links: Links = "rigid",
     continue_from: MotorRun | None = None,
     progress: Callable[[float], None] = lambda part: None,
-    patient: bool = True,
 ) -> MotorRun:
     """A slider with `slider.contact` on a driven beam, steady or from rest, for `duration` seconds.
 
     `model` = 'chain' is the nonlinear chain of `count` links, rigid or stretching, from rest and undamped; the exact
-    beam keeps `modes` modes, 80 unless given. The slider is put down level where its springs carry what presses it on,
-    at rest across the beam. `held_speed` (m/s) keeps its speed whatever friction does, `frozen` its place whatever its
-    speed, so that its motion is periodic. Steps are a `steps_per_period`-th of the drive's period, or shorter where the
-    contact is stiff, unless `step` is given; forces act in mid-step, of second order, coupled two-way on the modes.
-    Otherwise as `simulate`. Raises InputError.
+    beam keeps `modes` modes, 80 unless given. The slider starts level where its springs carry the preload, at rest
+    across the beam. `held_speed` (m/s) prescribes its speed, `frozen` its place, so that its motion is periodic. Steps
+    are a `steps_per_period`-th of the drive's period, or shorter where the contact is stiff, unless `step` is given;
+    forces act in mid-step, of second order. Otherwise as `simulate`. Raises InputError.
     """
     check_kind("slider", slider, Slider)
     if continue_from is not None:
         check_kind("continue_from", continue_from, MotorRun)
-    driven = Driven(beam, as_forces(forces), frequency_hz, duration)
-    by = Modelled(model, count, modes, modal_damping, MODES)
-    watched = Watched(at, samples, step, steps_per_period, False)
-    asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
-    return _run(asked, [(slider, held_speed, frozen)], [] if continue_from is None else [continue_from])[0]
+    runs = [] if continue_from is None else [continue_from]
+    settings = {
+        "model": model,
+        "count": count,
+        "modes": modes,
+        "start": start,
+        "soft_start_periods": soft_start_periods,
+        "modal_damping": modal_damping,
+        "at": at,
+        "samples": samples,
+        "step": step,
+        "steps_per_period": steps_per_period,
+    }
+    driven = (beam, as_forces(forces), frequency_hz, duration)
+    return _run(driven, settings, links, [(slider, held_speed, frozen)], runs, progress)[0]
 
 
 @as_typed
@@ -105,21 +99,29 @@ def run_motors(
     links: Links = "rigid",
     continue_from: Sequence[MotorRun] = (),
     progress: Callable[[float], None] = lambda part: None,
-    patient: bool = True,
 ) -> tuple[MotorRun, ...]:
-    """Several sliders on one beam, one run for each: coupled two-way they feel each other through it.
+    """Several sliders on one beam, one run for each: with two-way coupling they interact through it.
 
-    They rub by one law of one slope and are coupled alike, by size by what all do together; `held_speed` and `frozen`
-    are of all, or one for each. All end where one leaves the beam; they go on (`continue_from`) from one instant of one
-    motion. Otherwise as `run_motor`. Raises InputError.
+    They share one friction law, slope and coupling; `held_speed` and `frozen` are of all, or one for each. All end
+    where one leaves the beam, and continue (`continue_from`) from one instant of one motion. Otherwise as `run_motor`.
+    Raises InputError.
     """
-    driven = Driven(beam, as_forces(forces), frequency_hz, duration)
-    by = Modelled(model, count, modes, modal_damping, MODES)
-    watched = Watched(at, samples, step, steps_per_period, False)
-    asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
-    put, before = several("sliders", sliders, Slider), several("continue_from", continue_from, MotorRun)
+    put, runs = several("sliders", sliders, Slider), several("continue_from", continue_from, MotorRun)
     speeds, stay = _each("held_speed", held_speed, len(put)), _each("frozen", frozen, len(put))
-    return _run(asked, list(zip(put, speeds, stay, strict=True)), before)
+    settings = {
+        "model": model,
+        "count": count,
+        "modes": modes,
+        "start": start,
+        "soft_start_periods": soft_start_periods,
+        "modal_damping": modal_damping,
+        "at": at,
+        "samples": samples,
+        "step": step,
+        "steps_per_period": steps_per_period,
+    }
+    driven = (beam, as_forces(forces), frequency_hz, duration)
+    return _run(driven, settings, links, list(zip(put, speeds, stay, strict=True)), runs, progress)
 
 
 def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
@@ -132,31 +134,68 @@ def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
 
 
 def _run(
-    asked: Asked, put: Sequence[tuple[Slider, float | None, bool]], runs: Sequence[MotorRun]
+    driven: tuple[Any, ...],
+    settings: dict[str, Any],
+    links: Links,
+    put: Sequence[tuple[Slider, float | None, bool]],
+    runs: Sequence[MotorRun],
+    progress: Callable[[float], None],
 ) -> tuple[MotorRun, ...]:
     """The runs of sliders, each with its held speed and whether it stays at its place. Raises InputError."""
-    began, beam, model, start = perf_counter(), asked.driven.beam, asked.modelled.model, asked.started.start
-    check_kind("patient", asked.patient, bool)
-    check_together(model, start, [slider for slider, _, _ in put])
-    before = [run.state for run in runs]
-    check_goes_on(model, before)
+    began, beam, model = perf_counter(), driven[0], settings["model"]
+    check_together(model, settings["start"], [slider for slider, _, _ in put])
     for _, speed, stays in put:
         if speed is not None:
             check_number("held_speed", speed, "m/s")
         check_kind("frozen", plain(stays, "frozen"), bool)
     if model == CHAIN:
-        from verify.motor.on_chain import check_links_asked
-
-        check_links_asked(asked.modelled, asked.links)
-    linear = msgspec.structs.replace(asked.modelled, model="segment") if model == CHAIN else asked.modelled
-    request = requested(asked.driven, linear, asked.started, asked.watched, put[0][0])
+        check_word("links", links, LINKS)
+        for name, needed in (("count", True), ("modes", False)):
+            if (settings[name] is not None) != needed:
+                raise InputError(f"{name} = {settings[name]!r}: a nonlinear chain has a count of links and no modes")
+        settings = settings | {"model": "segment"}
+    request = requested(*driven, **settings, slider=put[0][0], default_modes=MODES)
     placed = tuple(Placed(slider, slider.start_on(beam), speed, bool(stays)) for slider, speed, stays in put)
-    check_runs(runs, request, placed)
+    _check_runs(model, runs, request, placed)
     if model == CHAIN:
-        from verify.motor.on_chain import check_chain, run_on_chain
+        from verify.motor.on_chain import run_on_chain
 
-        check_chain(request, asked.started.soft)
-        return run_on_chain(request, placed, asked.links, began, asked.progress)
-    if asked.links != "rigid":
-        raise InputError(f"links = {asked.links!r} is of model = 'chain': leave it out on {model}")
-    return carry_out(lay_out(request, placed, before), before, began, asked.progress, asked.patient)
+        for name, needed in (("start", "rest"), ("soft_start_periods", 0.0)):
+            if settings[name] != needed:
+                raise InputError(f"{name} = {settings[name]!r}: a nonlinear chain starts so: give {needed!r}")
+        if request.damping:
+            raise InputError(f"modal_damping = {request.damping!r}: a nonlinear chain is undamped, give 0.0")
+        return run_on_chain(request, placed, links, began, progress)
+    if links != "rigid":
+        raise InputError(f"links = {links!r} is of model = 'chain': leave it out on {model}")
+    before = [run.state for run in runs]
+    return carry_out(lay_out(request, placed, before), before, began, progress)
+
+
+def _check_runs(model: str, runs: Sequence[MotorRun], request: Request, placed: Sequence[Placed]) -> None:
+    """Raise InputError for runs that these sliders cannot continue: another beam, instant, motion or slider."""
+    if runs and (model == CHAIN or any(run.state.model == CHAIN for run in runs)):
+        raise InputError("continue_from: runs on a nonlinear chain start at rest and are not continued, leave it out")
+    if runs and len(runs) != len(placed):
+        raise InputError(f"continue_from has {len(runs)} runs for {len(placed)} sliders: give one for each")
+    for run, one in zip(runs, placed, strict=bool(runs)):
+        check_same_beam(run.state, request.beam, request.model, request.count)
+        first, state = runs[0].state, run.state
+        if first.time != state.time or not (
+            np.array_equal(first.q, state.q) and np.array_equal(first.rates, state.rates)
+        ):
+            raise InputError(
+                f"continue_from has runs of different motions, at {written(first.time)} s and {written(state.time)} s: "
+                "give those of one run_motors"
+            )
+        if run.start is not None and run.start != one.start:
+            raise InputError(
+                f"slider.position = {written(one.start)} m: continue_from is of a slider put on at "
+                f"{written(run.start)} m, give that"
+            )
+        own = run.slider.speed if run.slider else 0.0
+        if one.slider.speed not in (0.0, own, state.speed):
+            raise InputError(
+                f"slider.speed = {written(one.slider.speed)} m/s: continue_from ends at {written(state.speed)} m/s, "
+                "leave the speed as it was"
+            )

@@ -1,15 +1,14 @@
 """A motor's periodic motion by shooting: the state that a period gives back, by Newton's method on the period's map."""
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray, Indices
 from verify.motor import records
-from verify.motor.case import MotorCase
+from verify.motor.case import Block, MotorCase, blocks
 from verify.motor.feet import Placed, feet_of
-from verify.motor.repeated import Block, blocks
 from verify.motor.result import MotorRun, MotorState, uninterrupted
 
 MOST = 12
@@ -19,7 +18,7 @@ REPEATS = 1e-3
 """Of its own size: what is off by more after a period does not repeat itself. Landings on dashpots jump by steps."""
 
 
-class Periodic(Value, frozen=True, eq=False, kw_only=True):
+class Periodic(Struct, frozen=True, eq=False, kw_only=True):
     """A motion that repeats itself."""
 
     run: MotorRun
@@ -50,13 +49,26 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
             f"slider.coupling = {case.slider.coupling!r}, start = {case.start!r}: shooting is of a steady beam that "
             "does not feel its slider, give 'one-way' and 'steady'"
         )
-    run = uninterrupted(case.run(settle * case.period, held_speed=speed, frozen=True, samples=2, patient=False))
-    free, once = _free(case), blocks(case, speed, 1, 2)
+    run = uninterrupted(
+        case.run(
+            settle * case.period,
+            held_speed=speed,
+            frozen=True,
+            samples=2,
+        )
+    )
+    given, once = feet_of((Placed(case.slider, 0.0),)).given, blocks(case, speed, 1, 2)
+    moves = np.repeat(given[:, [records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA]] > 0.0, 2, axis=1)
+    free = np.flatnonzero(moves.ravel())  # heights and their rates, pitches of feet that turn
 
     def period(state: MotorState | None) -> MotorRun:
         return uninterrupted(once(state))
 
-    state, size, best = run.state, _size(run)[free], None
+    omega = 2.0 * np.pi / max(run.duration, 1e-300)
+    height = float(np.ptp(run.height)) + float(np.abs(run.state.feet[:, 0]).max()) + 1e-12
+    arm = float(np.abs(run.point_offsets).max()) or 1.0
+    scale = np.array([height, height * omega, height / arm, height * omega / arm])
+    state, size, best = run.state, np.tile(scale, len(given))[free], None
     for rounds in range(1, MOST + 1):
         run = period(state)
         missed = (run.state.feet - state.feet).ravel()[free] / size
@@ -74,22 +86,6 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
         f"no periodic motion was found in {MOST} rounds: it does not repeat after one period; take means over many "
         "periods instead"
     )
-
-
-def _size(run: MotorRun) -> Array:
-    """Of each coordinate, to which differences are taken: amplitude of the height, per foot and its rates."""
-    omega = 2.0 * np.pi / max(run.duration, 1e-300)
-    height = float(np.ptp(run.height)) + float(np.abs(run.state.feet[:, 0]).max()) + 1e-12
-    arm = float(np.abs(run.point_offsets).max()) or 1.0
-    row = np.array([height, height * omega, height / arm, height * omega / arm])
-    return np.tile(row, len(run.state.feet))
-
-
-def _free(case: MotorCase) -> Indices:
-    """Which of the feet's coordinates can move: heights and their rates, pitches of feet that turn."""
-    given = feet_of((Placed(case.slider, 0.0),)).given
-    moves = np.repeat(given[:, [records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA]] > 0.0, 2, axis=1)
-    return np.flatnonzero(moves.ravel())
 
 
 def _moved(feet: Array, free: Indices, by: Array) -> Array:

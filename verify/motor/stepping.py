@@ -8,20 +8,14 @@ import numpy as np
 from verify.beam import Beam
 from verify.models.arrays import Array, Indices
 from verify.models.underfoot import LEFT_BEAM, standing_at
-from verify.motion import records as beam_records
-from verify.motion.forcing import turns
-from verify.motion.records import Drive, Surface
+from verify.motion.records import Surface
 from verify.motion.request import Request
 from verify.motion.result import END
-from verify.motion.stepping import CHUNK
+from verify.motion.stepping import CHUNK, drive_of, modal_rows
 from verify.motion.surface import Stage
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of, fresh_log, hard_of, rubbing_of
 from verify.motor.records import BeamAnswer, Feet, GivenSurface, Hard, Line, Log, Rubbing
-
-ROUNDS, DAMPED_ROUNDS = 4.0, 6.0
-"""In a step, in which each point's force is spread over all pieces between the points: with dashpots it is found anew.
-"""
 
 
 class Riding(msgspec.Struct, eq=False, kw_only=True):
@@ -81,16 +75,6 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         """Of all stages so far."""
         return self.steps_before + int(self.log.tally[records.STEP])
 
-    def seconds(self, steps: int, table: Array, length: float) -> float:
-        """An estimate from above of the time the loop takes on a beam of that length, metres, and these polynomials."""
-        points, (pieces, terms, rows) = len(self.feet.points), table.shape
-        if not self.two_way:
-            return steps * (1e-6 + 1e-7 * points)
-        near = 2 * AROUND + 1 + pieces * float(np.ptp(self.feet.points[:, records.OFFSET])) / length
-        rounds = DAMPED_ROUNDS if np.any(self.feet.points[:, records.DASHPOT] > 0.0) else ROUNDS
-        step = 8e-6 + points * (8e-7 + 4e-9 * terms * rows + 7e-10 * rounds * terms**2 * near)
-        return float(steps * step + 2e-10 * rows * (terms * near) ** 2)
-
     def set_touch(self, levels: Array) -> None:
         """Depths as the slider is put down on these heights of the surface, (points,)."""
         feet = self.feet
@@ -114,9 +98,8 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         feet, p, touch = self.feet, self.feet.points, self.feet.touch
         found = np.zeros((len(self.placed), 2))
         found[:, 0] = 0.5 * np.array([one.slider.mass for one in self.placed]) * feet.body[:, records.V] ** 2
-        masses, inertias = (
-            _turned(feet.given[:, one]) for one in (records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA)
-        )
+        inverse = feet.given[:, [records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA]]  # 0 where nothing moves
+        masses, inertias = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0).T
         across = 0.5 * (masses * feet.state[:, records.CLIMB] ** 2 + inertias * feet.state[:, records.TURN] ** 2)
         np.add.at(found[:, 0], feet.keeper, across)
         climb = feet.state[feet.foot, records.CLIMB] + p[:, records.ARM] * feet.state[feet.foot, records.TURN]
@@ -130,11 +113,6 @@ AROUND = 8
 """Pieces on each side of the points that a beam is asked for at once."""
 
 
-def _turned(eases: Array) -> Array:
-    """One over each; 0, in place of what has no end, where nothing moves."""
-    return np.divide(1.0, eases, out=np.zeros_like(eases), where=eases > 0.0)
-
-
 def run_stages(
     stages: Sequence[Stage], tables: Sequence[Array], z: Array, riding: Riding, tell: Callable[[int], None]
 ) -> tuple[str, Array, Array]:
@@ -142,7 +120,7 @@ def run_stages(
     stopped, state = END, (np.empty(0), np.empty(0))
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.start(*state)
-        surface = _surface(stage, tables[i], z, riding.start)
+        surface = Surface(modal_rows(stage, z), drive_of(stage), tables[i], stage.edges - riding.start)
         if i == 0:
             riding.first = stage.deflection(z, np.zeros(1), riding.points)[0]
             riding.look(stage.dt)
@@ -173,21 +151,6 @@ def _after(riding: Riding, step: float) -> Array:
     feet = riding.feet
     on = feet.body[:, records.X] + step * feet.body[:, records.V] * feet.riders[:, records.FREE]
     return np.asarray(on[feet.owner] + feet.points[:, records.OFFSET])
-
-
-def _surface(stage: Stage, table: Array, z: Array, start: float) -> Surface:
-    """The whole beam as the loop sees it."""
-    modes = np.zeros((beam_records.READ + 1, z.shape[1]))
-    modes[[beam_records.Z_RE, beam_records.Z_IM]] = z
-    modes[beam_records.SIGMA], modes[beam_records.OMEGA] = stage.modal.sigmas, stage.modal.omegas
-    modes[[beam_records.HALF_RE, beam_records.HALF_IM]] = turns(stage.modal, 0.5 * stage.dt)
-    drive = Drive(
-        omega=float(stage.omega),
-        origin=float(stage.origin),
-        unit=float(stage.unit_s),
-        growth=np.array(stage.growth, dtype=float),
-    )
-    return Surface(modes, drive, table, stage.edges - start)
 
 
 def beam_answer(surface: Surface) -> BeamAnswer:
@@ -288,16 +251,16 @@ def _run_hard(
     stage: Stage, surface: Surface, riding: Riding, line: Line, hard: Hard, tell: Callable[[int], None]
 ) -> str:
     """The same of a hard point."""
-    from verify.motor import hop_kernels
+    from verify.motor import impact_kernels
 
     feet, before = riding.feet, riding.before
     if before[0, 0] == RIDES_FROM_HERE:
-        added = hop_kernels.put(0.0, surface, feet, riding.rubbing, line)
+        added = impact_kernels.put(0.0, surface, feet, riding.rubbing, line)
         before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
         riding.look(stage.dt)
 
     def hop(steps: int) -> int:
-        return hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)
+        return impact_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)
 
     def advance(steps: int) -> int:
         grown = (feet.body, feet.state, feet.touch, feet.sums, before, riding.log.before, riding.log.tally)

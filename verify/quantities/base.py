@@ -1,31 +1,30 @@
 """Named quantities of interest: the `@quantity` decorator, the registry, evaluation, arguments and their listing.
 
-A quantity is a function of a scene, a solution cache and keyword arguments. Its signature is its schema: an annotation
-carries type, limits and description, the default value makes an argument optional, and a parameter annotated with a
-`msgspec.Struct` is an option group whose fields become arguments of the quantity.
+A quantity is a function whose signature is its schema: an annotation carries type, limits and description, a default
+value makes an argument optional, and a parameter annotated with a `msgspec.Struct` is an option group whose fields
+become arguments of the quantity. Parameters named `scene` and `cache` are supplied where the function has them.
 
-    @quantity("mode.frequency", unit="Hz", reads=("beam",))
-    def frequency(scene: Scene, cache: SolutionCache, *, model: AnyModel, mode: Mode, count: Size | None = None):
-        \"\"\"Frequency of one mode.\"\"\"
+    @quantity("drive.rule_frequency", unit="Hz", reads=("beam",))
+    def rule_frequency(scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two")] = 22):
+        \"\"\"Root mean square of two neighbouring natural frequencies.\"\"\"
 
 Nothing here imports numpy.
 """
 
 import inspect
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import isfinite, isnan
-from types import UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, TypeAlias, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, TypeAlias, get_args, get_origin
 
 import msgspec
 from msgspec import Meta
 
-from verify.checks import RELATIVE, plain
+from verify.checks import plain
 from verify.errors import InputError, near_name, shown
 from verify.judge.bracket import Bracket
 from verify.models.naming import Among
 from verify.registry import Registry
+from verify.scene.convert import arms_of, convert, entry_of, metas_of, typed
 
 if TYPE_CHECKING:
     from verify.beam import Beam, PointForce
@@ -41,7 +40,6 @@ TABLES = ("beam", "drive", "slider", "motion")
 """Tables of a scene that a quantity may depend on."""
 ROUNDING = 1e-12
 """Tolerance of a position at an end, relative to the length (as `models.places`)."""
-LONGEST_RANGE = 10_000
 
 
 class Scene(Protocol):
@@ -57,11 +55,11 @@ class Scene(Protocol):
 
     @property
     def forces(self) -> "Sequence[PointForce]":
-        """Of the drive, measured from the left end."""
+        """Forces of the drive, measured from the left end."""
 
     @property
     def devices(self) -> "Sequence[Device]":
-        """Of the drive, measured from the left end."""
+        """Devices of the drive, measured from the left end."""
 
     @property
     def slider(self) -> "Slider | None":
@@ -103,18 +101,16 @@ class Quantity:
         self.name, self.unit, self.reads, self.devices = name, unit, tuple(reads), devices
         self.summary = summary or " ".join((inspect.getdoc(function) or "").split("\n\n")[0].split())
         self.function = function
-        self.groups: dict[str, type[msgspec.Struct]] = {}
-        self._types: dict[str, Any] = {}
-        self._group_of: dict[str, str] = {}
+        parameters = inspect.signature(function).parameters
+        self._supplied = [name for name in ("scene", "cache") if name in parameters]
+        self._groups: dict[str, type[msgspec.Struct]] = {}
         fields: list[Any] = []
-        for parameter in list(inspect.signature(function).parameters.values())[2:]:
+        for parameter in (one for name, one in parameters.items() if name not in self._supplied):
             kind = parameter.annotation
             if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
-                self.groups[parameter.name] = kind
-                for field in msgspec.structs.fields(kind):
-                    self._group_of[field.name] = kind.__name__
-                    default = () if field.required else (field.default,)
-                    fields.append((field.name, field.type, *default))
+                self._groups[parameter.name] = kind
+                own = msgspec.structs.fields(kind)
+                fields += [(one.name, one.type, *(() if one.required else (one.default,))) for one in own]
             else:
                 default = () if parameter.default is inspect.Parameter.empty else (parameter.default,)
                 fields.append((parameter.name, kind, *default))
@@ -122,21 +118,22 @@ class Quantity:
         self._types = {field[0]: field[1] for field in fields}
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
-    def __call__(self, scene: Scene, cache: "SolutionCache", *groups: Any, **arguments: Any) -> Value:
+    def __call__(self, *values: Any, **arguments: Any) -> Value:
         """The function itself, with option groups as values."""
-        return self.function(scene, cache, *groups, **arguments)
+        return self.function(*values, **arguments)
 
     @property
     def arguments(self) -> tuple[Argument, ...]:
         """The arguments with their types, defaults and descriptions."""
+        group_of = {name: kind.__name__ for kind in self._groups.values() for name in kind.__struct_fields__}
         return tuple(
             Argument(
                 name=field.name,
                 type=_type_name(field.type),
                 required=field.required,
                 default=None if field.required else field.default,
-                description=next((meta.description for meta in _metas(field.type) if meta.description), ""),
-                group=self._group_of.get(field.name, ""),
+                description=next((meta.description for meta in reversed(metas_of(field.type)) if meta.description), ""),
+                group=group_of.get(field.name, ""),
             )
             for field in msgspec.structs.fields(self.schema)
         )
@@ -144,18 +141,22 @@ class Quantity:
     def bind(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Keyword arguments of the function: checked, with defaults, option groups built. Raises InputError."""
         data = {name: _native(value, name) for name, value in arguments.items()}
+        required = {field.name for field in msgspec.structs.fields(self.schema) if field.required}
         for name, kind in self._types.items():
             among = _among(kind)
             if among is not None and isinstance(data.get(name), str):
                 among.check(data[name], name)
-            if name in data and isinstance(data[name], int | float) and _item(kind) is not None:
+            elif among is not None and name in required - set(data) and set(data) <= set(self._types):
+                raise InputError(f"{name} is missing: give one of {', '.join(among.names())}")
+            if name in data and isinstance(data[name], int | float) and entry_of(kind) is not None:
                 data[name] = [data[name]]
-        checked = _convert(data, self.schema, self._types)
+        checked = convert(data, self.schema)
         values = {name: getattr(checked, name) for name in self._types}
-        bound = {name: value for name, value in values.items() if name not in self._group_of}
-        for parameter, group in self.groups.items():
-            bound[parameter] = group(**{name: values[name] for name in group.__struct_fields__})
-        return bound
+        groups = {
+            parameter: kind(**{name: values.pop(name) for name in kind.__struct_fields__})
+            for parameter, kind in self._groups.items()
+        }
+        return values | groups
 
     def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
         """The value for arguments that are plain data. Raises InputError."""
@@ -165,20 +166,16 @@ class Quantity:
                 f"quantity = {self.name!r} does not model drive.device, and one stands at "
                 f"{scene.devices[0].position:g} m: leave drive.device out, or use a quantity of the steady wave"
             )
-        self._check_places(arguments, scene)
-        value = plain(self.function(scene, cache, **bound), self.name)
+        length = scene.beam.length
+        for name, x in arguments.items():
+            place = any((meta.extra or {}).get("place") for meta in metas_of(self._types[name]))
+            if place and x is not None and not -ROUNDING * length <= x <= length * (1.0 + ROUNDING):
+                raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
+        supplied = {"scene": scene, "cache": cache}
+        value = plain(self.function(**{name: supplied[name] for name in self._supplied}, **bound), self.name)
         if not isinstance(value, float | int | complex | Bracket):
             raise InputError(f"quantity = {self.name!r} returns {shown(value)}: return a number or a Bracket")
         return value
-
-    def _check_places(self, arguments: Mapping[str, Any], scene: Scene) -> None:
-        for name, x in arguments.items():
-            if isinstance(x, float | int) and any(
-                (meta.extra or {}).get("place") for meta in _metas(self._types[name])
-            ):
-                length = scene.beam.length
-                if not -ROUNDING * length <= x <= length * (1.0 + ROUNDING):
-                    raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
 
 
 QUANTITIES: Registry[Quantity] = Registry("quantity", "verify.quantities")
@@ -212,8 +209,8 @@ def parse_arguments(name: str, words: Iterable[str]) -> dict[str, Any]:
             raise InputError(f"{key} = {text!r} is a second value: give one")
         kind = wanted._types.get(key)
         if kind is None:
-            raise InputError(f"{key} is no argument of {wanted.name}: {near_name(key, tuple(wanted._types))}")
-        found[key] = _parsed(text, kind, key)
+            raise InputError(f"{key} is not a known key: {near_name(key, tuple(wanted._types))}")
+        found[key] = typed(text, kind, key)
     wanted.bind(found)
     return found
 
@@ -253,53 +250,26 @@ def as_text(value: Value, digits: int = 12) -> str:
     return "NaN" if isnan(value) else f"{value:.{digits}g}" if isfinite(value) else "infinity"
 
 
-# --- annotations ------------------------------------------------------------------------------------------------------
-
-
-def _arms(kind: Any) -> tuple[Any, ...]:
-    """The types of a union without None and annotations."""
-    if hasattr(kind, "__metadata__"):
-        return _arms(get_args(kind)[0])
-    if get_origin(kind) in (Union, UnionType):
-        return tuple(arm for one in get_args(kind) for arm in _arms(one) if one is not type(None))
-    return (kind,)
-
-
-def _metas(kind: Any) -> list[Meta]:
-    """The annotations of a type, innermost last; those of a list's items are left out."""
-    if hasattr(kind, "__metadata__"):
-        return [*reversed(kind.__metadata__), *_metas(get_args(kind)[0])]
-    return [meta for arm in get_args(kind) for meta in _metas(arm)] if get_origin(kind) in (Union, UnionType) else []
-
-
 def _among(kind: Any) -> Among | None:
     """The models that an argument may name; None for any other argument."""
-    return next((meta.extra["among"] for meta in _metas(kind) if meta.extra and "among" in meta.extra), None)
+    return next((meta.extra["among"] for meta in metas_of(kind) if meta.extra and "among" in meta.extra), None)
 
 
-def _item(kind: Any) -> Any:
-    """The item type of a list of any length; None for any other type."""
-    parts = next((get_args(arm) for arm in _arms(kind) if get_origin(arm) is tuple), ())
-    return parts[0] if len(parts) == 2 and parts[1] is Ellipsis else None
+def _member(kind: Any) -> Any:
+    """The type without None and annotations."""
+    return next(arm for arm in arms_of(kind) if arm is not type(None))
 
 
 def _type_name(kind: Any) -> str:
     if among := _among(kind):
         return " | ".join(among.names())
-    arm = _arms(kind)[0]
+    arm = _member(kind)
     if get_origin(arm) is Literal:
         return " | ".join(map(str, get_args(arm)))
     if get_origin(arm) is tuple:
         parts = get_args(arm)
         return f"list of {_type_name(parts[0])}s" if parts[-1] is Ellipsis else f"{len(parts)} {_type_name(parts[0])}s"
     return {int: "whole number", float: "number", str: "word", bool: "true | false"}.get(arm, str(arm))
-
-
-# --- values -----------------------------------------------------------------------------------------------------------
-
-_UNKNOWN = re.compile(r"Object contains unknown field `(.*)`")
-_MISSING = re.compile(r"Object missing required field `(.*)`")
-_PLAIN = {"int": "a whole number", "float": "a number", "str": "a word", "bool": "true or false", "array": "a list"}
 
 
 def _native(value: Any, name: str) -> Any:
@@ -310,53 +280,3 @@ def _native(value: Any, name: str) -> Any:
     if isinstance(value, float) and not isfinite(value):
         raise InputError(f"{name} = {value!r}: give a finite number")
     return value
-
-
-def _convert(data: dict[str, Any], schema: Any, types: Mapping[str, Any]) -> Any:
-    """Arguments as the schema's struct. Raises InputError naming field, value and remedy."""
-    try:
-        return msgspec.convert(data, schema)
-    except msgspec.ValidationError as error:
-        what, _, path = str(error).partition(" - at `")
-    if unknown := _UNKNOWN.match(what):
-        raise InputError(f"{unknown[1]} is no argument of {schema.__name__}: {near_name(unknown[1], tuple(types))}")
-    if missing := _MISSING.match(what):
-        among = _among(types[missing[1]])
-        remedy = (
-            f"give one of {', '.join(among.names())}" if among else f"give a value ({_type_name(types[missing[1]])})"
-        )
-        raise InputError(f"{missing[1]} is missing: {remedy}")
-    name = re.split(r"[.\[`]", path)[1]
-    words = next((get_args(arm) for arm in _arms(types[name]) if get_origin(arm) is Literal), ())
-    if words and isinstance(data[name], str):
-        raise InputError(f"{name} = {shown(data[name])} is not known: {near_name(data[name], words)}")
-    wanted = what.split(", got ")[0].replace("Expected", "give").replace(" | null", "")
-    wanted = re.sub(r"`([\w |]+)`", lambda kind: _PLAIN.get(kind[1], kind[1]), wanted)
-    raise InputError(f"{name} = {shown(data[name])}: {wanted}")
-
-
-def _parsed(text: str, kind: Any, name: str) -> Any:
-    """One command-line value by its type; what does not fit stays text, which `bind` refuses."""
-    if any(get_origin(arm) is tuple for arm in _arms(kind)):
-        item = _item(kind) or get_args(_arms(kind)[0])[0]
-        return [
-            one for part in text.strip("[] ").split(",") for one in _range(part, name) or [_parsed(part, item, name)]
-        ]
-    if text.endswith("%") and any((meta.extra or {}).get(RELATIVE) for meta in _metas(kind)):
-        number = _parsed(text[:-1], float, name)
-        return number / 100.0 if isinstance(number, float) else text
-    try:
-        return msgspec.convert(text.strip(), _arms(kind)[0], strict=False)
-    except msgspec.ValidationError:
-        return text
-
-
-def _range(text: str, name: str) -> list[int]:
-    """'10-50:10' as whole numbers; empty for text that is no range. Raises InputError for an empty or a long one."""
-    found = re.fullmatch(r"\s*(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?\s*", text)
-    if found is None:
-        return []
-    start, end, step = int(found[1]), int(found[2]), int(found[3] or 1)
-    if end < start or step == 0 or (end - start) // step >= LONGEST_RANGE:
-        raise InputError(f"{name} = {text!r}: write a range upwards and of at most {LONGEST_RANGE} numbers, 10-50:10")
-    return list(range(start, end + 1, step))

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify import options
 from verify.errors import InputError
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.options import ForceAmplitude, Grading, Mode, Wall
+from verify.quantities.options import ForceAmplitude, Grading, Mode, SoftStart, Wall
 from verify.quantities.slider import ChainSliderOptions, Time
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from verify.chain.ride import ChainRide
     from verify.judge.cache import SolutionCache
 
+Method = Annotated[Literal["adaptive", "rk4"], Meta(description="default: rk4 with a step")]
 Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
 Tolerance = Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step")]
 Seconds = Annotated[float, Meta(gt=0, description="s, from rest")]
@@ -27,8 +28,6 @@ BEAM = ("beam",)
 
 @quantity("chain.cantilever_tip", unit="1", reads=())
 def cantilever_tip(
-    scene: Scene,
-    cache: "SolutionCache",
     *,
     segments: Links,
     load: Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")],
@@ -42,7 +41,7 @@ def cantilever_tip(
 
 
 @quantity("chain.rollup_gap", unit="1", reads=())
-def rollup_gap(scene: Scene, cache: "SolutionCache", *, segments: Links, wall: Wall = "half") -> float:
+def rollup_gap(*, segments: Links, wall: Wall = "half") -> float:
     """Distance of the ends over L of a cantilever under an end moment 2 pi EI/L."""
     from verify.chain.problems import rollup_gap
 
@@ -50,7 +49,7 @@ def rollup_gap(scene: Scene, cache: "SolutionCache", *, segments: Links, wall: W
 
 
 @quantity("chain.hanging_frequency", unit="1", reads=())
-def hanging_frequency(scene: Scene, cache: "SolutionCache", *, segments: Links, mode: Mode) -> float:
+def hanging_frequency(*, segments: Links, mode: Mode) -> float:
     """Omega sqrt(L/g) of a hanging chain of uniform links."""
     from verify.chain.problems import hanging_frequency
 
@@ -59,8 +58,6 @@ def hanging_frequency(scene: Scene, cache: "SolutionCache", *, segments: Links, 
 
 @quantity("chain.turning_frequency", unit="1", reads=())
 def turning_frequency(
-    scene: Scene,
-    cache: "SolutionCache",
     *,
     segments: Links,
     mode: Mode,
@@ -108,7 +105,6 @@ def energy_drift(
 
 @quantity("chain.imbalance", unit="1", reads=())
 def imbalance(
-    scene: Scene,
     cache: "SolutionCache",
     *,
     segments: Links,
@@ -124,7 +120,6 @@ def imbalance(
 @quantity("chain.contact_line_error", unit="1", reads=BEAM)
 def contact_line_error(
     scene: Scene,
-    cache: "SolutionCache",
     *,
     segments: Links,
     mode: Mode,
@@ -142,7 +137,7 @@ def _forces(
     scene: Scene, what: str, amplitude: float | None = None, soft_start: float | None = None
 ) -> "tuple[Sequence[PointForce], float]":
     """(forces, Hz) of a chain from rest. Raises InputError without forces, or for a [motion] of another kind."""
-    from verify.motion.starting import soft_start as default_soft_start
+    from verify.motion.request import soft_start as default_soft_start
 
     if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
         raise InputError(f"drive is missing: {what} takes a [drive] of kind force")
@@ -152,10 +147,10 @@ def _forces(
         for (name, value), needed in zip(values.items(), ("rest", 0.0, 0.0), strict=True):
             if value != needed:
                 raise InputError(
-                    f"motion.{name} = {value!r}: {what} is from rest, undamped, under forces at full size, give {needed!r}"
+                    f"motion.{name} = {value!r}: {what} is from rest, undamped, without soft start, give {needed!r}"
                 )
     elif soft_start:
-        raise InputError(f"soft_start_periods = {soft_start!r}: {what} is under forces at full size, give 0")
+        raise InputError(f"soft_start_periods = {soft_start!r}: {what} is without soft start, give 0")
     forces = scene.forces if amplitude is None else [replace(one, amplitude=amplitude) for one in scene.forces]
     return forces, scene.drive.frequency_hz
 
@@ -169,13 +164,7 @@ def transient_deflection(
     time: Seconds,
     x: Place,
     force: ForceAmplitude | None = None,
-    method: (
-        Annotated[
-            Literal["adaptive", "rk4", "modal", "linear"],
-            Meta(description="modal: exact linear flow and kicks; linear: that flow alone; default: rk4 with a step"),
-        ]
-        | None
-    ) = None,
+    method: Method | None = None,
     inertia: Annotated[Literal["full", "transverse"], Meta(description="transverse: none along x")] = "full",
     step: FixedStep | None = None,
     tolerance: Tolerance | None = None,
@@ -235,9 +224,7 @@ class ChainRideOptions(msgspec.Struct, frozen=True, kw_only=True):
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
     time: Time | None = None
     force: ForceAmplitude | None = None
-    soft_start_periods: (
-        Annotated[float, Meta(ge=0, description="0 in place of the scene's: forces act at once")] | None
-    ) = None
+    soft_start_periods: SoftStart | None = None
 
 
 def _ride(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, options: ChainSliderOptions) -> "ChainRide":
@@ -265,21 +252,6 @@ def _imbalance(run: "ChainRide") -> float:
     return abs(run.ledger.residual) / run.ledger.rubbed
 
 
-BALANCED = 0.01
-"""Largest energy imbalance over the friction loss with which a largest friction force is known."""
-
-
-def _largest_friction(run: "ChainRide") -> float:
-    assert run.slider is not None
-    saturated = run.largest_friction >= (1.0 - 1e-9) * run.slider.mu * run.slider.normal_force
-    if not saturated and (missing := _imbalance(run)) > BALANCED:
-        raise InputError(
-            f"step = {run.statistics.step_s:.3g} s: the energy imbalance is {100.0 * missing:.2g} % of the friction "
-            "loss, give a shorter step"
-        )
-    return run.largest_friction
-
-
 def _ride_figure(read: "Callable[[ChainRide], float]") -> Callable[..., float]:
     def ride_figure(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, slider: ChainSliderOptions) -> float:
         return read(_ride(scene, cache, by, slider))
@@ -290,7 +262,6 @@ def _ride_figure(read: "Callable[[ChainRide], float]") -> Callable[..., float]:
 RIDE: "dict[str, tuple[str, str, Callable[[ChainRide], float]]]" = {
     "displacement": ("m", "Displacement of the scene's slider along +x on the chain.", lambda run: run.displacement),
     "mean_speed": ("m/s", "Displacement of the slider on the chain over time.", lambda run: run.mean_speed),
-    "largest_friction": ("N", "Largest friction force on the slider on the chain.", _largest_friction),
     "imbalance": ("1", "Residual of the slider's energy balance on the chain over its friction loss.", _imbalance),
 }
 for _name, (_unit, _text, _read) in RIDE.items():

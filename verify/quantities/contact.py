@@ -1,7 +1,7 @@
 """Quantities of friction and contact laws by themselves: belts, decay, driving layer, bouncing, landing."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import msgspec
 from msgspec import Meta
@@ -12,9 +12,6 @@ from verify.quantities.base import Scene, quantity
 from verify.quantities.options import Frequency, Mass, Mu, Slope, drive_frequency
 from verify.slider import GRAVITY
 
-if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
-
 Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
 HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
 SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]
@@ -22,27 +19,8 @@ Compliance = Annotated[float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), 
 Stiffness = Annotated[float, Meta(gt=0, description="N/m")]
 
 
-@quantity("friction.free_decay", unit="m/s", reads=())
-def free_decay(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    mu: Mu,
-    slope: Slope,
-    speed: Annotated[float, Meta(description="m/s, at the start")],
-    time: Annotated[float, Meta(gt=0, description="s")],
-    gravity: Gravity = GRAVITY,
-) -> float:
-    """Speed of a free slider on a surface at rest after a time, tanh friction."""
-    from verify.motion.rigid_surface import free_decay
-
-    return free_decay(mu, slope, speed, time, gravity)
-
-
 @quantity("friction.creep_speed", unit="m/s", reads=())
 def creep_speed(
-    scene: Scene,
-    cache: "SolutionCache",
     *,
     mu: Mu,
     slope: Slope,
@@ -72,25 +50,20 @@ class Belt(msgspec.Struct, frozen=True, kw_only=True):
 
 
 @quantity("friction.belt_stick_time", unit="s", reads=())
-def belt_stick_time(scene: Scene, cache: "SolutionCache", belt: Belt) -> float:
+def belt_stick_time(belt: Belt) -> float:
     """Time of a stick-slip cycle in which the mass sticks to the belt."""
     return belt.times()[0]
 
 
 @quantity("friction.belt_slip_time", unit="s", reads=())
-def belt_slip_time(scene: Scene, cache: "SolutionCache", belt: Belt) -> float:
+def belt_slip_time(belt: Belt) -> float:
     """Time of a stick-slip cycle in which the mass slips."""
     return belt.times()[1]
 
 
 @quantity("friction.coulomb_decrement", unit="m", reads=())
 def coulomb_decrement(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    mass: Mass,
-    stiffness: Stiffness,
-    force: Annotated[float, Meta(gt=0, description="friction, N")],
+    *, mass: Mass, stiffness: Stiffness, force: Annotated[float, Meta(gt=0, description="friction, N")]
 ) -> float:
     """Amplitude that an oscillator with Coulomb friction loses in a cycle."""
     from verify.motion.rigid_surface import coulomb_decrement
@@ -99,9 +72,7 @@ def coulomb_decrement(
 
 
 @quantity("slider.winkler_speed_ratio", unit="1", reads=())
-def winkler_speed_ratio(
-    scene: Scene, cache: "SolutionCache", *, contact_half_angle: HalfAngle, epsilon: Compliance = 0.0
-) -> float:
+def winkler_speed_ratio(*, contact_half_angle: HalfAngle, epsilon: Compliance = 0.0) -> float:
     """No-load speed over crest speed of a rigid slider on a Winkler layer over a wave."""
     from verify.contact.layer import no_load_speed
 
@@ -109,14 +80,7 @@ def winkler_speed_ratio(
 
 
 @quantity("slider.layer_force", unit="1", reads=())
-def layer_force(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    contact_half_angle: HalfAngle,
-    speed_ratio: SpeedRatio,
-    epsilon: Compliance = 0.0,
-) -> float:
+def layer_force(*, contact_half_angle: HalfAngle, speed_ratio: SpeedRatio, epsilon: Compliance = 0.0) -> float:
     """Friction force over mu N on a rigid slider on a Winkler layer over a wave."""
     from verify.contact.layer import force
 
@@ -125,8 +89,6 @@ def layer_force(
 
 @quantity("slider.layer_efficiency", unit="1", reads=())
 def layer_efficiency(
-    scene: Scene,
-    cache: "SolutionCache",
     *,
     contact_half_angle: HalfAngle,
     speed_ratio: Annotated[float, Meta(ge=0, lt=1, description="of the slider over the surface at the crests")],
@@ -139,10 +101,7 @@ def layer_efficiency(
 
 @quantity("contact.landing_phase", unit="rad", reads=())
 def landing_phase(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    acceleration_ratio: Annotated[float, Meta(gt=1, description="A omega^2 over the acceleration of the preload")],
+    *, acceleration_ratio: Annotated[float, Meta(gt=1, description="A omega^2 over the acceleration of the preload")]
 ) -> float:
     """Phase of a vibrating surface at the first impact of a mass that has lifted off."""
     from verify.contact.bouncing import landing_phase
@@ -152,8 +111,6 @@ def landing_phase(
 
 @quantity("contact.restitution", unit="1", reads=())
 def restitution(
-    scene: Scene,
-    cache: "SolutionCache",
     *,
     damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)); or mass, stiffness, damping")]
     | None = None,
@@ -209,7 +166,6 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
 @quantity("slider.wave_force", unit="1", reads=("beam", "drive"))
 def wave_force(
     scene: Scene,
-    cache: "SolutionCache",
     contact: WaveContact,
     *,
     points: Annotated[int, Meta(ge=2, description="springs in a wavelength")] = 61,
@@ -221,7 +177,6 @@ def wave_force(
 @quantity("slider.wave_force_order", unit="1", reads=("beam", "drive"))
 def wave_force_order(
     scene: Scene,
-    cache: "SolutionCache",
     contact: WaveContact,
     *,
     counts: Annotated[tuple[int, ...], Meta(min_length=3, description="three or more numbers of springs")],

@@ -9,21 +9,8 @@ from verify.errors import InputError
 from verify.judge.bracket import Bracket
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN, model_meta
+from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.options import (
-    DiscreteModel,
-    Frequency,
-    Mode,
-    ModelOptions,
-    OneDiscreteMode,
-    OneMode,
-    OneModeOrMean,
-    Size,
-    Sizes,
-    check_count,
-    check_settings,
-    drive_frequency,
-)
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
@@ -35,7 +22,7 @@ Reading = Annotated[
 
 
 @quantity("mode.frequency", unit="Hz", reads=BEAM)
-def frequency(scene: Scene, cache: "SolutionCache", of: OneModeOrMean) -> float:
+def frequency(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
     """Natural frequency of one mode."""
     if of.count is None:
         return cache.exact_hz(of.mode, of.theory)
@@ -43,7 +30,7 @@ def frequency(scene: Scene, cache: "SolutionCache", of: OneModeOrMean) -> float:
 
 
 @quantity("mode.frequency_error", unit="1", reads=BEAM)
-def frequency_error(scene: Scene, cache: "SolutionCache", of: OneModeOrMean) -> float:
+def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
     """Signed error relative to the exact frequency by the same theory; of the exact beam, to Euler-Bernoulli theory."""
     if of.count is not None:
         return cache.frequency_error(of.model, of.count, of.mode, of.settings)
@@ -52,7 +39,7 @@ def frequency_error(scene: Scene, cache: "SolutionCache", of: OneModeOrMean) -> 
 
 
 @quantity("mode.plate_error", unit="1", reads=BEAM)
-def plate_error(scene: Scene, cache: "SolutionCache", *, mode: Mode) -> float:
+def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
     """Frequency as a thin plate with free long edges, relative to Euler-Bernoulli theory, less 1."""
     from verify.exact.plate_strip import plate_error
 
@@ -60,7 +47,7 @@ def plate_error(scene: Scene, cache: "SolutionCache", *, mode: Mode) -> float:
 
 
 @quantity("mode.law_ratio", unit="1", reads=BEAM)
-def law_ratio(scene: Scene, cache: "SolutionCache", of: OneDiscreteMode) -> float:
+def law_ratio(scene: Scene, cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
     """Frequency error over its leading term, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), mu = beta l."""
     from verify.exact.closed_forms import check_uniform
     from verify.exact.error_laws import law_of, leading_error
@@ -75,18 +62,18 @@ def law_ratio(scene: Scene, cache: "SolutionCache", of: OneDiscreteMode) -> floa
 
 
 @quantity("mode.shape_error", unit="1", reads=BEAM)
-def shape_error(scene: Scene, cache: "SolutionCache", of: OneDiscreteMode, *, reading: Reading | None = None) -> float:
+def shape_error(cache: "SolutionCache", of: opt.OneDiscreteMode, *, reading: Reading | None = None) -> float:
     """Relative L2 error of the mass-normalised deflection at the model's nodes."""
     return cache.shape_error(of.model, of.count, of.mode, reading, of.settings)
 
 
 @quantity("mode.curvature_error", unit="1", reads=BEAM)
-def curvature_error(scene: Scene, cache: "SolutionCache", of: OneDiscreteMode) -> float:
+def curvature_error(cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
     """Relative L2 error of the curvature at joints or Gauss points."""
     return cache.curvature_error(of.model, of.count, of.mode, of.settings)
 
 
-def _shape(scene: Scene, cache: "SolutionCache", of: OneMode, x: float, derivative: int) -> float:
+def _shape(scene: Scene, cache: "SolutionCache", of: opt.OneMode, x: float, derivative: int) -> float:
     from verify.models.places import places
 
     at = places("x", x, scene.beam.length).ravel()
@@ -94,22 +81,21 @@ def _shape(scene: Scene, cache: "SolutionCache", of: OneMode, x: float, derivati
 
 
 @quantity("mode.deflection", unit="1/sqrt(kg)", reads=BEAM)
-def deflection(scene: Scene, cache: "SolutionCache", of: OneMode, *, x: Place) -> float:
+def deflection(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
     """Deflection of a mode of modal mass 1 kg at x, positive at the first displacement from the left end."""
     return _shape(scene, cache, of, x, 0)
 
 
 @quantity("mode.slope", unit="1/(m sqrt(kg))", reads=BEAM)
-def slope(scene: Scene, cache: "SolutionCache", of: OneMode, *, x: Place) -> float:
+def slope(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
     """Slope of the deflection of a mode of modal mass 1 kg at x."""
     return _shape(scene, cache, of, x, 1)
 
 
 @quantity("mode.node_position", unit="m", reads=BEAM)
 def node_position(
-    scene: Scene,
     cache: "SolutionCache",
-    of: OneMode,
+    of: opt.OneMode,
     *,
     node: Annotated[int, Meta(ge=1, description="number of the node from the left, ends not counted")] = 1,
 ) -> float:
@@ -124,11 +110,11 @@ def node_position(
 def order(
     scene: Scene,
     cache: "SolutionCache",
-    options: ModelOptions,
+    options: opt.ModelOptions,
     *,
     model: Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", sized=True, mean=True)],
-    mode: Mode,
-    counts: Sizes,
+    mode: opt.Mode,
+    counts: opt.Sizes,
 ) -> float:
     """Observed order of the frequency error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
@@ -136,44 +122,42 @@ def order(
     check_sizes("counts", counts)
     expected = None
     if model != MEAN:
-        check_settings(model, options.settings, "modal")
+        opt.check_settings(model, options.settings, "modal")
         expected = MODELS.named(model).order(scene.beam, **dict(options.settings))
     return settled_order(counts, [cache.frequency_error(model, n, mode, options.settings) for n in counts], expected)
 
 
 @quantity("mode.shape_order", unit="1", reads=BEAM)
 def shape_order(
-    scene: Scene,
     cache: "SolutionCache",
-    options: ModelOptions,
+    options: opt.ModelOptions,
     *,
-    model: DiscreteModel,
-    mode: Mode,
-    counts: Sizes,
+    model: opt.DiscreteModel,
+    mode: opt.Mode,
+    counts: opt.Sizes,
     reading: Reading | None = None,
 ) -> float:
     """Observed order of the shape error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
 
     check_sizes("counts", counts)
-    settings = check_settings(model, options.settings, "modal")
+    settings = opt.check_settings(model, options.settings, "modal")
     return settled_order(counts, [cache.shape_error(model, n, mode, reading, settings) for n in counts])
 
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
-def bracket(scene: Scene, cache: "SolutionCache", options: ModelOptions, *, mode: Mode, count: Size) -> Bracket:
+def bracket(cache: "SolutionCache", options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
     """Two-sided bound on the exact frequency: segments below, Hermite elements above."""
     return cache.bracket(mode, count, options.settings)
 
 
 @quantity("mode.count_needed", unit="1", reads=BEAM)
 def count_needed(
-    scene: Scene,
     cache: "SolutionCache",
-    options: ModelOptions,
+    options: opt.ModelOptions,
     *,
-    model: DiscreteModel,
-    mode: Mode,
+    model: opt.DiscreteModel,
+    mode: opt.Mode,
     error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
     of: Annotated[
         Literal["enough", "least"], Meta(description="N from which all larger ones suffice, or the least N that does")
@@ -182,12 +166,12 @@ def count_needed(
     """Number of segments or elements for a frequency error of at most `error`."""
     from verify.judge.sizing import enough_from
 
-    found = enough_from(cache, model, mode, error, check_settings(model, options.settings, "modal"))
+    found = enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal"))
     return found.smaller if of == "least" and found.smaller is not None else found.count
 
 
 @quantity("mode.stock_difference", unit="1", reads=BEAM)
-def stock_difference(scene: Scene, cache: "SolutionCache", *, mode: Mode, count: Size) -> float:
+def stock_difference(scene: Scene, cache: "SolutionCache", *, mode: opt.Mode, count: opt.Size) -> float:
     """Frequency by scikit-fem's own Hermite element and solver relative to that of our elements, less 1."""
     from verify.elements.stock import stock_frequency_hz
 
@@ -196,10 +180,7 @@ def stock_difference(scene: Scene, cache: "SolutionCache", *, mode: Mode, count:
 
 @quantity("drive.rule_frequency", unit="Hz", reads=BEAM)
 def rule_frequency(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22,
+    scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
 ) -> float:
     """Root mean square of two neighbouring natural frequencies, where both respond equally."""
     from verify.exact.closed_forms import rule_frequency_hz
@@ -208,23 +189,22 @@ def rule_frequency(
 
 
 @quantity("drive.quarter_wavelength", unit="m", reads=("beam", "drive"))
-def quarter_wavelength(scene: Scene, cache: "SolutionCache", *, frequency_hz: Frequency | None = None) -> float:
+def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
     """A quarter of the bending wavelength: the distance of a force from its end of the beam."""
     from verify.exact.closed_forms import quarter_wavelength
 
-    return quarter_wavelength(scene.beam, drive_frequency(scene, frequency_hz))
+    return quarter_wavelength(scene.beam, opt.drive_frequency(scene, frequency_hz))
 
 
 @quantity("beam.buckling_load", unit="N", reads=BEAM)
 def buckling_load(
     scene: Scene,
-    cache: "SolutionCache",
-    options: ModelOptions,
+    options: opt.ModelOptions,
     *,
     model: Annotated[str, model_meta("which model", "buckling_load")],
-    count: Size | None = None,
+    count: opt.Size | None = None,
 ) -> float:
     """Compression at first buckling, whatever axial force the beam itself has."""
-    check_count(model, count)
-    settings = check_settings(model, options.settings, "buckling")
+    opt.check_count(model, count)
+    settings = opt.check_settings(model, options.settings, "buckling")
     return MODELS.named(model).buckling_load(scene.beam, count, **dict(settings))

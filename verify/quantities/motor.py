@@ -1,44 +1,41 @@
 """Quantities of a motor: a slider that may leave the beam, held at a speed, without load, from rest."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
 from verify.errors import InputError
+from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
-from verify.quantities.options import (
-    DriveOptions,
-    ForceAmplitude,
-    ModalDamping,
-    Size,
-    TimeModel,
-    check_count,
-    check_forces,
-)
 from verify.quantities.slider import SliderValues, changed_slider
+from verify.slider import Slider
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed, Reading
     from verify.motor.result import MotorRun
-    from verify.slider import Slider
 
 Periods = Annotated[int, Meta(ge=24, description="of the drive, at most, until the means converge")]
 Speed = Annotated[float, Meta(description="of the slider along +x, m/s")]
 
 
-class MotorOptions(SliderValues, frozen=True, kw_only=True):
-    """A motor on the steady beam, by default the scene's."""
+class MotorOptions(opt.DriveOptions, frozen=True, kw_only=True):
+    """Drive and model of a motor's steady beam."""
 
-    model: TimeModel = "segment"
-    count: Size | None = None
-    force: ForceAmplitude | None = None
-    modal_damping: ModalDamping | None = None
+    model: opt.TimeModel = "segment"
+    count: opt.Size | None = None
+    force: opt.ForceAmplitude | None = None
+    modal_damping: opt.ModalDamping | None = None
     steps_per_period: Annotated[int, Meta(ge=4, description="at least; more where the contact is stiff")] = 61
+
+
+class FeetOptions(SliderValues, frozen=True, kw_only=True):
+    """The slider of a motor and its feet, by default the scene's."""
+
     stiffness: Annotated[float, Meta(gt=0, description="of each foot's contact, N/m")] | None = None
     damping: Annotated[float, Meta(ge=0, description="of each foot's contact, N s/m")] | None = None
     tangential_stiffness: Annotated[float, Meta(gt=0, description="of each foot's contact, N/m")] | None = None
@@ -46,35 +43,37 @@ class MotorOptions(SliderValues, frozen=True, kw_only=True):
     points: Annotated[int, Meta(ge=1, description="of every foot")] | None = None
     foot_length: Annotated[float, Meta(gt=0, description="of every foot, m")] | None = None
 
-    def slider(self, scene: Scene) -> "Slider":
+    def of(self, scene: Scene) -> Slider:
         """The scene's slider with these values. Raises InputError where there is none, or one without contact."""
         if scene.slider is None or (contact := scene.slider.contact) is None:
             raise InputError("slider.contact is missing: add [slider] with mass, mu and [slider.contact] to the scene")
-        own = SliderValues(**{name: getattr(self, name) for name in SliderValues.__struct_fields__})
-        names = ("stiffness", "damping", "tangential_stiffness", "restitution")
-        contact = replace(contact, **{name: value for name in names if (value := getattr(self, name)) is not None})
-        shape = {"points": self.points, "length": self.foot_length}
-        shape = {name: value for name, value in shape.items() if value is not None}
-        feet = tuple(replace(foot, **shape) for foot in scene.slider.feet) if shape else scene.slider.foot
+        given = {name: value for name, value in msgspec.structs.asdict(self).items() if value is not None}
+        feet, names = scene.slider.foot, ("stiffness", "damping", "tangential_stiffness", "restitution")
+        contact = replace(contact, **{name: given.pop(name) for name in names if name in given})
+        if shape := {name: given.pop(key) for name, key in FOOT.items() if key in given}:
+            feet = tuple(replace(foot, **shape) for foot in scene.slider.feet)
         layered = contact.layer_stiffness is not None or contact.layer_tangential_stiffness is not None
         if self.foot_length is not None and (contact.hard or (not layered and any(foot.points == 1 for foot in feet))):
             remedy = "leave it out" if contact.hard else "give points as well"
             raise InputError(f"foot_length = {self.foot_length!r} of a foot with one point of contact: {remedy}")
-        return changed_slider(replace(scene.slider, contact=contact, foot=feet), own)
+        return changed_slider(replace(scene.slider, contact=contact, foot=feet), given)
 
 
-def motor_case(scene: Scene, drive: DriveOptions, motor: MotorOptions) -> "MotorCase":
+FOOT = {"points": "points", "length": "foot_length"}
+
+
+def motor_case(scene: Scene, motor: MotorOptions, feet: FeetOptions) -> "MotorCase":
     """The motor of a scene with these options. Raises InputError."""
     from verify.motor.case import MotorCase
     from verify.motor.combine import check_combines
 
-    check_count(motor.model, motor.count)
-    check_forces(scene, "a motor")
+    opt.check_count(motor.model, motor.count)
+    opt.check_forces(scene, "a motor")
     case = MotorCase(
         beam=scene.beam,
-        forces=drive.forces(scene, motor.force),
-        frequency_hz=drive.frequency(scene),
-        slider=motor.slider(scene),
+        forces=motor.forces(scene, motor.force),
+        frequency_hz=motor.frequency(scene),
+        slider=feet.of(scene),
         model=motor.model,
         count=motor.count,
         modal_damping=motor.modal_damping,
@@ -97,7 +96,7 @@ def _held(
     if not found.settled(*readings):
         missing = " and ".join(one for one in readings if one in found.unsettled)
         raise InputError(
-            f"periods = {periods!r}: at {speed:.6g} m/s {missing} has not converged (mean friction {found.force:.4g} +- "
+            f"periods = {periods!r}: at {speed:.6g} m/s {missing} has not converged (friction {found.force:.4g} +- "
             f"{found.spread:.1g} N), give more periods, slider.contact.damping or slider.preload"
         )
     return found
@@ -124,13 +123,13 @@ def _held_figure(read: "Callable[[AtSpeed], float]", readings: "tuple[Reading, .
     def held_figure(
         scene: Scene,
         cache: "SolutionCache",
-        drive: DriveOptions,
         motor: MotorOptions,
+        feet: FeetOptions,
         *,
         speed: Speed = 0.0,
         periods: Periods = 46_080,
     ) -> float:
-        return read(_held(cache, motor_case(scene, drive, motor), speed, periods, readings))
+        return read(_held(cache, motor_case(scene, motor, feet), speed, periods, readings))
 
     return held_figure
 
@@ -141,20 +140,18 @@ for _name, (_unit, _text, _read, _readings) in HELD.items():
 
 @quantity("slider.stall_force", unit="N")
 def stall_force(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, motor: MotorOptions, *, periods: Periods = 46_080
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, *, periods: Periods = 46_080
 ) -> float:
     """Mean friction force on the slider held still."""
-    return _held(cache, motor_case(scene, drive, motor), 0.0, periods, ("force",)).force
+    return _held(cache, motor_case(scene, motor, feet), 0.0, periods, ("force",)).force
 
 
 @quantity("slider.no_load_speed", unit="m/s")
-def no_load_speed(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, motor: MotorOptions, *, periods: Periods = 46_080
-) -> float:
+def no_load_speed(scene: Scene, motor: MotorOptions, feet: FeetOptions, *, periods: Periods = 46_080) -> float:
     """Speed along +x at which the mean friction force on the slider vanishes."""
     from verify.motor.figures import no_load
 
-    return no_load(motor_case(scene, drive, motor), periods=periods).speed
+    return no_load(motor_case(scene, motor, feet), periods=periods).speed
 
 
 class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
@@ -178,9 +175,9 @@ class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
             )
         return run
 
-    def case(self, scene: Scene, drive: DriveOptions, motor: MotorOptions) -> "MotorCase":
+    def case(self, scene: Scene, motor: MotorOptions, feet: FeetOptions) -> "MotorCase":
         """The motor with this external force."""
-        case = motor_case(scene, drive, motor)
+        case = motor_case(scene, motor, feet)
         return case if self.pull is None else replace(case, slider=replace(case.slider, pull=self.pull))
 
 
@@ -205,20 +202,20 @@ def _free_speed(cache: "SolutionCache", case: "MotorCase", free: FreeRun, last: 
 
 @quantity("slider.free_speed", unit="m/s")
 def free_speed(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, motor: MotorOptions, free: FreeRun, *, last: Last = 200
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, free: FreeRun, *, last: Last = 200
 ) -> float:
     """Mean speed of the free slider at the end of a run from rest."""
-    return _free_speed(cache, free.case(scene, drive, motor), free, last)[1]
+    return _free_speed(cache, free.case(scene, motor, feet), free, last)[1]
 
 
 @quantity("slider.start_time", unit="s")
 def start_time(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, motor: MotorOptions, free: FreeRun, *, last: Last = 200
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, free: FreeRun, *, last: Last = 200
 ) -> float:
     """Time from rest until the free slider has made 1 - 1/e of the change to its final speed."""
     from verify.motor.figures import started_of
 
-    run, speed, spread = _free_speed(cache, free.case(scene, drive, motor), free, last)
+    run, speed, spread = _free_speed(cache, free.case(scene, motor, feet), free, last)
     if abs(speed - float(run.speed[0])) <= spread:
         raise InputError(
             f"periods = {free.periods!r}: the speed at the start, {run.speed[0]:.6g} m/s, equals that at the end "
@@ -230,23 +227,10 @@ def start_time(
     return found
 
 
-LOSSES = {"damping_loss": "damped", "impact_loss": "impacts", "friction_loss": "rubbed", "residual": "residual"}
-"""Attributes of a motor's energy balance by the name of the term."""
-
-
-@quantity("slider.contact_energy", unit="1")
-def contact_energy(
-    scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
-    motor: MotorOptions,
-    free: FreeRun,
-    *,
-    of: Annotated[
-        Literal["damping_loss", "impact_loss", "friction_loss", "residual"],
-        Meta(description="in dashpots, in hard impacts, in friction; residual of the balance"),
-    ],
+@quantity("slider.contact_imbalance", unit="1")
+def contact_imbalance(
+    scene: Scene, cache: "SolutionCache", motor: MotorOptions, feet: FeetOptions, free: FreeRun
 ) -> float:
-    """A term of the free run's energy balance over the work of the surface."""
-    balance: Any = free.run(cache, free.case(scene, drive, motor)).ledger
-    return float(getattr(balance, LOSSES[of]) / (abs(balance.across) + abs(balance.along)))
+    """Residual of the free run's energy balance over the work of the surface."""
+    balance: Any = free.run(cache, free.case(scene, motor, feet)).ledger
+    return float(abs(balance.residual) / (abs(balance.across) + abs(balance.along)))

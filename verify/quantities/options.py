@@ -36,6 +36,7 @@ Wall = Annotated[options.Wall, Meta(description="joint at a clamped end; half: k
 Joints = Annotated[options.Joints, Meta(description="joint stiffness of Eq. (1)")]
 Attachment = Annotated[options.Attachment, Meta(description="point masses and springs on segments")]
 Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
+SoftStart = Annotated[float, Meta(ge=0, description="periods over which the forces grow; default: the scene's")]
 ForceAmplitude = Annotated[float, Meta(ge=0, description="of every force, N; default: the scene's")]
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]

@@ -11,24 +11,8 @@ from verify import options
 from verify.checks import check_sizes
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
+from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.options import (
-    DriveOptions,
-    FieldModel,
-    ForceAmplitude,
-    Frequency,
-    Mass,
-    ModalDamping,
-    Mu,
-    Preload,
-    Size,
-    Sizes,
-    Slope,
-    TimeModel,
-    check_count,
-    check_forces,
-    drive_frequency,
-)
 from verify.slider import GRAVITY, Slider, changed
 
 if TYPE_CHECKING:
@@ -40,30 +24,28 @@ SAMPLES_PER_PERIOD = 32
 """Of a motion in which waves are measured."""
 
 
-class TimeOptions(msgspec.Struct, frozen=True, kw_only=True):
-    """Time integration of the driven beam."""
+class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
+    """Drive and time integration of the driven beam."""
 
-    model: TimeModel = "segment"
-    count: Size | None = None
+    model: opt.TimeModel = "segment"
+    count: opt.Size | None = None
     time: Time | None = None
     start: Annotated[options.Start, Meta(description="default: the scene's motion.start")] | None = None
-    soft_start_periods: (
-        Annotated[float, Meta(ge=0, description="over which the forces grow; default: the scene's")] | None
-    ) = None
-    modal_damping: ModalDamping | None = None
+    soft_start_periods: opt.SoftStart | None = None
+    modal_damping: opt.ModalDamping | None = None
     modes: Annotated[int, Meta(ge=1, description="of model = analytic from rest; default 400")] | None = None
-    force: ForceAmplitude | None = None
+    force: opt.ForceAmplitude | None = None
 
 
 class SliderValues(msgspec.Struct, frozen=True, kw_only=True):
     """Values that replace those of the scene's slider."""
 
-    mu: Mu | None = None
-    slope: Slope | None = None
-    mass: Mass | None = None
+    mu: opt.Mu | None = None
+    slope: opt.Slope | None = None
+    mass: opt.Mass | None = None
     law: Annotated[options.Law, Meta(description="tanh of Eq. (3), or coulomb with sticking")] | None = None
     coupling: Annotated[options.CouplingChoice, Meta(description="of slider and beam")] | None = None
-    preload: Preload | None = None
+    preload: opt.Preload | None = None
     slider_position: Annotated[Place, Meta(description="m, at the start")] | None = None
 
 
@@ -80,7 +62,9 @@ class ChainSliderOptions(SliderValues, frozen=True, kw_only=True):
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
         scene.slider.check_stays()
-        return changed_slider(scene.slider, self)
+        given = {name: value for name, value in msgspec.structs.asdict(self).items() if value is not None}
+        given.pop("step", None)
+        return changed_slider(scene.slider, given)
 
 
 class SliderOptions(ChainSliderOptions, frozen=True, kw_only=True):
@@ -89,35 +73,33 @@ class SliderOptions(ChainSliderOptions, frozen=True, kw_only=True):
     line: Annotated[options.Line, Meta(description="contact line of a chain")] | None = None
 
 
-def changed_slider(slider: Slider, values: SliderValues) -> Slider:
-    """A slider with those values that are not None. Raises InputError."""
-    given = {name: value for name, value in msgspec.structs.asdict(values).items() if value is not None}
-    given.pop("step", None)
+def changed_slider(slider: Slider, given: dict[str, Any]) -> Slider:
+    """A slider with other values, by the names of `SliderOptions`. Raises InputError."""
     if given.get("law") == "coulomb" and "slope" in given:
         raise InputError(f"slope = {given['slope']!r} is K of law = 'tanh': law = 'coulomb' has none, leave it out")
     return changed(slider, **{name.removeprefix("slider_"): value for name, value in given.items()})
 
 
-def motion_arguments(scene: Scene, drive: DriveOptions, by: TimeOptions) -> dict[str, Any]:
+def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
-    from verify.motion.starting import soft_start
+    from verify.motion.request import soft_start
 
     motion, soft = scene.motion, by.soft_start_periods
     time = by.time if by.time is not None or motion is None else motion.duration
     if time is None:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
-    check_count(by.model, by.count)
+    opt.check_count(by.model, by.count)
     if by.modes is not None and by.count is not None:
         raise InputError(f"modes = {by.modes!r} is for model = analytic: {by.model} keeps all it has, leave it out")
-    check_forces(scene, "motion in time")
+    opt.check_forces(scene, "motion in time")
     start = by.start or (motion.start if motion else "rest")
     if soft is None:
         soft = soft_start(start, motion.soft_start_periods if motion and start == "rest" else None)
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
     return {
         "beam": scene.beam,
-        "forces": drive.forces(scene, by.force),
-        "frequency_hz": drive.frequency(scene),
+        "forces": by.forces(scene, by.force),
+        "frequency_hz": by.frequency(scene),
         "duration": time,
         "model": by.model,
         "count": by.count,
@@ -147,7 +129,6 @@ def _check_modes_used(by: TimeOptions, start: str, two_way: bool) -> None:
 def slider_run(
     scene: Scene,
     cache: "SolutionCache",
-    drive: DriveOptions,
     by: TimeOptions,
     slider: SliderOptions,
     *,
@@ -155,10 +136,10 @@ def slider_run(
     **more: Any,
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
-    from verify.motion.judged_step import KNOWN
     from verify.motion.request import STEPS_PER_PERIOD
+    from verify.motion.step_control import KNOWN
 
-    arguments = motion_arguments(scene, drive, by)
+    arguments = motion_arguments(scene, by)
     if reversed_phases:
         arguments["forces"] = tuple(replace(one, phase_deg=-one.phase_deg) for one in arguments["forces"])
     steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
@@ -181,10 +162,8 @@ def slider_run(
 
 
 def _run_figure(attribute: str) -> Callable[..., float]:
-    def run_figure(
-        scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, slider: SliderOptions
-    ) -> float:
-        return float(getattr(slider_run(scene, cache, drive, by, slider), attribute))
+    def run_figure(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
+        return float(getattr(slider_run(scene, cache, by, slider), attribute))
 
     return run_figure
 
@@ -201,12 +180,10 @@ for _name, (_unit, _text) in RUN_FIGURES.items():
 
 
 @quantity("slider.reversal", unit="1")
-def reversal(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, slider: SliderOptions
-) -> float:
+def reversal(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
     """Displacement with all phases reversed over the displacement; below 0 it reverses."""
-    there = slider_run(scene, cache, drive, by, slider).displacement
-    back = slider_run(scene, cache, drive, by, slider, reversed_phases=True).displacement
+    there = slider_run(scene, cache, by, slider).displacement
+    back = slider_run(scene, cache, by, slider, reversed_phases=True).displacement
     return back / there if there else float("nan")
 
 
@@ -214,18 +191,17 @@ def reversal(
 def order(
     scene: Scene,
     cache: "SolutionCache",
-    drive: DriveOptions,
     by: TimeOptions,
     slider: SliderOptions,
     *,
-    counts: Sizes | None = None,
+    counts: opt.Sizes | None = None,
     steps: Annotated[tuple[Annotated[float, Meta(gt=0)], ...], Meta(description="three or more, s")] | None = None,
 ) -> float:
     """Observed order of the slider's displacement in N, against the exact beam, or in the step, against a 16th."""
     from verify.judge.compare import relative_error, settled_order
 
     def displacement(by: TimeOptions, step: float | None = None) -> float:
-        return slider_run(scene, cache, drive, by, replace(slider, step=step or slider.step)).displacement
+        return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
 
     if steps is not None and counts is None:
         check_sizes("steps", steps)
@@ -247,16 +223,14 @@ def order(
 
 @quantity("slider.deflection", unit="m")
 def deflection_with_slider(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, slider: SliderOptions, *, x: Place
+    scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place
 ) -> float:
     """Deflection of the beam at x after a time, with the slider on it."""
-    return float(slider_run(scene, cache, drive, by, slider, at=(x,)).deflection[-1, 0])
+    return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
 
 
-def _energy_balance(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, slider: SliderOptions
-) -> "Ledger":
-    balance = slider_run(scene, cache, drive, by, slider, ledger=True).ledger
+def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "Ledger":
+    balance = slider_run(scene, cache, by, slider, ledger=True).ledger
     if balance is None:
         raise InputError("start = 'steady': the energy balance is of a run from rest, give start = 'rest'")
     return balance
@@ -277,7 +251,6 @@ ENERGIES = {
 def energy(
     scene: Scene,
     cache: "SolutionCache",
-    drive: DriveOptions,
     by: TimeOptions,
     slider: SliderOptions,
     *,
@@ -287,39 +260,35 @@ def energy(
     ],
 ) -> float:
     """A term of the energy balance of beam and slider from rest."""
-    return float(getattr(_energy_balance(scene, cache, drive, by, slider), ENERGIES[of]))
+    return float(getattr(_energy_balance(scene, cache, by, slider), ENERGIES[of]))
 
 
 @quantity("slider.imbalance", unit="1")
-def imbalance(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, slider: SliderOptions
-) -> float:
+def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
     """Residual of the energy balance of beam and slider over the work of the forces, from rest."""
-    balance = _energy_balance(scene, cache, drive, by, slider)
+    balance = _energy_balance(scene, cache, by, slider)
     return abs(balance.residual) / balance.work_in
 
 
 @quantity("slider.coupling_size", unit="1")
 def coupling_size(
     scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
+    drive: opt.DriveOptions,
     *,
     of: Annotated[Literal["friction", "normal"], Meta(description="full friction, or m omega^2 |G| of the inertia")],
-    model: FieldModel = "analytic",
-    count: Size | None = None,
-    mass: Mass | None = None,
+    model: opt.FieldModel = "analytic",
+    count: opt.Size | None = None,
+    mass: opt.Mass | None = None,
     slider_position: Annotated[Place, Meta(description="m, of the slider")] | None = None,
-    mu: Mu | None = None,
-    preload: Preload | None = None,
+    mu: opt.Mu | None = None,
+    preload: opt.Preload | None = None,
 ) -> float:
     """Reaction of the slider on the steady beam relative to the wave: size of the two-way coupling."""
     from verify.beam import PointForce
-    from verify.motion.contact import coupling_of, surface_speed
-    from verify.motion.turning import couple, turned_by
+    from verify.motion.contact import couple, coupling_of, surface_speed, turned_by
 
-    check_count(model, count)
-    check_forces(scene, "a slider's beam")
+    opt.check_count(model, count)
+    opt.check_forces(scene, "a slider's beam")
     friction_alone = {"mu": mu, "preload": preload, "phase_deg": drive.phase_deg, "position": drive.position}
     for name, value in friction_alone.items():
         if of == "normal" and value is not None:
@@ -341,29 +310,28 @@ def coupling_size(
 @quantity("slider.terminal_speed", unit="m/s", reads=("beam", "drive"))
 def terminal_speed(
     scene: Scene,
-    cache: "SolutionCache",
     *,
     amplitude: Annotated[float, Meta(gt=0, description="of the wave, m")],
-    slope: Slope,
-    mu: Mu,
+    slope: opt.Slope,
+    mu: opt.Mu,
     kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] = "tangential",
     gravity: Annotated[float, Meta(gt=0, description="m/s^2")] = GRAVITY,
-    frequency_hz: Frequency | None = None,
+    frequency_hz: opt.Frequency | None = None,
 ) -> float:
     """Steady mean speed along +x of a slider on a pure wave towards +x, tanh friction."""
     from verify.motion.pure_wave import terminal_speed
 
     slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics, gravity=gravity)
-    return terminal_speed(scene.beam, slider, amplitude, drive_frequency(scene, frequency_hz))
+    return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene, frequency_hz))
 
 
 MOTION = ("beam", "drive", "motion")
 
 
 @quantity("motion.deflection", unit="m", reads=MOTION)
-def deflection(scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: TimeOptions, *, x: Place) -> float:
+def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, x: Place) -> float:
     """Deflection of the driven beam at x after a time, without slider."""
-    arguments = motion_arguments(scene, drive, by)
+    arguments = motion_arguments(scene, by)
     _check_modes_used(by, arguments["start"], two_way=False)
     return float(_simulated(cache, arguments, at=(x,)).deflection[-1, 0])
 
@@ -372,7 +340,6 @@ def deflection(scene: Scene, cache: "SolutionCache", drive: DriveOptions, by: Ti
 def reflection(
     scene: Scene,
     cache: "SolutionCache",
-    drive: DriveOptions,
     by: TimeOptions,
     *,
     window: Annotated[tuple[float, float], Meta(description="m, start and end")],
@@ -386,7 +353,7 @@ def reflection(
     from verify.waves.series import measure_series
     from verify.waves.window import check_window
 
-    arguments = motion_arguments(scene, drive, by)
+    arguments = motion_arguments(scene, by)
     hertz = arguments["frequency_hz"]
     check_window(scene.beam, [force.position for force in arguments["forces"]], hertz, window)
     x = places("window", np.linspace(*window, points), scene.beam.length)

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from math import pi
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
@@ -13,26 +12,8 @@ from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.models.naming import model_meta
+from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.options import (
-    Attachment,
-    DiscreteField,
-    DriveOptions,
-    FieldModel,
-    Frequency,
-    Joints,
-    Mode,
-    Size,
-    Sizes,
-    Theory,
-    UnitModel,
-    Wall,
-    check_count,
-    check_forces,
-    check_settings,
-    drive_frequency,
-    not_default,
-)
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
@@ -46,8 +27,8 @@ Imposed = Annotated[options.DriveKind, Meta(description="what is imposed; defaul
 DRIVEN = ("beam", "drive")
 
 
-class FieldSettings(msgspec.Struct, frozen=True, kw_only=True):
-    """Losses and settings of a harmonic field."""
+class FieldSettings(opt.DriveOptions, frozen=True, kw_only=True):
+    """Drive, losses and settings of a harmonic field."""
 
     loss_factor: Loss | None = None
     drive: Imposed | None = None
@@ -55,10 +36,10 @@ class FieldSettings(msgspec.Struct, frozen=True, kw_only=True):
     joint_dashpot: Annotated[float, Meta(description="N m s at every joint; segment")] = 0.0
     load: Annotated[options.Load, Meta(description="distribution of a force over joints; segment")] = "reciprocal"
     reading: Annotated[options.Reading, Meta(description="interpolation between joints; segment")] = "corrected"
-    wall: Wall = "gregory"
-    joints: Joints = "series"
-    theory: Theory = "euler-bernoulli"
-    attachment: Attachment = "reciprocal"
+    wall: opt.Wall = "gregory"
+    joints: opt.Joints = "series"
+    theory: opt.Theory = "euler-bernoulli"
+    attachment: opt.Attachment = "reciprocal"
 
     def check_loss_factor_alone(self, what: str) -> None:
         """Raise InputError for another damping, where `what` takes a loss factor alone."""
@@ -70,55 +51,54 @@ class FieldSettings(msgspec.Struct, frozen=True, kw_only=True):
 class FieldOptions(FieldSettings, frozen=True, kw_only=True):
     """A model of the driven beam with its losses and settings."""
 
-    model: FieldModel = "analytic"
-    count: Size | None = None
+    model: opt.FieldModel = "analytic"
+    count: opt.Size | None = None
 
 
-class UnitOptions(msgspec.Struct, frozen=True, kw_only=True):
+class UnitOptions(opt.DriveOptions, frozen=True, kw_only=True):
     """A model of the driven beam whose field is a superposition of unit drives."""
 
-    model: UnitModel = "analytic"
-    count: Size | None = None
+    model: opt.UnitModel = "analytic"
+    count: opt.Size | None = None
     loss_factor: Loss | None = None
     drive: Imposed | None = None
-    theory: Theory = "euler-bernoulli"
+    theory: opt.Theory = "euler-bernoulli"
 
 
 def driven_case(
-    scene: Scene, drive: DriveOptions, options: FieldSettings | UnitOptions, model: str = "", count: int | None = None
+    scene: Scene, options: FieldSettings | UnitOptions, model: str = "", count: int | None = None
 ) -> "DrivenCase":
     """The driven beam of a scene with these options, by their model unless given. Raises InputError."""
     from verify.waves.case import DrivenCase
 
     if isinstance(options, FieldOptions | UnitOptions):
         model, count = options.model, options.count
-    check_count(model, count)
-    settings = check_settings(model, not_default(options, without=("loss_factor", "drive", "model", "count")), "field")
+    opt.check_count(model, count)
+    of_case = (*opt.DriveOptions.__struct_fields__, "loss_factor", "drive", "model", "count")
+    settings = opt.check_settings(model, opt.not_default(options, without=of_case), "field")
     loss = options.loss_factor
     return DrivenCase(
         beam=scene.beam if loss is None else replace(scene.beam, loss_factor=loss),
         model=model,
         count=count,
-        forces=drive.forces(scene),
-        frequency_hz=drive.frequency(scene),
+        forces=options.forces(scene),
+        frequency_hz=options.frequency(scene),
         kind=options.drive or (scene.drive.kind if scene.drive else "force"),
         settings=settings,
         devices=tuple(scene.devices),
     )
 
 
-def driven_field(scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: FieldOptions) -> "HarmonicField":
+def driven_field(scene: Scene, cache: "SolutionCache", options: FieldOptions) -> "HarmonicField":
     """The steady field of a scene with these options. Raises InputError."""
     from verify.waves.driven import driven
 
-    return driven(driven_case(scene, drive, options), cache)
+    return driven(driven_case(scene, options), cache)
 
 
 def _at_place(read: "Callable[[HarmonicField, float], Any]") -> Callable[..., complex]:
-    def at_place(
-        scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: FieldOptions, *, x: Place
-    ) -> complex:
-        return complex(read(driven_field(scene, cache, drive, options), x)[0])
+    def at_place(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x: Place) -> complex:
+        return complex(read(driven_field(scene, cache, options), x)[0])
 
     return at_place
 
@@ -132,17 +112,10 @@ for _name, _unit, _text, _read in (
 
 
 def _measure(figure: str) -> Callable[..., float]:
-    def measure(
-        scene: Scene,
-        cache: "SolutionCache",
-        drive: DriveOptions,
-        options: FieldOptions,
-        *,
-        window: Window | None = None,
-    ) -> float:
+    def measure(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None) -> float:
         from verify.waves.driven import measured_alone
 
-        return float(measured_alone(driven_field(scene, cache, drive, options), window, figure))
+        return float(measured_alone(driven_field(scene, cache, options), window, figure))
 
     return measure
 
@@ -165,13 +138,7 @@ for _name, (_unit, _text) in MEASURES.items():
 
 @quantity("wave.axis_ratio", unit="1", reads=DRIVEN, devices=True)
 def axis_ratio(
-    scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
-    options: FieldOptions,
-    *,
-    x: Place | None = None,
-    window: Window | None = None,
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x: Place | None = None, window: Window | None = None
 ) -> float:
     """Signed axis ratio of the surface ellipse at x, or its mean over whole half wavelengths; below 0 towards +x."""
     from verify.waves.driven import measured_alone
@@ -179,7 +146,7 @@ def axis_ratio(
 
     if x is not None and window is not None:
         raise InputError(f"window = {list(window)} with x = {x!r}: give one of the two")
-    field = driven_field(scene, cache, drive, options)
+    field = driven_field(scene, cache, options)
     if x is None:
         return float(measured_alone(field, window, "mean_axis_ratio"))
     return float(ellipse(surface_motion(field.beam, field.turn(x), x=x), field.deflection(x))[0][0])
@@ -187,7 +154,7 @@ def axis_ratio(
 
 @quantity("wave.power_imbalance", unit="1", reads=DRIVEN, devices=True)
 def power_imbalance(
-    scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: FieldOptions, *, window: Window | None = None
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
 ) -> float:
     """Power of the left force less losses up to the window's middle less flux there, over that flux."""
     from verify.waves.driven import measures, power_imbalance
@@ -195,7 +162,7 @@ def power_imbalance(
     options.check_loss_factor_alone("a power balance")
     if any(device.turning for device in scene.devices):
         raise InputError("drive.device: a power balance takes transverse devices alone, leave its rotational terms out")
-    field = driven_field(scene, cache, drive, options)
+    field = driven_field(scene, cache, options)
     return power_imbalance(field, measures(field, window))
 
 
@@ -203,7 +170,6 @@ def power_imbalance(
 def best_frequency(
     scene: Scene,
     cache: "SolutionCache",
-    drive: DriveOptions,
     options: FieldOptions,
     *,
     window: Window | None = None,
@@ -212,18 +178,17 @@ def best_frequency(
     """Frequency of least reflection near the drive's."""
     from verify.waves.driven import best_frequency
 
-    return best_frequency(driven_case(scene, drive, options), span, window, cache)
+    return best_frequency(driven_case(scene, options), span, window, cache)
 
 
 @quantity("wave.order", unit="1", reads=DRIVEN, devices=True)
 def order(
     scene: Scene,
     cache: "SolutionCache",
-    drive: DriveOptions,
     options: FieldSettings,
     *,
-    model: DiscreteField,
-    counts: Sizes,
+    model: opt.DiscreteField,
+    counts: opt.Sizes,
     of: Annotated[
         Literal["standing_wave_ratio", "axis_ratio", "deflection"],
         Meta(description="whose error; deflection at the middle of the window"),
@@ -235,16 +200,15 @@ def order(
 
     check_sizes("counts", counts)
     options.check_loss_factor_alone("the exact beam")
-    return wave_order(driven_case(scene, drive, options, model, counts[0]), counts, window, of, cache)
+    return wave_order(driven_case(scene, options, model, counts[0]), counts, window, of, cache)
 
 
 @quantity("wave.lumped_swr", unit="1", reads=("beam",), devices=True)
 def lumped_swr(
     scene: Scene,
-    cache: "SolutionCache",
     *,
     x: Place,
-    modes: Annotated[tuple[Mode, Mode], Meta(description="mode numbers of the two")] = (21, 22),
+    modes: Annotated[tuple[opt.Mode, opt.Mode], Meta(description="mode numbers of the two")] = (21, 22),
     ratio: Annotated[float, Meta(gt=0, description="amplitude of the second over the first, mass-normalised")] = 1.0,
     phase_deg: Annotated[float, Meta(description="lead of the second")] = 90.0,
 ) -> float:
@@ -257,29 +221,28 @@ def lumped_swr(
 @quantity("wave.receptance", unit="m/N", reads=DRIVEN)
 def receptance(
     scene: Scene,
-    cache: "SolutionCache",
     *,
-    model: UnitModel = "analytic",
-    count: Size | None = None,
+    model: opt.UnitModel = "analytic",
+    count: opt.Size | None = None,
     position: Annotated[Place, Meta(description="m, of the force")],
     x: Place,
-    frequency_hz: Frequency | None = None,
+    frequency_hz: opt.Frequency | None = None,
     loss_factor: Loss | None = None,
-    theory: Theory = "euler-bernoulli",
+    theory: opt.Theory = "euler-bernoulli",
 ) -> complex:
     """Deflection at x under a unit force at `position`."""
     from verify.waves.unit_waves import receptance
 
-    check_count(model, count)
+    opt.check_count(model, count)
     beam = scene.beam if loss_factor is None else replace(scene.beam, loss_factor=loss_factor)
-    return receptance(model, beam, position, drive_frequency(scene, frequency_hz), x, count, theory)
+    return receptance(model, beam, position, opt.drive_frequency(scene, frequency_hz), x, count, theory)
 
 
 def _sensitivity(attribute: str) -> Callable[..., float]:
-    def sensitivity(scene: Scene, cache: "SolutionCache", drive: DriveOptions, options: UnitOptions) -> float:
+    def sensitivity(scene: Scene, options: UnitOptions) -> float:
         from verify.waves.operating_point import driven_point
 
-        return float(getattr(driven_point(driven_case(scene, drive, options)), attribute))
+        return float(getattr(driven_point(driven_case(scene, options)), attribute))
 
     return sensitivity
 
@@ -294,8 +257,6 @@ for _name, _unit, _text in (
 @quantity("wave.fastest_crests", unit="m/s", reads=DRIVEN)
 def fastest_crests(
     scene: Scene,
-    cache: "SolutionCache",
-    drive: DriveOptions,
     options: UnitOptions,
     *,
     limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1,
@@ -303,7 +264,7 @@ def fastest_crests(
     """Largest crest speed with a reflection up to `limit`, within 1.5 % of the frequency and phases of 5 to 175 deg."""
     from verify.waves.operating_point import fastest_point
 
-    return fastest_point(driven_case(scene, drive, options), limit).crest_speed
+    return fastest_point(driven_case(scene, options), limit).crest_speed
 
 
 FromRightEnd = Annotated[float, Meta(ge=0, description="m from the right end")]
@@ -318,20 +279,17 @@ def _ending(scene: Scene, position: float, frequency_hz: float, turning: bool = 
 
 
 @quantity("wave.absorber_impedance", unit="kg/s", reads=DRIVEN, devices=True)
-def absorber_impedance(
-    scene: Scene, cache: "SolutionCache", *, position: FromRightEnd, frequency_hz: Frequency | None = None
-) -> complex:
+def absorber_impedance(scene: Scene, *, position: FromRightEnd, frequency_hz: opt.Frequency | None = None) -> complex:
     """Impedance, force over velocity, of a transverse device near the right end that reflects nothing."""
-    return _ending(scene, position, drive_frequency(scene, frequency_hz)).matched
+    return _ending(scene, position, opt.drive_frequency(scene, frequency_hz)).matched
 
 
 @quantity("wave.absorber_reflection", unit="1", reads=DRIVEN, devices=True)
 def absorber_reflection(
     scene: Scene,
-    cache: "SolutionCache",
     *,
     position: FromRightEnd,
-    frequency_hz: Frequency | None = None,
+    frequency_hz: opt.Frequency | None = None,
     turning: Annotated[bool, Meta(description="rotational device, else transverse")] = False,
     ratio: Annotated[float, Meta(ge=0, description="resistance over the matched one, spring matched")] | None = None,
     resistance: Annotated[float, Meta(ge=0, description="of the dashpot, kg/s; rotational N m s")] | None = None,
@@ -340,14 +298,14 @@ def absorber_reflection(
     model: (
         Annotated[str, model_meta("of the whole beam; default: a half-infinite beam", "solve_harmonic")] | None
     ) = None,
-    count: Size | None = None,
+    count: opt.Size | None = None,
     alone: Annotated[bool, Meta(description="with model: without the scene's other devices")] = False,
 ) -> float:
     """Gamma behind an absorbing device: of a half-infinite beam, or of a model's whole beam in its middle half."""
     from verify.waves.absorber import reflection
 
     if model is not None:
-        check_count(model, count)
+        opt.check_count(model, count)
     elif count is not None or alone:
         given = "alone = True" if count is None else f"count = {count!r}"
         raise InputError(f"{given}: a half-infinite beam has no such option, give model as well")
@@ -356,7 +314,7 @@ def absorber_reflection(
     for name, value in (("stiffness", stiffness), ("mass", mass)):
         if ratio is not None and value is not None:
             raise InputError(f"{name} = {value!r}: with ratio spring and mass are the matched ones, leave it out")
-    hertz = drive_frequency(scene, frequency_hz)
+    hertz = opt.drive_frequency(scene, frequency_hz)
     end, omega = _ending(scene, position, hertz, turning), 2.0 * pi * hertz
     if ratio is not None:
         impedance = complex(ratio * end.matched.real, end.matched.imag)
@@ -375,7 +333,7 @@ def _reflection_on_beam(
     from verify.waves.devices import field_with_devices
     from verify.waves.driven import measured_alone
 
-    check_forces(scene, "an absorbing device")
+    opt.check_forces(scene, "an absorbing device")
     tolerance = 1e-9 * scene.beam.length
     forces = [force for force in scene.forces if abs(force.position - x) > tolerance]
     devices = [one for one in scene.devices if not alone and abs(one.position - x) > tolerance]

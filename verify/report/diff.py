@@ -7,6 +7,7 @@ from verify.errors import InputError
 from verify.report.result import Column, Result, Table
 from verify.report.summary import VERDICTS
 
+ARROW = "→"
 Run = Mapping[str, Any]
 """Data of a run (`report.summary.run_data`)."""
 
@@ -29,10 +30,9 @@ def compare_runs(before: Mapping[str, Run], after: Mapping[str, Run]) -> Result:
     gates = [(name, *row) for name, old, new in pairs for row in _gates(old["gates"], new["gates"])]
     inputs = [(name, *row) for name, old, new in pairs for row in _changed(old["inputs"], new["inputs"])]
     versions = [(name, *row) for name, old, new in pairs for row in _changed(_versions(old), _versions(new))]
-    broken = [f"{row[0]}: {row[1]}" for row in gates if row[2] == VERDICTS[True] and row[3] != VERDICTS[True]]
+    broken = [f"{row[0]}: {row[1]}" for row in gates if row[2].startswith(f"{VERDICTS[True]} {ARROW}")]
     keys = ("report", "key", "before", "after")
-    columns = [Column(name) for name in ("report", "gate", "verdict before", "verdict after")]
-    columns += [Column(name) for name in ("expected before", "expected after")]
+    columns = [Column(name) for name in ("report", "gate", "verdict", "expected")]
     columns += [Column("before", format=".10g"), Column("after", format=".10g")]
     tables = [
         Table("Gates that changed", [*columns, Column("change", percent=True, format="+.3g")], gates),
@@ -58,7 +58,12 @@ def _gates(before: list[Any], after: list[Any]) -> Iterator[tuple[Any, ...]]:
             real = isinstance(a, float | int) and isinstance(b, float | int) and a
             values = [_text(value) for value in (a, b)] if not real else [a, b]
             verdicts = [VERDICTS.get(gate["passed"], "missing") for gate in (one, other)]
-            yield name, *verdicts, one["expected"], other["expected"], *values, (b - a) / abs(a) if real else None
+            criteria = _turn(one["expected"] or "", other["expected"] or "")
+            yield name, _turn(*verdicts), criteria, *values, (b - a) / abs(a) if real else None
+
+
+def _turn(before: str, after: str) -> str:
+    return before if before == after else f"{before} {ARROW} {after}"
 
 
 def _text(value: Any) -> Any:

@@ -33,7 +33,7 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
 
 def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
     """The same of a scene that cannot run."""
-    return {"scene": name, "title": name, "passed": None, "verdict": CANNOT, "failed": [], "worst": None} | {
+    return {"scene": name, "title": name, "passed": None, "verdict": None, "failed": [], "worst": None} | {
         "fraction": None,
         "seconds": None,
         "page": None,

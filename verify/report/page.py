@@ -82,8 +82,8 @@ def run_page(run: "RunResult", command: str = "") -> str:
 def _study_section(run: "RunResult", name: str, result: Result) -> Section:
     study = run.scene.studies.get(name)
     title = getattr(study, "title", "") or name.replace("_", " ").capitalize()
-    figures = [replace(figure, id=f"{name}-{figure.id}") for figure in result.figures]
-    movies = [replace(movie, id=f"{name}-{movie.id}") for movie in result.movies]
+    figures = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.figures]
+    movies = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.movies]
     summary = [result.summary] if result.summary else []
     return Section(name, title, summary, result.warnings, figures, movies, result.tables)
 
@@ -147,7 +147,7 @@ def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:
     kinds = ["n" if not words[i] else "long" if widths[i] > WIDE else "short" if widths[i] < NARROW else "" for i in n]
 
     def cell(i: int, value: Any, text: str) -> dict[str, Any]:
-        kind = {"pass": "pass", "FAIL": "fail"}.get(text, kinds[i])
+        kind = {"pass": "pass", "FAIL": "fail", "cannot run": "fail"}.get(text, kinds[i])
         bar = float(value) if table.columns[i].name == "of tolerance" and value is not None else None
         return {"text": text, "kind": kind, "heading": headings[i], "bar": bar, "link": links.get(text)}
 

@@ -96,6 +96,7 @@ def figure_svg(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> st
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, count=1, flags=re.DOTALL)
+    svg = re.sub(r'<g id="[^"]*"', "<g", svg)
     svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{figure.id}-", svg)
     svg = re.sub(r"'DejaVu Sans'[^;\"]*", "'DejaVu Sans', Verdana, sans-serif", svg)
     for colour, variable in VARIABLES.items():
@@ -161,7 +162,7 @@ def _points(ax: Any) -> Iterator[Sequence[Any]]:
             yield from ((series(one), float(x), float(y), "") for x, y in one.get_offsets())
 
 
-def movie_frames(movie: "Movie", dpi: float = 100.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:
+def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:
     """The movie's pictures (pillow, RGBA) and the milliseconds that each is shown."""
     from matplotlib.animation import AbstractMovieWriter
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -184,7 +185,7 @@ def movie_frames(movie: "Movie", dpi: float = 100.0, ink: str = EVEN, paper: str
 
     with style(ink):
         canvas: Any = FigureCanvasAgg(
-            MatplotlibFigure(figsize=(5.4, 3.2), dpi=dpi, layout="constrained", facecolor=paper)
+            MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper)
         )
         animation: Any = movie.animate(canvas.figure)
         interval = float(animation.event_source.interval)

@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from verify.units import unit_over
 
@@ -106,8 +106,11 @@ class Table:
             blocks[-1].append(i)
         for block in blocks:
             grid = RichTable(title=self.title or None, title_justify="left", box=None, pad_edge=False)
+            tight = sum(max(len(headings[i]), widths[i]) + 2 for i in block) > console.width + 2
             for i in block:
-                grid.add_column(headings[i], justify="left" if words[i] else "right", no_wrap=not words[i])
+                side: Literal["left", "right"] = "left" if words[i] else "right"
+                width = least[i] - 2 if tight and not words[i] else None  # rich shrinks numbers before text
+                grid.add_column(headings[i], justify=side, width=width, overflow="fold")
             for row in rows:
                 grid.add_row(*(row[i] for i in block))
             console.print(grid)

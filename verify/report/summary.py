@@ -1,6 +1,7 @@
 """What a run says in short: its verdict, its gates as a table, and everything as plain data."""
 
 from datetime import UTC, datetime
+from math import ceil, log10
 from typing import TYPE_CHECKING, Any
 
 from verify.report.result import MISSING, Column, Table, plain
@@ -27,11 +28,13 @@ def worst_gate(run: "RunResult") -> "GateResult | None":
 
 
 def expected(gate: Any) -> str:
-    """The acceptance criterion of a gate: '4469.9 ± 0.5', 'at least 0.9', 'contains 22.3'."""
+    """The acceptance criterion of a gate in the digits that its tolerance needs: '4469.9 ± 0.5', 'at least 0.9'."""
     if gate.expect is not None:
         if gate.within is None:
             return f"contains {value_text(gate.expect, '.9g')}"
-        return f"{value_text(gate.expect, '.9g')} ± {gate.within:g}"
+        size = abs(complex(gate.expect.re, gate.expect.im)) if hasattr(gate.expect, "re") else abs(gate.expect)
+        digits = max(ceil(log10(size / gate.within)), 1) + 2 if size else 3
+        return f"{value_text(gate.expect, f'.{digits}g')} ± {gate.within:g}"
     sides = (("at least", gate.at_least), ("at most", gate.at_most))
     return ", ".join(f"{side} {limit:g}" for side, limit in sides if limit is not None)
 

@@ -1,9 +1,9 @@
-"""A run in the terminal: verdict, gates, results of studies, parts that were not run."""
+"""A run in the terminal: verdict, gates, results of studies, gates that were skipped."""
 
 from typing import TYPE_CHECKING
 
 from verify.report.result import MISSING, Column, Table
-from verify.report.summary import VERDICTS, expected, skipped_table, value_text, verdict, worst_gate
+from verify.report.summary import VERDICTS, expected, value_text, verdict, worst_gate
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,10 +27,9 @@ def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None
     if run.gates:
         console.print()
         gates_in_short(run).print(console)
-    if run.skipped:
-        console.print()
-        skipped_table(run).print(console)
     console.print()
+    for one in (gate for gate in run.gates if gate.passed is None):
+        console.print(f"skipped {one.gate.id}: {one.reason}", style="dim")
     for warning in getattr(run, "warnings", ()):
         console.print(f"warning: {warning}", style="yellow")
     for one in run.failed:

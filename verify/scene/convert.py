@@ -14,7 +14,6 @@ from verify.errors import InputError, near_name, raise_all, shown
 T = TypeVar("T")
 
 LONGEST_RANGE = 10_000
-_RANGE = re.compile(r"\s*(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?\s*")
 _WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/*^]")
 _PLAIN = {
     "int": "a whole number",
@@ -89,7 +88,7 @@ def _remedy(message: str, value: Any, kind: Any) -> str:
         return "give one number, with a point before its decimals"
     if expects_number and isinstance(value, str) and _WITH_UNIT.match(value):
         return "give a number alone, in SI units: 0.08 for 80 mm"
-    text = message.split(", got ")[0].split(" - at ")[0].replace("Expected", "give").replace(" | null", "")
+    text = message.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", "")
     return re.sub(r"`(\w[\w |]*)`", lambda m: " or ".join(_PLAIN.get(w, w) for w in m[1].split(" | ")), text)
 
 
@@ -124,21 +123,17 @@ def literal(text: str, field: str) -> Any:
     """A TOML literal; a bare word is a string, values with commas between them are a list. Raises InputError."""
     import tomllib
 
+    if any("\ud800" <= character <= "\udfff" for character in text):
+        raise InputError(f"{field} = {shown(text)} is not text in UTF-8: type it again")
+    number = re.fullmatch(r"[+-]?(\d+\.|\.\d+)([eE][+-]?\d+)?", text)  # no TOML, but often typed
     try:
-        text.encode()
-        value = tomllib.loads(f"value = {text}")["value"]
-    except UnicodeEncodeError:
-        raise InputError(f"{field} = {shown(text)} is not text in UTF-8: type it again") from None
+        value = float(text) if number else tomllib.loads(f"value = {text}")["value"]
     except (ValueError, KeyError, RecursionError):
-        try:
-            value = float(text) if re.fullmatch(r"[+-]?[\d.]+([eE][+-]?\d+)?", text) else None
-        except ValueError:
-            value = None
-        if value is None and "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
-            value = [literal(part.strip(), field) for part in text.split(",") if part.strip()]
+        lists = "," in text and not text.lstrip().startswith(("[", "{", '"', "'"))
+        return [literal(part.strip(), field) for part in text.split(",") if part.strip()] if lists else text
     if isinstance(value, float) and not isfinite(value):
         raise InputError(f"{field} = {text}: give a finite number")
-    return text if value is None else value
+    return value
 
 
 def typed(text: str, kind: Any, field: str) -> Any:
@@ -150,7 +145,7 @@ def typed(text: str, kind: Any, field: str) -> Any:
     entry = entry_of(kind)
     if entry is not None and int in arms_of(entry):
         parts = value if isinstance(value, list) else [value]
-        return [one for part in parts for one in _range(part, field)]
+        return [one for part in parts for one in _spelt_out(part, field)]
     relative = any((meta.extra or {}).get(RELATIVE) for meta in metas_of(kind))
     if relative and isinstance(value, str) and value.endswith("%"):
         number = literal(value[:-1].strip(), field)
@@ -158,10 +153,9 @@ def typed(text: str, kind: Any, field: str) -> Any:
     return value
 
 
-def _range(part: Any, field: str) -> list[Any]:
+def _spelt_out(part: Any, field: str) -> list[Any]:
     """'10-50:10' as whole numbers, anything else as its only entry."""
-    found = _RANGE.fullmatch(part) if isinstance(part, str) else None
-    if found is None:
+    if (found := re.fullmatch(r"\s*(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?\s*", str(part))) is None:
         return [part]
     start, end, step = int(found[1]), int(found[2]), int(found[3] or 1)
     if end < start or step == 0 or (end - start) // step >= LONGEST_RANGE:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.scene.model import Complex, Gate, Scene, limits_as_text
+from verify.scene.model import Complex, Gate, Scene
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
@@ -38,7 +38,7 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
         """The band as text: '0.00428 ± 5e-09', 'at most 0.01', 'contains 4469.94'."""
         gate = self.gate
         if gate.expect is None:
-            return limits_as_text(gate.at_least, gate.at_most)
+            return gate.limits
         complex_ = isinstance(gate.expect, Complex)
         value = f"{gate.expect.re!r} {gate.expect.im:+}i" if complex_ else repr(gate.expect)  # type: ignore[union-attr]
         return f"contains {value}" if gate.within is None else f"{value} ± {gate.within:g}"
@@ -75,26 +75,24 @@ def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
     """(reason for failing or '', fraction of the tolerance)."""
     from verify.judge.bracket import Bracket
 
-    if isinstance(value, Bracket):
-        if not isinstance(gate.expect, float) or gate.within is not None:
-            return "a bracket needs expect alone, the value that it has to contain", None
+    kinds = {Bracket: "a bracket needs expect alone", complex: "a complex value needs expect = { re, im } with within"}
+    remedy = kinds.get(type(value), "a real value needs expect with within, or at_least, at_most")
+    outside, fraction = f"{value!r}: {remedy}", None
+    if isinstance(value, Bracket) and isinstance(gate.expect, float) and gate.within is None:
         fraction = _fraction(gate.expect, value.lower, value.upper)
         inside = value.lower < gate.expect < value.upper
-        return "" if inside else f"{value.lower!r} to {value.upper!r} does not contain {gate.expect!r}", fraction
-    if isinstance(gate.expect, Complex) != isinstance(value, complex):
-        return f"{value!r}: expect = {{ re, im }} belongs to a complex quantity, a number to a real one", None
-    if gate.expect is not None and gate.within is None:
-        return f"{value!r}: a number needs within beside expect", None
-    if isinstance(gate.expect, Complex):
-        distance = hypot(value.real - gate.expect.re, value.imag - gate.expect.im) / (gate.within or inf)
-        return "" if distance <= 1.0 else f"{value!r} lies outside the disc", distance
-    if not isfinite(value):
-        return f"{value!r} is not finite", None
-    low, high = band(gate)
-    if low <= value <= high:
-        return "", _fraction(value, low, high)
-    side, edge = ("below", low) if value < low else ("above", high)
-    return f"{value!r} lies {side} {edge!r}", _fraction(value, low, high)
+        outside = "" if inside else f"{value.lower!r} to {value.upper!r} does not contain {gate.expect!r}"
+    elif isinstance(value, complex) and isinstance(gate.expect, Complex) and gate.within is not None:
+        fraction = hypot(value.real - gate.expect.re, value.imag - gate.expect.im) / gate.within
+        outside = "" if fraction <= 1.0 else f"{value!r} lies outside the disc"
+    elif isinstance(value, float | int) and not isfinite(value):
+        outside = f"{value!r} is not finite"
+    elif isinstance(value, float | int) and isinstance(gate.expect, float) == (gate.within is not None):
+        low, high = band(gate)
+        fraction = _fraction(value, low, high)
+        side = f"below {low!r}" if value < low else f"above {high!r}"
+        outside = "" if low <= value <= high else f"{value!r} lies {side}"
+    return outside, fraction
 
 
 def _fraction(value: float, low: float, high: float) -> float | None:

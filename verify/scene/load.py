@@ -149,7 +149,7 @@ def _type_at(key: str) -> Any:
     from verify.studies.base import STUDIES
 
     first, *steps = key.split(".")
-    kind: Any = Scene if first in _OWN else STUDIES[first] if first in STUDIES else None
+    kind: Any = Scene if first in _OWN else STUDIES.get(first)
     for step in [first, *steps] if kind is Scene else steps:
         if (entry := entry_of(kind)) is not None:
             kind = entry  # the step is an id or a number

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from math import inf
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
@@ -13,8 +13,6 @@ from verify.device import Device, check_moved
 from verify.errors import InputError, raise_all
 from verify.options import DriveKind, Reference
 from verify.slider import Slider
-
-Id: TypeAlias = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
 
 
 class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -31,13 +29,7 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
     def on(self, beam: Beam) -> PointForce:
         """The force in the beam's coordinate. Raises InputError for a position off the beam."""
-        check_number("drive.force.position", self.position, "metres")
-        if not 0 <= self.position <= beam.length:
-            raise InputError(
-                f"drive.force.position = {self.position!r} lies off the beam: "
-                f"give a position between 0 and {beam.length!r} m"
-            )
-        x = self.position if self.measured_from == "left" else beam.length - self.position
+        x = _from_left("drive.force.position", self.position, self.measured_from, beam)
         return PointForce(position=x, amplitude=self.amplitude, phase_deg=self.phase_deg)
 
 
@@ -50,16 +42,18 @@ class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True)
     def on(self, beam: Beam) -> Device:
         """The device in the beam's coordinate. Raises InputError off the beam or on a support."""
         own = {name: getattr(self, name) for name in Device.__struct_fields__}
-        if not self.position <= beam.length:
-            raise InputError(
-                f"drive.device.position = {self.position!r} lies off the beam: "
-                f"give a position between 0 and {beam.length!r} m"
-            )
-        if self.measured_from == "right":
-            own["position"] = beam.length - self.position
+        own["position"] = _from_left("drive.device.position", self.position, self.measured_from, beam)
         device = Device(**own)
         device.check_on(beam)
         return device
+
+
+def _from_left(field: str, position: float, side: str, beam: Beam) -> float:
+    """Distance from the left end of a position measured from one end. Raises InputError off the beam."""
+    check_number(field, position, "metres")
+    if not 0 <= position <= beam.length:
+        raise InputError(f"{field} = {position!r} lies off the beam: give a position between 0 and {beam.length!r} m")
+    return position if side == "left" else beam.length - position
 
 
 class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -93,7 +87,38 @@ class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         check_number("expect.im", self.im, "in the quantity's unit")
 
 
-class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What gates and claims share: a quantity of interest and limits of its value."""
+
+    id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+    """Letters, digits, _ and -; the name in `--set gate.ID.within=...` and in pytest."""
+    quantity: str
+    """Name of the quantity, see `verify quantities`."""
+    arguments: dict[str, Any] = {}
+    """Arguments of the quantity by name."""
+    at_least: float | None = None
+    """Lower limit."""
+    at_most: float | None = None
+    """Upper limit."""
+
+    def check(self, field: str, *numbers: str, other: object) -> None:
+        """Raise InputError for numbers that are not finite, limits in the wrong order, and limits beside `other`."""
+        for name in (*numbers, "at_least", "at_most"):
+            if isinstance(value := getattr(self, name), float | int):
+                check_number(f"{field}.{name}", value, "in the quantity's unit")
+        if self.at_least is not None and self.at_most is not None and self.at_least > self.at_most:
+            raise InputError(f"{field}.at_least = {self.at_least!r} is above at_most = {self.at_most!r}: exchange them")
+        if (other is None) == (self.limits == ""):
+            raise InputError(f"{field}.{numbers[0]}: give {numbers[0]} with {numbers[1]}, or at_least, at_most")
+
+    @property
+    def limits(self) -> str:
+        """'at least 0.02, at most 0.03'."""
+        given = (("at least", self.at_least), ("at most", self.at_most))
+        return ", ".join(f"{side} {value:g}" for side, value in given if value is not None)
+
+
+class Gate(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An acceptance criterion: a quantity and the band in which its value has to lie.
 
     `expect` with `within` is a two-sided band, for a complex `expect = { re, im }` a disc; `at_least` and `at_most`
@@ -101,73 +126,44 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     InputError where the band is none of these.
     """
 
-    id: Id
-    """Letters, digits, _ and -; the name in `--set gate.ID.within=...` and in pytest."""
-    quantity: str
-    """Name of the quantity, see `verify quantities`."""
-    arguments: dict[str, Any] = {}
-    """Arguments of the quantity by name."""
     expect: float | Complex | None = None
     """Expected value, in the quantity's unit; { re, im } for a complex one."""
     within: float | None = None
     """Half the width of the band, or the radius of the disc, in the quantity's unit."""
-    at_least: float | None = None
-    """Lower limit."""
-    at_most: float | None = None
-    """Upper limit."""
     reference: Reference | None = None
     """Kind of the reference for the expected value."""
     why: Annotated[str, Meta(min_length=1)]
     """Source of the expected value: equation, publication or derivation, and its accuracy where it matters."""
 
     def __post_init__(self) -> None:
-        _check_limits(f"gate.{self.id}", self)
         if self.within is not None and (self.expect is None or self.within <= 0):
             raise InputError(f"gate.{self.id}.within = {self.within!r}: give it above 0 and together with expect")
-        bounded = self.at_least is not None or self.at_most is not None
-        if bounded == (self.expect is not None):
-            raise InputError(f"gate.{self.id}.expect: give expect with within, or at_least, at_most")
+        self.check(f"gate.{self.id}", "expect", "within", other=self.expect)
 
 
-Sign = Literal["negative", "positive"]
-
-
-class Claim(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Claim(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A published statement as a quantity of this package. It is compared with the computed value and is no gate.
 
-    `value` is a number with a `tolerance`, or a sign; `at_least` and `at_most` bound one side each. Raises InputError
-    where it is none of these.
+    `value` is a number with a `tolerance`, or a sign; `at_least` and `at_most` bound one side each. A quantity of the
+    slider without arguments is computed on the scene's own run. Raises InputError where it is none of these.
     """
 
-    id: Id
-    """Letters, digits, _ and -."""
     source: Annotated[str, Meta(min_length=1)]
     """Author, place and wording of the statement."""
-    quantity: str
-    """Name of the quantity, see `verify quantities`."""
-    arguments: dict[str, Any] = {}
-    """Arguments of the quantity by name. A quantity of the slider without any is computed on the scene's own run."""
-    value: float | Sign | None = None
+    value: float | Literal["negative", "positive"] | None = None
     """Published number, or its sign."""
     tolerance: float | None = None
     """Half the last printed digit, or the reading error of a figure."""
-    at_least: float | None = None
-    """Lower limit."""
-    at_most: float | None = None
-    """Upper limit."""
     read: Literal["stated", "figure", "follows"]
     """Whether the source states it, shows it in a figure, or implies it."""
 
     def __post_init__(self) -> None:
-        _check_limits(f"claim.{self.id}", self)
         if (self.number is None) != (self.tolerance is None) or (self.tolerance is not None and self.tolerance <= 0):
             raise InputError(
                 f"claim.{self.id}.tolerance = {self.tolerance!r}: give one above 0 with a number as value, none with a "
                 "sign or a limit"
             )
-        bounded = self.at_least is not None or self.at_most is not None
-        if bounded == (self.value is not None):
-            raise InputError(f"claim.{self.id}.value: give value, or at_least, at_most")
+        self.check(f"claim.{self.id}", "value", "tolerance", other=self.value)
 
     @property
     def number(self) -> float | None:
@@ -177,9 +173,7 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     @property
     def expected(self) -> str:
         """'-0.015 ± 0.0005', 'negative', 'at least 0.02, at most 0.03'."""
-        if self.value is not None:
-            return self.value if isinstance(self.value, str) else f"{self.value:g} ± {self.tolerance:g}"
-        return limits_as_text(self.at_least, self.at_most)
+        return self.limits or (f"{self.value:g} ± {self.tolerance:g}" if self.number is not None else str(self.value))
 
     def agrees(self, computed: float) -> bool:
         """Whether a computed value agrees with the statement; NaN never does."""
@@ -187,26 +181,8 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             return computed < 0.0 if self.value == "negative" else computed > 0.0
         if self.value is not None and self.tolerance is not None:
             return abs(computed - self.value) <= self.tolerance
-        return (
-            (-inf if self.at_least is None else self.at_least)
-            <= computed
-            <= (inf if self.at_most is None else self.at_most)
-        )
-
-
-def _check_limits(field: str, one: Gate | Claim) -> None:
-    """Raise InputError for a limit that is not finite, and for limits in the wrong order."""
-    for name in ("expect", "value", "within", "tolerance", "at_least", "at_most"):
-        if isinstance(value := getattr(one, name, None), float | int):
-            check_number(f"{field}.{name}", value, "in the quantity's unit")
-    if one.at_least is not None and one.at_most is not None and one.at_least > one.at_most:
-        raise InputError(f"{field}.at_least = {one.at_least!r} is above at_most = {one.at_most!r}: exchange them")
-
-
-def limits_as_text(at_least: float | None, at_most: float | None) -> str:
-    """'at least 0.02, at most 0.03'."""
-    given = (("at least", at_least), ("at most", at_most))
-    return ", ".join(f"{side} {value:g}" for side, value in given if value is not None)
+        low = -inf if self.at_least is None else self.at_least
+        return low <= computed <= (inf if self.at_most is None else self.at_most)
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -251,7 +227,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         except InputError as error:
             yield from error.sentences
             return
-        for name, study in studies_of(self):
+        for name, study in (self.studies | dict(studies_of(self))).items():
             if self.devices and name in self.studies and not study.devices:
                 yield f"drive.device: [{name}] does not model it, leave out [{name}] or drive.device"
             try:

@@ -11,20 +11,13 @@ import msgspec
 from verify.errors import InputError
 from verify.scene.gates import GateResult, run_gate
 from verify.scene.load import load_scene
-from verify.scene.model import Gate, Scene
+from verify.scene.model import Scene
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
     from verify.report.result import Result
 
 Progress: TypeAlias = Callable[[str], None]
-
-
-class Skipped(msgspec.Struct, frozen=True):
-    """A gate or a study that did not run."""
-
-    what: str
-    why: str
 
 
 class PlanRow(msgspec.Struct, frozen=True):
@@ -45,7 +38,8 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """In the order of the file, skipped ones included."""
     results: "dict[str, Result]"
     """Results of the studies by the names of their sections."""
-    skipped: tuple[Skipped, ...]
+    skipped: tuple[PlanRow, ...]
+    """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
     """Implausible units, and a deflection beyond small-amplitude theory."""
     first_frequency_hz: float | None
@@ -79,27 +73,25 @@ def run_scene(
     from verify.studies.base import studies_of
 
     start = perf_counter()
-    loaded = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
-    skip = skipped_gates(loaded, overrides if isinstance(scene, Scene) else effective_overrides(scene, overrides))
+    loaded, rows = _planned(scene, overrides)
     cache = SolutionCache(loaded.beam)
     gates = []
-    for gate in loaded.gate:
+    for gate, row in zip(loaded.gate, rows, strict=False):
         progress(f"gate {gate.id}")
-        if why := skip.get(gate.id):
-            unit = QUANTITIES[gate.quantity].unit if gate.quantity in QUANTITIES else ""
-            gates.append(GateResult(gate=gate, unit=unit, reason=why))
-        else:
+        if row.runs:
             gates.append(run_gate(gate, loaded, cache))
+        else:
+            gates.append(GateResult(gate=gate, unit=QUANTITIES[gate.quantity].unit, reason=row.why))
     results = {}
     for name, study in studies_of(loaded):
         progress(name)
         results[name] = study.run(loaded, cache, progress)
-    frequency, deflection = _first_frequency(cache), _largest_deflection(loaded, cache)
+    frequency, deflection = _frequency_and_deflection(loaded, cache)
     return RunResult(
         scene=loaded,
         gates=tuple(gates),
         results=results,
-        skipped=tuple(Skipped(row.what, row.why) for row in plan(loaded, overrides) if not row.runs),
+        skipped=tuple(row for row in rows if not row.runs),
         warnings=(*unit_warnings(loaded), *deflection_warning(loaded, deflection)),
         first_frequency_hz=frequency,
         largest_deflection=deflection,
@@ -109,15 +101,23 @@ def run_scene(
 
 def plan(scene: Scene | str | Path, overrides: Sequence[str] = ()) -> tuple[PlanRow, ...]:
     """Which gates and studies of a scene run, which are skipped and why. Nothing is solved. Raises InputError."""
+    return tuple(_planned(scene, overrides)[1])
+
+
+def _planned(scene: Scene | str | Path, overrides: Sequence[str]) -> tuple[Scene, list[PlanRow]]:
+    """The scene, and its gates in their order, then the studies."""
     from verify.studies.base import STUDIES, studies_of
 
-    loaded = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
-    skip = skipped_gates(loaded, overrides if isinstance(scene, Scene) else effective_overrides(scene, overrides))
+    if isinstance(scene, Scene):
+        loaded, effective = scene, tuple(overrides)
+    else:
+        loaded, effective = load_scene(scene, overrides), effective_overrides(scene, overrides)
+    skip = skipped_gates(loaded, effective)
     rows = [PlanRow(gate.id, "gate", gate.id not in skip, skip.get(gate.id, gate.quantity)) for gate in loaded.gate]
     running = [name for name, _ in studies_of(loaded)]
-    rows += [PlanRow(name, "study", True, "") for name in running]
+    rows += [PlanRow(name, "study", True) for name in running]
     rows += [PlanRow(name, "study", False, f"no [{name}] in the scene") for name in STUDIES if name not in running]
-    return tuple(rows)
+    return loaded, rows
 
 
 def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
@@ -147,38 +147,24 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
 def effective_overrides(name_or_path: str | Path, overrides: Sequence[str]) -> tuple[str, ...]:
     """Overrides without those that repeat what the file says: a beam of the same length is no other beam."""
 
-    def alone(*texts: str) -> Scene | None:
-        with suppress(InputError):
-            return load_scene(name_or_path, texts)
-        return None
+    def repeats(text: str) -> bool:
+        key = text.partition("=")[0].strip()
+        if key.startswith("gate.") and ".arguments" not in key:
+            return False  # a band that is stated counts even where it is the same
+        with suppress(InputError):  # alone it may be wrong
+            return load_scene(name_or_path, (text,)) == load_scene(name_or_path)
+        return False
 
-    own = alone() if overrides else None
-    repeated = [text for text in overrides if not _is_band(text) and own is not None and alone(text) == own]
-    return tuple(text for text in overrides if text not in repeated)
-
-
-def _is_band(text: str) -> bool:
-    """Whether an override states a gate's band, which counts even where it is the same."""
-    key = text.partition("=")[0].strip()
-    return key.startswith("gate.") and key.rpartition(".")[2] in Gate.__struct_fields__
+    return tuple(text for text in overrides if not repeats(text))
 
 
-def _first_frequency(cache: "SolutionCache") -> float | None:
+def _frequency_and_deflection(scene: Scene, cache: "SolutionCache") -> tuple[float | None, float | None]:
+    """First frequency, Hz, and largest steady deflection, m; None without modes, without forces, or at a resonance."""
+    from verify.quantities.base import evaluate
+
+    frequency = deflection = None
     with suppress(InputError):
-        return cache.exact_hz(1)
-    return None
-
-
-def _largest_deflection(scene: Scene, cache: "SolutionCache") -> float | None:
-    """Maximum along the beam in the steady exact field, m. None without a drive, and at an undamped resonance."""
-    if not scene.forces:
-        return None
-    import numpy as np
-
-    from verify.quantities.options import DriveOptions
-    from verify.quantities.waves import FieldOptions, driven_field
-
-    with suppress(InputError):
-        field = driven_field(scene, cache, DriveOptions(), FieldOptions())
-        return float(abs(field.deflection(np.linspace(0.0, scene.beam.length, 201))).max())
-    return None
+        frequency = cache.exact_hz(1)
+        places = [scene.beam.length * i / 200.0 for i in range(201)] if scene.forces else []
+        deflection = max((abs(evaluate("wave.deflection", {"x": x}, scene, cache)) for x in places), default=None)  # type: ignore[arg-type]
+    return frequency, deflection

@@ -9,18 +9,12 @@ if TYPE_CHECKING:
     from verify.beam import Beam
     from verify.section import Piece
 
-SOUND = (30.0, 30_000.0)
-"""Longitudinal wave speeds sqrt(E/rho) of materials, soft rubber to diamond, m/s."""
-MAX_DENSITY = 25_000.0
-"""Above osmium, kg/m^3."""
-MAX_WIDTH = 5.0
-"""Width of a strip over its length."""
-MAX_MASS = 1e5
-"""kg; a beam in millimetres read as metres has 1e9 times its mass."""
-LONG = 5.0
-"""m; no beam in millimetres is shorter than this when read as metres."""
-SMALL_DEFLECTION = 0.1
-"""Deflection over the beam's length up to which linear theory holds."""
+SOUND = (30.0, 30_000.0)  # sqrt(E/rho) of materials, soft rubber to diamond, m/s
+MAX_DENSITY = 25_000.0  # above osmium, kg/m^3
+MAX_WIDTH = 5.0  # of a strip over its length
+MAX_MASS = 1e5  # kg; a beam in millimetres read as metres has 1e9 times its mass
+LONG = 5.0  # m; no beam in millimetres is shorter than this when read as metres
+SMALL_DEFLECTION = 0.1  # over the beam's length
 GRAVITY = 9.81
 
 

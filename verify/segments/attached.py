@@ -44,7 +44,7 @@ def felt_at(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Array,
     joint of its own, is not read here (`loaded`).
     """
     n, places = chain.n_segments, np.array(positions, dtype=float) / chain.unit
-    links, on, even = places_on(np.broadcast_to(chain.lengths[:, None], (n, len(places))), places)
+    links, on, even = places_on(chain.lengths, places)
     deflections, turns = np.zeros((len(places), n + 1)), np.zeros((len(places), n))
     alike = np.flatnonzero(even) if is_mended(rule, n) else np.arange(0)
     if len(alike):
@@ -79,18 +79,18 @@ def is_mended(rule: str, n: int) -> bool:
 def places_on(lengths: Array, places: Array) -> tuple[Indices, Array, BoolArray]:
     """(links, where on them, 0 to 1, whether links around are about equally long) of places, (p,) all.
 
-    `lengths` (N, p) are those of each place's own chain, from whose left end it is told in the same unit. A place that
-    is a joint to rounding is that joint.
+    Links of `lengths` (N,), from the left end, in the unit of places. A place that is a joint to rounding is that
+    joint.
     """
-    n, every = len(lengths), np.arange(len(places))
-    nodes = np.concatenate([np.zeros_like(lengths[:1]), np.cumsum(lengths, axis=0)])
+    n = len(lengths)
+    nodes = np.append(0.0, np.cumsum(lengths))
     places = np.clip(places, 0.0, nodes[-1])
-    nearest = abs(nodes - places).argmin(axis=0)
-    links = np.clip((nodes <= places).sum(axis=0) - 1, 0, n - 1)
-    joint = abs(nodes[nearest, every] - places) < 1e-9
+    nearest = abs(nodes[:, None] - places).argmin(axis=0)
+    links = np.clip((nodes[:, None] <= places).sum(axis=0) - 1, 0, n - 1)
+    joint = abs(nodes[nearest] - places) < 1e-9
     links = np.where(joint, np.minimum(nearest, n - 1), links)
-    on = np.where(joint, nearest - links, (places - nodes[links, every]) / lengths[links, every])
-    near = lengths[np.clip(links + np.arange(-4, 5)[:, None], 0, n - 1), every]
+    on = np.where(joint, nearest - links, (places - nodes[links]) / lengths[links])
+    near = lengths[np.clip(links + np.arange(-4, 5)[:, None], 0, n - 1)]
     return links, on, np.asarray(np.ptp(near, axis=0) < _ABOUT * near[0])
 
 

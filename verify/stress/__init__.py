@@ -1,7 +1,5 @@
-"""Every promise of the suite pushed until it breaks: rows, each with what is promised, what is measured, and where.
+"""Numerical stress checks: errors and costs along one parameter, up to where they exceed their tolerance."""
 
-Takes beams, models and motions as users do, and judges them by closed forms, by counts in 50-digit arithmetic and by
-what the textbook's way makes of the same; gives rows, a study for scenes and one named figure. Called by `verify
-stress`, by a scene's [stress] and by the quantity `stress.share`. Rows lie in folders of the rooms that they push, and
-what judges them in `references`.
-"""
+from verify.stress.engine import Check, Outcome, run, select
+
+__all__ = ["Check", "Outcome", "run", "select"]

@@ -11,7 +11,6 @@ from verify.registry import Registry
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
-    from verify.judge.variants import Variant
     from verify.report.result import Result
     from verify.scene.model import Scene
 
@@ -75,17 +74,3 @@ def studies_of(scene: "Scene") -> list[tuple[str, Study]]:
             wave.check(scene)
             found["wave"] = wave
     return [(name, found[name]) for name in STUDIES if name in found]
-
-
-def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":
-    """The colour of a model for its first variant, others from the colour cycle."""
-    from verify.models.catalogue import MODELS
-    from verify.report.plotting import CYCLE, MODEL_COLORS
-
-    colors: dict[Variant, str] = {}
-    seen: set[str] = set()
-    for one in variants:
-        own = MODEL_COLORS.get(one.model, MODELS[one.model].colour)
-        colors[one] = CYCLE[len(colors) % len(CYCLE)] if one.model in seen else own
-        seen.add(one.model)
-    return colors

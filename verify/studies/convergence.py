@@ -8,7 +8,8 @@ from msgspec import Meta
 
 from verify.errors import InputError, NoBracketError
 from verify.judge.variants import Rules, Variant
-from verify.studies.base import Progress, Study, variant_colors
+from verify.studies.base import Progress, Study
+from verify.studies.charts import percent, plot_errors, si, variant_colors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +24,12 @@ ORDER_TOLERANCE = 1.0
 """Distance of an observed order from the theoretical one up to which sizes count as asymptotic."""
 STYLES = ("-o", "--s", ":^", "-.d", "-v")
 """Line and marker of each mode."""
+CAPTIONS = {
+    "errors-over-size": "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of "
+    "segments and Hermite elements cancel.",
+    "bracket": "The exact frequency (zero) lies in the band for every N; no reference solution is needed for that.",
+    "work-precision": "Warm solve from beam to modes, set-up included, median of interleaved repeats. Numbers: N.",
+}
 
 
 class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -43,62 +50,41 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         variants = self.variants(models)
         rows = self._rows(cache, variants, progress)
         bounds, no_bound = self._bounds(cache)
-        joints = self._joint_models(cache, variants)
         settled, warnings = self._summarise(cache, rows)
-        numbers = [Column("frequency", "Hz", ".8g"), Column("error", percent=True, format="+.4g")]
-        numbers += [Column("order", format=".2f"), Column("solve time", "s", ".3g", prefix=True)]
-        error_table = Table(
-            "Frequency error over N",
-            [Column("mode"), Column("model"), Column("N"), *numbers],
-            [tuple(list(row.values())[:7]) for row in rows],
-            ["Order: from the size before. Time: warm solve of all modes, set-up included, median of repeats."],
-        )
-        bound_table = Table(
-            "Two-sided bound: segments below, Hermite elements above",
-            [
-                *(Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")),
-                *(
-                    Column("width", percent=True, format=".4g"),
-                    Column("error of the mean", percent=True, format="+.4g"),
-                ),
-            ],
-            [tuple(row.values()) for row in bounds],
-        )
-        joint_table = Table(
-            f"Joint models of the chain, mode {max(self.modes)}",
-            [Column("N"), *(Column(one.title, percent=True, format="+.4g") for one in joints)],
-            list(zip(self.counts, *joints.values(), strict=True)),
-        )
-        sizes = Figure(
-            "errors-over-size",
-            "Convergence with the number of segments or elements",
-            "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of segments and "
-            "Hermite elements cancel.",
-            lambda ax: self._draw_errors(ax, cache, rows, bounds),
-            (6.4, 4.8),
-        )
-        work = Figure(
-            "work-precision",
-            "Frequency error over solve time",
-            "Warm solve from beam to modes, set-up included, median of interleaved repeats. Numbers: N.",
-            lambda ax: self._draw_work(ax, rows),
-        )
-        bracket = Figure(
-            "bracket",
-            f"Two-sided bound on mode {max(self.modes)}",
-            "The exact frequency (zero) lies in the band for every N; no reference solution is needed for that.",
-            lambda ax: self._draw_bound(ax, cache, bounds),
-        )
-        rules = Figure(
-            "joint-models",
-            f"Joint models of the chain, mode {max(self.modes)}",
-            "Absolute values: a dip is a change of sign of the error.",
-            lambda ax: self._draw_joints(ax, joints),
-        )
+        mode = max(self.modes)
+        error_columns = [
+            Column("mode"),
+            Column("model"),
+            Column("N"),
+            Column("frequency", "Hz", ".8g"),
+            percent("error"),
+        ]
+        error_columns += [Column("order", format=".2f"), si("solve time", "s", ".3g")]
+        bound_columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
+        bound_columns += [percent("width", ".4g"), percent("error of the mean")]
+        note = "Order: from the size before. Time: warm solve of all modes, set-up included, median of repeats."
+        tables = [
+            Table("Frequency error over N", error_columns, [tuple(list(row.values())[:7]) for row in rows], [note])
+        ]
+        figures: list[tuple[str, str, Any, tuple[Any, ...]]] = [
+            (
+                "errors-over-size",
+                "Convergence with the number of segments or elements",
+                self._draw_errors,
+                (rows, bounds),
+            ),
+            ("work-precision", "Frequency error over solve time", self._draw_work, (rows,)),
+        ]
+        if bounds:
+            title = "Two-sided bound: segments below, Hermite elements above"
+            tables.append(Table(title, bound_columns, [tuple(row.values()) for row in bounds]))
+            figures.insert(1, ("bracket", f"Two-sided bound on mode {mode}", self._draw_bound, (bounds,)))
         return Result(
-            summary=f"Mode {max(self.modes)}, N = {self.counts[-1]}, error: {', '.join(settled)}." if settled else "",
-            tables=[error_table, *[bound_table] * bool(bounds), *[joint_table] * bool(joints)],
-            figures=[sizes, *[bracket] * bool(bounds), work, *[rules] * bool(joints)],
+            summary=f"Mode {mode}, N = {self.counts[-1]}, error: {', '.join(settled)}." if settled else "",
+            tables=tables,
+            figures=[
+                Figure(key, title, CAPTIONS[key], partial(draw, cache, *values)) for key, title, draw, values in figures
+            ],
             warnings=[*warnings, *no_bound, *left_out.values()],
             data={"rows": rows, "bounds": bounds},
         )
@@ -160,15 +146,6 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 rows.append(row | {"width": bound.relative_width, "mean_error": mean})
         return rows, list(reasons)
 
-    def _joint_models(self, cache: "SolutionCache", variants: tuple[Variant, ...]) -> dict[Variant, list[float | None]]:
-        """Errors of the highest mode over sizes by every joint model that differs on this beam, the default first."""
-        others = self.every_rule(cache.beam)
-        chosen = [one for one in variants if one.model in {other.model for other in others}]
-        return {
-            one: [cache.error_or_why(one.model, count, max(self.modes), one.settings)[0] for count in self.counts]
-            for one in dict.fromkeys([*chosen, *others] if others else [])
-        }
-
     def _summarise(self, cache: "SolutionCache", rows: list[Row]) -> tuple[list[str], list[str]]:
         """(errors of the highest mode whose orders are those of theory, warnings on the others)."""
         settled, warnings = [], dict.fromkeys(row["why"] for row in rows if row["why"])
@@ -188,32 +165,32 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 )
         return settled, list(warnings)
 
-    def _draw_errors(self, ax: "Axes", cache: "SolutionCache", rows: list[Row], bounds: list[Row]) -> None:
-        from verify.report.plotting import MODEL_COLORS, slope_guide
+    def _draw_errors(self, cache: "SolutionCache", rows: list[Row], bounds: list[Row], ax: "Axes") -> None:
+        from verify.report.plotting import slope_guide
 
+        mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
         colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
+        lines = []
         for mode, style in zip(self.modes, STYLES * len(self.modes), strict=False):
+            first = mode == self.modes[0]
             for one, color in colors.items():
                 own = [row for row in rows if row["variant"] == one and row["mode"] == mode and row["error"]]
-                label = one.title if mode == self.modes[0] else ""
-                ax.loglog([r["N"] for r in own], [100 * abs(r["error"]) for r in own], style, color=color, label=label)
-            own = [row for row in bounds if row["mode"] == mode and row["mean_error"]]
-            label = "mean of both" if mode == self.modes[0] and bounds else ""
-            means = [100 * abs(row["mean_error"]) for row in own]
-            ax.loglog([row["N"] for row in own], means, style, color=MODEL_COLORS["mean"], label=label)
-            ax.plot([], [], style, color="#7d8590", label=f"mode {mode}")
-        span = log10(max(self.counts) / min(self.counts))
+                label = one.title if first else ""
+                lines.append((label, color, style, [r["N"] for r in own], [100 * r["error"] for r in own]))
+            own = [row for row in bounds if row["mode"] == mode]
+            label = "mean of both" if first and bounds else ""
+            lines.append((label, mean, style, [r["N"] for r in own], [100 * r["mean_error"] for r in own]))
+            lines.append((f"mode {mode}", "#7d8590", style, [], []))
+        plot_errors(ax, lines, "|frequency error|, %")
+        ax.legend(ncols=2)
         guides = {one.order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors}
         if bounds:
             guides.setdefault(6, [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]])
         for order, own in guides.items():
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)
-        size_axis(ax, self.counts)
-        ax.set_ylabel("|frequency error|, %")
-        ax.legend(ncols=2)
 
-    def _draw_work(self, ax: "Axes", rows: list[Row]) -> None:
+    def _draw_work(self, cache: "SolutionCache", rows: list[Row], ax: "Axes") -> None:
         colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
         for mode, style in zip(self.modes, STYLES * len(self.modes), strict=False):
             for one, color in colors.items():
@@ -227,35 +204,20 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         ax.set(xlabel="solve time, ms", ylabel="|frequency error|, %")
         ax.legend(ncols=2)
 
-    def _draw_bound(self, ax: "Axes", cache: "SolutionCache", bounds: list[Row]) -> None:
+    def _draw_bound(self, cache: "SolutionCache", bounds: list[Row], ax: "Axes") -> None:
+        from matplotlib.ticker import NullLocator
+
         from verify.report.plotting import MODEL_COLORS
 
         own = [row for row in bounds if row["mode"] == max(self.modes)]
         exact, counts = cache.exact_hz(max(self.modes)), [row["N"] for row in own]
         lower, upper = ([100 * (row[key] / exact - 1.0) for row in own] for key in ("lower_hz", "upper_hz"))
         ax.fill_between(counts, lower, upper, color=MODEL_COLORS["mean"], alpha=0.15, linewidth=0)
-        ax.plot(counts, upper, "-o", color=MODEL_COLORS["fem"], label="upper bound, Hermite elements")
+        ax.semilogx(counts, upper, "-o", color=MODEL_COLORS["fem"], label="upper bound, Hermite elements")
         ax.plot(counts, lower, "-o", color=MODEL_COLORS["segment"], label="lower bound, segments")
         ax.plot(counts, [100 * row["mean_error"] for row in own], "-o", color=MODEL_COLORS["mean"], label="mean")
         ax.axhline(0.0, color=MODEL_COLORS["analytic"], linewidth=1.0)
-        ax.set_xscale("log")
-        size_axis(ax, counts)
-        ax.set_ylabel("against the exact frequency, %")
+        ax.set_xticks(counts, [str(count) for count in counts])
+        ax.xaxis.set_minor_locator(NullLocator())
+        ax.set(xlabel="number of segments or elements N", ylabel="against the exact frequency, %")
         ax.legend()
-
-    def _draw_joints(self, ax: "Axes", joints: dict[Variant, list[float | None]]) -> None:
-        for one, color in variant_colors(tuple(joints)).items():
-            errors = [float("nan") if error is None else 100 * abs(error) for error in joints[one]]
-            ax.loglog(self.counts, errors, "-o", color=color, label=one.title)
-        size_axis(ax, self.counts)
-        ax.set_ylabel("|frequency error|, %")
-        ax.legend()
-
-
-def size_axis(ax: "Axes", counts: "tuple[int, ...] | list[int]") -> None:
-    """A tick at every size that was solved."""
-    from matplotlib.ticker import NullLocator
-
-    ax.set_xlabel("number of segments or elements N")
-    ax.set_xticks(sorted(set(counts)), [str(count) for count in sorted(set(counts))])
-    ax.xaxis.set_minor_locator(NullLocator())

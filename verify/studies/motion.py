@@ -1,5 +1,6 @@
-"""The slider of a scene in time: displacement and velocity on three models, validity margins, errors over N."""
+"""The slider of a scene in time: displacement, velocity, friction on every model, validity margins, errors over N."""
 
+from functools import partial
 from math import log
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -9,37 +10,39 @@ from verify.checks import Relative, check_number
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
-from verify.studies.convergence import Counts, size_axis
+from verify.studies.charts import model_style, movie, percent, plot_errors, plot_lines, si
+from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as MatplotlibFigure
 
     from verify.judge.cache import SolutionCache
-    from verify.models.arrays import Array
     from verify.motion.result import Motion as Run
-    from verify.report.result import Movie, Result, Table
+    from verify.report.result import Result, Table
     from verify.scene.model import Scene
 
 STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
-ENERGIES = {
-    "work_in": "work of the forces",
-    "kinetic": "kinetic energy of the beam",
-    "elastic": "elastic energy of the beam",
-    "damped": "dissipated in the beam",
-    "rubbed": "dissipated by friction",
-    "slider": "kinetic energy gained by the slider",
-    "turned": "work of rotation and gravity on the slider",
-    "contact_on_beam": "work of friction on the beam",
-    "normal_on_beam": "work of the normal reaction on the beam",
-    "residual": "imbalance",
+LARGE = 0.1
+"""Size of a neglected effect beyond which a summary is omitted."""
+WARNINGS = {
+    "lift-off": "Lift-off: the surface falls away with {:.3g} times the acceleration that weight and preload give the "
+    "slider; a slider free to lift off leaves it, which this contact law forbids.",
+    "coupling": "Coupling: the inertia of a slider held on the surface changes its motion by {:.1%}; a normal contact "
+    "without it is not valid for such a slider.",
+    "axial": "Nonlinearity: linear models neglect an axial inertia (kL)² ⟨θ²⟩ = {:.2g} of a chain of rigid links.",
+    "step": "Time step: halving it changes the displacement by {:.1%}, not converged.",
 }
+MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
+NOTES = [
+    "Coupling: change of the surface's motion by full friction and by the inertia of the slider held on it.",
+    "Lift-off: largest downward acceleration of the surface over that by weight and preload.",
+    "Theory (Timoshenko) and discretisation: frequency error at the mode nearest to the drive.",
+]
 
 
 class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -49,21 +52,16 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     title: ClassVar[str] = "The slider"
 
     duration: Annotated[float, Meta(description="Duration, s.")] = 1e-3
-    start: Annotated[Start, Meta(description="State of the beam at the start: at rest or in its steady state.")] = (
-        "rest"
-    )
+    start: Annotated[Start, Meta(description="Beam at the start: at rest or in its steady state.")] = "rest"
     soft_start_periods: Annotated[
-        float | None,
-        Meta(description="Periods over which the forces grow; 2 from rest unless set. 0 is a step load: cos(0) = 1."),
+        float | None, Meta(description="Periods over which the forces grow; 2 from rest unless set, 0 is a step load.")
     ] = None
     modal_damping: Annotated[
         Relative | None, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")
     ] = None
     count: Annotated[int, Meta(ge=1, description="Segments and elements.")] = 49
     counts: Annotated[Counts, Meta(description="Segments and elements of the errors over N.")] = (49, 98, 196)
-    steps_per_period: Annotated[int, Meta(ge=1, description="Steps of the slider in a period, at least.")] = (
-        STEPS_PER_PERIOD
-    )
+    steps_per_period: Annotated[int, Meta(ge=1, description="Steps of the slider in a period, at least.")] = 128
     samples: Annotated[int, Meta(ge=2, le=100_000, description="Stored instants, ends included.")] = 1001
 
     def __post_init__(self) -> None:
@@ -77,13 +75,6 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"motion.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
                 "start, leave it out"
             )
-
-    @property
-    def soft_start(self) -> float:
-        """Periods over which the forces grow; 0 for a steady beam."""
-        from verify.motion.starting import soft_start
-
-        return soft_start(self.start, self.soft_start_periods)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces, and for steps without a slider."""
@@ -102,8 +93,10 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """
         import numpy as np
 
+        from verify.motion.request import soft_start
         from verify.motion.simulate import simulate
 
+        assert scene.drive is not None
         steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
         run = simulate(
             scene.beam,
@@ -113,7 +106,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             model=model,
             count=count,
             start=self.start,
-            soft_start_periods=self.soft_start,
+            soft_start_periods=soft_start(self.start, self.soft_start_periods),
             modal_damping=self.modal_damping,
             slider=scene.slider,
             at=np.linspace(0.0, scene.beam.length, (count or self.count) + 1).tolist() if store else (),
@@ -131,51 +124,53 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.models.catalogue import MODELS, bounding, discrete
         from verify.report.result import Figure, Result
 
+        assert scene.slider is not None
         check_beam(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
         models = [model.name for model in discrete("time_basis", scene.beam)]
         runs: dict[str, Run] = {}
         for model in ("analytic", *models):
             progress(f"slider on {MODELS[model].title}")
-            count = self.count if MODELS[model].sized else None
-            runs[model] = self.simulate(scene, model, count, store=True)
+            runs[model] = self.simulate(scene, model, self.count if MODELS[model].sized else None, store=True)
         errors, step_error = self._errors(scene, models, runs, progress)
         chain = runs[bounding()[0].name]
-        warnings = self._warnings(runs)
+        warnings, valid = _warnings(runs)
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{scene.slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
+        paths = [(_title(run), run.times, run.travelled, model_style(run.model)) for run in runs.values()]
+        forces = [(_title(run), run.times, run.friction, model_style(run.model)) for run in runs.values()]
+        surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
+        velocity = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
+        lines = [
+            ("slider-displacement", f"Displacement of the slider, N = {self.count}", paths, ("displacement", "m")),
+            (
+                "slider-velocity",
+                f"Velocity of the slider and the surface, {_title(chain)}",
+                velocity,
+                ("velocity", "m/s"),
+            ),
+            ("slider-friction", f"Friction force on the slider, N = {self.count}", forces, ("friction force", "N")),
+        ]
+        figures = [
+            Figure(key, title, "Along +x.", partial(plot_lines, lines=own, x=("time", "s"), y=y))
+            for key, title, own, y in lines
+        ]
+        if errors:
+            caption = "Against the exact beam at the same time step."
+            figures.append(
+                Figure("slider-errors", "Error of the displacement", caption, lambda ax: _draw_errors(ax, errors))
+            )
+        keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
+        keys += ["coupling", "margins", "ledger", "statistics", "notes"]
         return Result(
-            summary="" if warnings else f"Mean speed of the slider ({condition}): {speeds}.",
-            tables=[*_tables(runs, chain), _error_table(errors, step_error)],
-            figures=[
-                Figure(
-                    "slider-displacement",
-                    f"Displacement of the slider, N = {self.count}",
-                    "From its start, along +x.",
-                    lambda ax: _draw(ax, runs, lambda run: run.travelled, "displacement", "m"),
-                ),
-                Figure(
-                    "slider-velocity",
-                    f"Velocity of the slider and of the surface under it, {_title(chain)}",
-                    "Both along +x.",
-                    lambda ax: _draw_speeds(ax, chain),
-                ),
-                Figure(
-                    "slider-friction",
-                    f"Friction force on the slider, N = {self.count}",
-                    "Tangential force along +x; saturates at mu N.",
-                    lambda ax: _draw(ax, runs, lambda run: run.friction, "friction force", "N"),
-                ),
-                Figure(
-                    "slider-errors",
-                    "Error of the slider's displacement over N",
-                    "Against the exact beam at the same time step. Grey: change of the exact beam's displacement by "
-                    "half the step.",
-                    lambda ax: _draw_errors(ax, errors, step_error, self.counts),
-                ),
-            ],
-            movies=[_movie(chain)],
+            summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
+            tables=_tables(runs, errors, step_error),
+            figures=figures,
+            movies=[movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
             warnings=warnings,
-            data={"runs": {model: _plain(run) for model, run in runs.items()}, "errors": errors},
+            data={
+                "runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()},
+                "errors": errors,
+            },
         )
 
     def _errors(
@@ -194,47 +189,11 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 progress(f"slider on {model}, N = {count}")
                 displacement = self.simulate(scene, model, count).displacement
                 error = displacement / exact - 1.0
-                order = None
-                if before and before[1] * error > 0.0:
-                    order = log(before[1] / error) / log(count / before[0])
+                order = log(before[1] / error) / log(count / before[0]) if before and before[1] * error > 0.0 else None
                 row = {"model": model, "N": count, "displacement": displacement, "error": error, "order": order}
                 rows.append(row)
                 before = count, error
         return rows, step_error
-
-    def _warnings(self, runs: "dict[str, Run]") -> list[str]:
-        """What is not converged or outside its range of validity; the summary is omitted then."""
-        from verify.motion.contact import FELT
-        from verify.motion.judged_step import KNOWN
-        from verify.motion.validity import NONLINEAR
-
-        warnings = [
-            f"{_title(run)}: the slider {run.statistics.stopped}, after {1e3 * run.end.time:.4g} ms."
-            for run in runs.values()
-            if not run.statistics.finished
-        ]
-        lift_off = max(run.margins.lift_off for run in runs.values())
-        if lift_off > 1.0:
-            warnings.append(
-                f"Lift-off: the surface accelerates downward {lift_off:.3g} times as fast as weight and preload "
-                "accelerate the slider; a slider free to lift off leaves the surface, which this contact law forbids."
-            )
-        nonlinearity = max(run.margins.nonlinearity for run in runs.values())
-        if nonlinearity > NONLINEAR:
-            warnings.append(
-                f"Nonlinearity: the axial inertia (kL)² ⟨θ²⟩ = {nonlinearity:.2g} exceeds {NONLINEAR:g}; linear models "
-                "do not represent a chain of rigid links."
-            )
-        coupling = max((run.coupling for run in runs.values() if run.coupling), key=lambda one: one.normal_size)
-        if not coupling.pushes_back and coupling.normal_size > FELT:
-            warnings.append(
-                f"Coupling: the inertia of a slider held on the surface changes its motion by "
-                f"{100 * coupling.normal_size:.2g} %; a normal contact without it is not valid for such a slider."
-            )
-        moved = max(run.statistics.moved or 0.0 for run in runs.values())
-        if moved > KNOWN:
-            warnings.append(f"Time step: halving it changes the displacement by {100 * moved:.2g} %, not converged.")
-        return warnings
 
 
 def _title(run: "Run") -> str:
@@ -243,7 +202,35 @@ def _title(run: "Run") -> str:
     return f"{run.count} {MODELS[run.model].title}" if run.count else MODELS[run.model].title
 
 
-def _tables(runs: "dict[str, Run]", chain: "Run") -> "list[Table]":
+def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
+    """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
+    from verify.motion.contact import FELT
+    from verify.motion.step_control import KNOWN
+    from verify.motion.validity import NONLINEAR
+
+    stopped = [
+        f"{_title(run)}: the slider {run.statistics.stopped}, after {1e3 * run.end.time:.4g} ms."
+        for run in runs.values()
+        if not run.statistics.finished
+    ]
+    lift_off = max(run.margins.lift_off for run in runs.values())
+    axial = max(run.margins.nonlinearity for run in runs.values())
+    moved = max(run.statistics.moved or 0.0 for run in runs.values())
+    one_way = [run.coupling for run in runs.values() if run.coupling and not run.coupling.pushes_back]
+    normal = max((coupling.normal_size for coupling in one_way), default=0.0)
+    limits = {
+        "lift-off": (lift_off, 1.0),
+        "coupling": (normal, FELT),
+        "axial": (axial, NONLINEAR),
+        "step": (moved, KNOWN),
+    }
+    warnings = [WARNINGS[key].format(value) for key, (value, limit) in limits.items() if value > limit]
+    valid = not stopped and lift_off <= 1.0 and max(normal, axial) < LARGE and moved <= KNOWN
+    return [*stopped, *warnings], valid
+
+
+def _tables(runs: "dict[str, Run]", errors: list[dict[str, Any]], step_error: float | None) -> "list[Table]":
+    from verify.models.catalogue import MODELS
     from verify.report.result import Column, Table
 
     exact = runs["analytic"].displacement
@@ -258,102 +245,44 @@ def _tables(runs: "dict[str, Run]", chain: "Run") -> "list[Table]":
         sizes = ("two-way" if coupling.two_way else "one-way", coupling.friction_size, coupling.normal_size)
         frequency = (margins.model_form, margins.discretisation)
         validity.append((_title(run), *sizes, margins.lift_off, margins.nonlinearity, *frequency))
-    results = [Column("displacement", "m", "+.5g", prefix=True), Column("error", percent=True, format="+.3g")]
-    results += [Column("mean speed", "m/s", "+.5g", prefix=True), Column("largest friction", "N", ".4g", prefix=True)]
-    results += [Column("steps"), Column("energy imbalance", format=".1e")]
-    limits = [Column("coupling"), Column("friction coupling", format=".1e"), Column("normal coupling", format=".1e")]
-    limits += [Column("lift-off", format=".3g"), Column("(kL)² ⟨θ²⟩", format=".1e")]
-    limits += [Column("theory", percent=True, format="+.3g"), Column("discretisation", percent=True, format="+.3g")]
-    notes = [
-        "Coupling: change of the surface's motion by full friction and by the inertia of the slider held on it.",
-        "Lift-off: largest downward acceleration of the surface over that by weight and preload.",
-        "Theory (Timoshenko) and discretisation: frequency error at the mode nearest to the drive.",
-    ]
-    energies = [(text, getattr(chain.ledger, key)) for key, text in ENERGIES.items()]
-    energy = [Column("energy"), Column("value", "J", ".4g", prefix=True)]
-    return [
-        Table("Slider on each model", [Column("model"), *results], rows),
-        Table("Validity of these runs", [Column("model"), *limits], validity, notes),
-        Table(f"Energy balance, {_title(chain)}", energy, energies),
-    ]
+    results = [Column("model"), si("displacement", "m", "+.5g"), percent("error", "+.3g")]
+    results += [si("mean speed", "m/s", "+.5g"), si("largest friction", "N"), Column("steps")]
+    results += [Column("energy imbalance", format=".1e")]
+    limits = [Column("model"), Column("coupling"), Column("friction coupling", format=".1e")]
+    limits += [Column("normal coupling", format=".1e"), Column("lift-off", format=".3g")]
+    limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), percent("theory", "+.3g"), percent("discretisation", "+.3g")]
+    tables = [Table("Slider on each model", results, rows), Table("Validity of these runs", limits, validity, NOTES)]
+    if step_error is not None:
+        columns = [Column("model"), Column("N"), si("displacement", "m", "+.7g"), percent("error")]
+        notes = [f"Half the time step changes the exact value by {100 * step_error:.1g} %."]
+        cells = [(MODELS[row["model"]].title, *list(row.values())[1:]) for row in errors]
+        columns += [Column("order", format=".2f")]
+        tables.append(Table("Displacement over N, against the exact beam", columns, cells, notes))
+    return tables
 
 
-def _error_table(rows: list[dict[str, Any]], step_error: float | None) -> "Table":
+def _draw_errors(ax: "Axes", rows: list[dict[str, Any]]) -> None:
     from verify.models.catalogue import MODELS
-    from verify.report.result import Column, Table
 
-    columns = [Column("model"), Column("N"), Column("displacement", "m", "+.7g", prefix=True)]
-    columns += [Column("error", percent=True, format="+.4g"), Column("order", format=".2f")]
-    notes = [] if step_error is None else [f"Half the time step changes the exact value by {100 * step_error:.1g} %."]
-    cells = [(MODELS[row["model"]].title, *list(row.values())[1:]) for row in rows]
-    return Table("Displacement over N, against the exact beam", columns, cells, notes)
-
-
-def _plain(run: "Run") -> dict[str, Any]:
-    keys = ("displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed")
-    return {key: getattr(run, key) for key in (*keys, "coupling", "margins", "ledger", "statistics", "notes")}
-
-
-def _draw(ax: "Axes", runs: "dict[str, Run]", read: "Callable[[Run], Array]", name: str, unit: str) -> None:
-    """One line over time for every model, the exact beam broad."""
-    from verify.models.catalogue import MODELS
-    from verify.report.plotting import MODEL_COLORS
-    from verify.units import unit_over
-
-    time = unit_over((float(run.times[-1]) for run in runs.values()), "s")
-    scaled = unit_over((float(abs(read(run)).max()) for run in runs.values()), unit)
-    for model, run in runs.items():
-        color, width = MODEL_COLORS.get(model, MODELS[model].colour), 1.4 if run.count else 4.0
-        every = slice(None, None, max(len(run.times) // 2000, 1))
-        x, y = time.factor * run.times[every], scaled.factor * read(run)[every]
-        ax.plot(x, y, color=color, linewidth=width, label=_title(run))
-    ax.set(xlabel=f"time, {time.name}", ylabel=f"{name}, {scaled.name}")
-    ax.legend()
-
-
-def _draw_speeds(ax: "Axes", run: "Run") -> None:
-    from verify.units import unit_over
-
-    lines = {"surface under the slider": (run.surface_speed, "#7d8590"), "slider": (run.speed, SLIDER)}
-    time = unit_over([float(run.times[-1])], "s")
-    unit = unit_over((float(abs(values).max()) for values, _ in lines.values()), "m/s")
-    every = slice(None, None, max(len(run.times) // 2000, 1))
-    for label, (values, color) in lines.items():
-        ax.plot(time.factor * run.times[every], unit.factor * values[every], color=color, label=label)
-    ax.set(xlabel=f"time, {time.name}", ylabel=f"velocity, {unit.name}")
-    ax.legend()
-
-
-def _draw_errors(ax: "Axes", rows: list[dict[str, Any]], step_error: float | None, counts: tuple[int, ...]) -> None:
-    from verify.models.catalogue import MODELS
-    from verify.report.plotting import MODEL_COLORS
-
+    lines = []
     for model in dict.fromkeys(row["model"] for row in rows):
-        own = [row for row in rows if row["model"] == model and row["error"]]
-        errors, color = [100 * abs(row["error"]) for row in own], MODEL_COLORS.get(model, MODELS[model].colour)
-        ax.loglog([row["N"] for row in own], errors, "-o", color=color, label=MODELS[model].title)
-    if step_error:
-        ax.axhline(100 * step_error, color=MODEL_COLORS["analytic"], linestyle="--", label="half the time step")
-    size_axis(ax, counts)
-    ax.set_ylabel("|error of the displacement|, %")
-    ax.legend()
+        own = [row for row in rows if row["model"] == model]
+        errors = [100 * row["error"] for row in own]
+        lines.append((MODELS[model].title, model_style(model)["color"], "-o", [row["N"] for row in own], errors))
+    plot_errors(ax, lines, "|error of the displacement|, %")
 
 
-def _movie(run: "Run") -> "Movie":
-    from verify.report.result import Movie
-
-    def animate(figure: "MatplotlibFigure") -> "FuncAnimation":
+def _movie(run: "Run") -> "Callable[[Axes], Any]":
+    def set_up(ax: "Axes") -> Any:
         import numpy as np
-        from matplotlib.animation import FuncAnimation
 
-        from verify.report.plotting import MODEL_COLORS
         from verify.units import unit_of, unit_over
 
         kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
-        ax, along = figure.subplots(), unit_of(float(run.points[-1]))
-        up, time = unit_over([float(abs(run.deflection).max())]), unit_over([float(run.times[-1])], "s")
+        along, up = unit_of(float(run.points[-1])), unit_over([float(abs(run.deflection).max())])
+        time = unit_over([float(run.times[-1])], "s")
         x, friction = along.factor * run.points, run.friction / (float(abs(run.friction).max()) or 1.0)
-        (links,) = ax.plot(x, 0.0 * x, "-o", color=MODEL_COLORS["segment"], markersize=3, label=_title(run))
+        (links,) = ax.plot(x, 0.0 * x, "-o", markersize=3, label=_title(run), **model_style(run.model))
         (force,) = ax.plot([], [], color=FRICTION, linewidth=3.0, label="friction on the slider")
         (block,) = ax.plot([], [], "s", color=SLIDER, markersize=10, label="slider")
         top = 1.2 * up.factor * float(abs(run.deflection).max())
@@ -362,17 +291,14 @@ def _movie(run: "Run") -> "Movie":
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
 
         def update(k: int) -> list[Any]:
-            place, height = (
-                along.factor * run.position[k],
-                float(np.interp(run.position[k], run.points, run.deflection[k])),
-            )
-            links.set_ydata(up.factor * run.deflection[k])
-            force.set_data([place, place + 0.08 * x[-1] * friction[k]], [up.factor * height] * 2)
-            block.set_data([place], [up.factor * height])
+            place, y = along.factor * run.position[k], up.factor * run.deflection[k]
+            height = float(np.interp(place, x, y))
+            links.set_ydata(y)
+            force.set_data([place, place + 0.08 * x[-1] * friction[k]], [height, height])
+            block.set_data([place], [height])
             clock.set_text(f"{time.factor * run.times[k]:.3f} {time.name}")
             return [links, force, block, clock]
 
-        return FuncAnimation(figure, update, frames=kept.tolist(), interval=60)
+        return update, kept.tolist()
 
-    caption = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
-    return Movie("slider-moving", f"The slider on the wave, {_title(run)}", caption, animate)
+    return set_up

@@ -1,13 +1,16 @@
 """Frequency errors of many modes at one size, beside what other beam theories change, and mode shapes."""
 
+from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from msgspec import Meta
 
 from verify.errors import InputError
 from verify.judge.variants import Rules, Variant
-from verify.studies.base import Progress, Study, variant_colors
+from verify.studies.base import Progress, Study
+from verify.studies.charts import model_style, percent, variant_colors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,6 +23,13 @@ if TYPE_CHECKING:
 MOST_COUNTED = 200
 """Modes up to which frequencies by other theories are computed where they have no closed form."""
 THEORY_COLORS = {"rayleigh": "#8f5bd1", "timoshenko": "#cc3f76", "plate": "#008f8f"}
+CAPTIONS = {
+    "mode-errors": "Signed, against the exact beam of the same theory.",
+    "model-form": "Solid: discretisation. Dashed: what Euler-Bernoulli theory neglects, rotary inertia (Rayleigh), "
+    "shear as well (Timoshenko), bending across the width (Plate).",
+    "mode-shapes": "Normalised to the same modal mass. Lines: exact. Markers: joints or element ends; the joints of a "
+    "chain raw, and corrected (y + second difference / 12).",
+}
 
 
 class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -33,7 +43,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
-        from verify.judge.cache import comparable, theory_of
+        from verify.judge.cache import EULER, comparable, theory_of
         from verify.judge.compare import EIGENVALUE_FLOOR
         from verify.report.result import Column, Figure, Result, Table
         from verify.words import theory_name
@@ -41,64 +51,48 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         progress(f"modes 1 to {self.modes}, N = {self.count}")
         models, left_out = comparable(cache.beam, (self.count,), self.modes)
         variants, numbers = self.variants(models), range(1, self.modes + 1)
-        # The last mode first: one solve with the most modes then serves all.
-        cells = {
-            one: [cache.error_or_why(one.model, self.count, mode, one.settings) for mode in reversed(numbers)][::-1]
-            for one in variants
-        }
-        errors = {one: [error for error, _ in own] for one, own in cells.items()}
-        theories = self._theories(cache)
-        theory = theory_of(variants[0].settings)
-        columns = [Column("mode"), Column(f"exact {theory_name(theory)}", "Hz", ".7g")]
-        columns += [Column(one.title, percent=True, format="+.4g") for one in variants]
-        columns += [Column(f"{theory_name(name)} theory", percent=True, format="+.4g") for name in theories]
-        rows: list[tuple[float | None, ...]] = [
-            (mode, cache.exact_hz(mode, theory), *(own[mode - 1] for own in (*errors.values(), *theories.values())))
-            for mode in numbers
-        ]
-        parts: list[tuple[str, float | None]] = [
-            (f"discretisation, {one.title}", own[-1]) for one, own in errors.items()
-        ]
+        errors: dict[Variant, list[float | None]] = {}
+        warnings = []
+        for one in variants:
+            # The last mode first: one solve with the most modes then serves all.
+            cells = [cache.error_or_why(one.model, self.count, mode, one.settings) for mode in reversed(numbers)][::-1]
+            errors[one] = [error for error, _ in cells]
+            warnings += [f"{one.title}: {cells[-1][1]}"] if cells[-1][1] else []
+        theories, theory = self._theories(cache), theory_of(variants[0].settings)
+        series: list[Sequence[float | None]] = [*errors.values(), *theories.values()]
+        rows = [(mode, cache.exact_hz(mode, theory), *(own[mode - 1] for own in series)) for mode in numbers]
+        parts: list[tuple[str, float | None]] = []
+        parts += ((f"discretisation, {one.title}", own[-1]) for one, own in errors.items())
         parts += [(f"theory, {theory_name(name)}", own[-1]) for name, own in theories.items()]
         parts += [("rounding of eigenvalues, at most", EIGENVALUE_FLOOR)]
-        known = [f"{one.title} {100 * own[-1]:+.4g} %" for one, own in errors.items() if own[-1] is not None]
-        warnings = [f"{one.title}: {own[-1][1]}" for one, own in cells.items() if own[-1][1]]
+        known = {one.title: own[-1] for one, own in errors.items() if own[-1] is not None}
         largest = max((abs(own[-1]) for own in theories.values()), default=0.0)
-        euler_alone = all(theory_of(one.settings) == "euler-bernoulli" for one in variants)
-        if known and euler_alone and largest > max(abs(own[-1] or 0.0) for own in errors.values()):
+        euler = all(theory_of(one.settings) == EULER for one in variants)
+        if known and euler and largest > max(map(abs, known.values())):
             warnings.append(
                 f"Mode {self.modes}: what Euler-Bernoulli theory neglects changes its frequency by up to "
                 f"{100 * largest:.3g} %, more than the discretisation does."
             )
+        summary = ", ".join(f"{title} {100 * error:+.4g} %" for title, error in known.items())
+        columns = [Column("mode"), Column(f"exact {theory_name(theory)}", "Hz", ".7g")]
+        columns += [percent(one.title) for one in variants] + [percent(f"{theory_name(t)} theory") for t in theories]
+        part_columns = [Column("contribution"), percent("relative size", "+.3g")]
+        note = "Theory: change of the exact frequency against Euler-Bernoulli theory."
+        size = f"N = {self.count}"
         return Result(
-            summary=f"Mode {self.modes}, N = {self.count}, against the exact beam: {', '.join(known)}."
-            if known
-            else "",
+            summary=f"Mode {self.modes}, {size}, against the exact beam: {summary}." if known else "",
             tables=[
-                Table(f"Frequency errors, N = {self.count}", columns, rows),
-                Table(
-                    f"Contributions to the error of mode {self.modes}",
-                    [Column("contribution"), Column("relative size", percent=True, format="+.3g")],
-                    parts,
-                    ["Theory: the change of the exact frequency against Euler-Bernoulli theory."],
-                ),
+                Table(f"Frequency errors, {size}", columns, rows),
+                Table(f"Contributions to the error of mode {self.modes}", part_columns, parts, [note]),
             ],
             figures=[
-                Figure(
-                    "mode-errors",
-                    f"Frequency error over mode number, N = {self.count}",
-                    "Signed, against the exact beam of the same theory.",
-                    lambda ax: draw_errors(ax, errors, {}),
-                ),
-                Figure(
-                    "model-form",
-                    f"Discretisation error and model-form error, N = {self.count}",
-                    "Solid: discretisation. Dashed: what Euler-Bernoulli theory neglects, rotary inertia (Rayleigh), "
-                    "shear as well (Timoshenko), bending across the width (Plate).",
-                    lambda ax: draw_errors(ax, errors, theories),
-                ),
-                *self._shapes(cache, variants),
-            ],
+                Figure(key, f"{title}, {size}", CAPTIONS[key], partial(draw_errors, errors, beside))
+                for key, title, beside in (
+                    ("mode-errors", "Frequency error over mode number", {}),
+                    ("model-form", "Discretisation error and model-form error", theories),
+                )
+            ]
+            + self._shapes(cache, variants),
             warnings=[*warnings, *left_out.values()],
             data={
                 "count": self.count,
@@ -130,7 +124,6 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         from verify.exact.modes import mode_shape
         from verify.judge.cache import theory_of
         from verify.models.catalogue import MODELS
-        from verify.report.plotting import MODEL_COLORS
         from verify.report.result import Figure
 
         theory = theory_of(variants[0].settings)
@@ -145,18 +138,16 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
                 index = [cache.paired_index(model, self.count, mode, one.settings) for mode in chosen]
                 for reading, read in modes.readings.items():
                     label = f"{MODELS[model].title}, {reading}" if len(modes.readings) > 1 else MODELS[model].title
-                    color = MODEL_COLORS.get(model, MODELS[model].colour)
-                    points.append((label, color, modes.nodes, [read()[k] for k in index]))
+                    points.append((label, model_style(model)["color"], modes.nodes, [read()[k] for k in index]))
         except InputError:
             return []
 
         def draw(ax: "Axes") -> None:
             step = 2.4 * max(float(np.abs(one).max()) for one in exact)
+            color = model_style("analytic")["color"]
             for i, one in enumerate(exact):
-                ax.plot(
-                    x, one + step * i, color=MODEL_COLORS["analytic"], linewidth=1.2, label="" if i else "exact beam"
-                )
-            for (label, color, nodes, shapes), marker in zip(points, ("x", "o", "s", "+", "d", "^"), strict=False):
+                ax.plot(x, one + step * i, color=color, linewidth=1.2, label="" if i else MODELS["analytic"].title)
+            for (label, color, nodes, shapes), marker in zip(points, "xos+d^", strict=False):
                 for i, shape in enumerate(shapes):
                     text = "" if i else label
                     ax.plot(nodes, shape + step * i, marker, color=color, fillstyle="none", markersize=4.0, label=text)
@@ -164,14 +155,10 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             ax.set_yticklabels([f"mode {mode}" for mode in chosen])
             ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
-        caption = (
-            "Normalised to the same modal mass. Lines: exact. Markers: joints or element ends; the joints of a chain "
-            "raw, and corrected (y + second difference / 12)."
-        )
-        return [Figure("mode-shapes", f"Mode shapes, N = {self.count}", caption, draw, (6.4, 5.2))]
+        return [Figure("mode-shapes", f"Mode shapes, N = {self.count}", CAPTIONS["mode-shapes"], draw, (6.4, 5.2))]
 
 
-def draw_errors(ax: "Axes", errors: "dict[Variant, list[float | None]]", theories: "dict[str, list[float]]") -> None:
+def draw_errors(errors: dict[Variant, list[float | None]], theories: dict[str, list[float]], ax: "Axes") -> None:
     """Errors in per cent over mode number: signed alone, as absolute values on a logarithmic axis beside theories."""
     from verify.words import theory_name
 
@@ -181,8 +168,8 @@ def draw_errors(ax: "Axes", errors: "dict[Variant, list[float | None]]", theorie
     for one, color in variant_colors(tuple(errors)).items():
         ax.plot(range(1, len(errors[one]) + 1), values(errors[one]), "-o", color=color, label=one.title, markersize=3.5)
     for name, own in theories.items():
-        color = THEORY_COLORS[name]
-        ax.plot(range(1, len(own) + 1), values(own), "--", color=color, label=f"{theory_name(name)} theory")
+        label = f"{theory_name(name)} theory"
+        ax.plot(range(1, len(own) + 1), values(own), "--", color=THEORY_COLORS[name], label=label)
     ax.set(xlabel="mode number", ylabel="|frequency error|, %" if theories else "frequency error, %")
     if theories:
         ax.set_yscale("log")

@@ -1,37 +1,42 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelope, surface ellipses, where to drive."""
 
-import dataclasses
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
 from msgspec import Meta
 
-from verify.checks import Relative, check_number
+from verify.checks import Relative
 from verify.errors import InputError, WindowError
 from verify.models.naming import Among, model_meta
 from verify.studies.base import Progress, Study
-from verify.studies.convergence import Counts, size_axis
+from verify.studies.charts import model_style, movie, plot_errors, plot_lines, si
+from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
+    from collections.abc import Callable
+
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as MatplotlibFigure
 
     from verify.judge.cache import SolutionCache
     from verify.models.fields import HarmonicField
-    from verify.report.result import Figure, Result
+    from verify.report.result import Result
     from verify.scene.model import Scene
     from verify.waves.case import DrivenCase
     from verify.waves.driven import Operation
-    from verify.waves.operating_point import OperatingPoint
 
-Span: TypeAlias = tuple[float, float, int]
 Row: TypeAlias = dict[str, Any]
 Fields: TypeAlias = "dict[str, HarmonicField]"
-FRAMES = 36
-LARGEST_RATIO = 10.0
-"""Standing-wave ratio at which the map is cut off."""
+FRAMES, POINTS = 36, 13
 SURFACE = "#cc3f76"
+ENVELOPES = (
+    "A pure travelling wave on one section without losses has a flat envelope; ripples are reflection. Near forces and "
+    "ends the near field decays."
+)
+SIZES = "Against the exact beam: solid at the drive's frequency, dotted at each model's frequency of least reflection."
+MOVIE = (
+    "One period of the drive. Links are straight between their joints. The motion of surface points along the beam is "
+    "magnified as in the ellipses."
+)
 
 
 class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -40,28 +45,15 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: ClassVar[str] = "wave"
     title: ClassVar[str] = "The driven beam"
 
-    count: Annotated[int, Meta(ge=1, description="Segments and elements of envelopes, map and operating points.")] = 49
+    count: Annotated[int, Meta(ge=1, description="Segments and elements of envelopes and operating points.")] = 49
     counts: Annotated[Counts, Meta(description="Segments and elements of the errors over N.")] = (49, 98, 196)
-    model: Annotated[str, model_meta("of the map and the operating points", "unit_responses")] = "segment"
-    frequency_hz: Annotated[
-        Span | None, Meta(description="Start, end and steps of the map, Hz; 10 % around the drive unless set.")
-    ] = None
-    phase_deg: Annotated[
-        Span, Meta(description="Start, end and steps of the map: lead of the second force, degrees.")
-    ] = (0.0, 180.0, 91)
+    model: Annotated[str, model_meta("Model of the operating points.", "unit_responses")] = "segment"
     reflection_limit: Annotated[
         Relative, Meta(gt=0, lt=1, description="Largest reflection of the fastest operating point.")
     ] = 0.1
     operating_loss_factor: Annotated[
-        Relative, Meta(gt=0, lt=1, description="Loss factor of map and operating points where the beam is undamped.")
+        Relative, Meta(gt=0, lt=1, description="Loss factor of the operating points where the beam is undamped.")
     ] = 1e-3
-
-    def __post_init__(self) -> None:
-        for name in ("frequency_hz", "phase_deg"):
-            start, end, steps = getattr(self, name) or (1.0, 2.0, 2)
-            check_number(f"wave.{name}[0]", start, "start of the map", above=0.0 if name == "frequency_hz" else -3600.0)
-            check_number(f"wave.{name}[1]", end, "end of the map", above=start)
-            check_number(f"wave.{name}[2]", steps, "steps of the map", above=1, below=2001)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
@@ -92,27 +84,28 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from msgspec.structs import replace
 
         from verify.models.catalogue import MODELS, discrete
-        from verify.report.result import Column, Result, Table
+        from verify.report.result import Column, Figure, Result, Table
         from verify.waves.case import DrivenCase
         from verify.waves.driven import driven, measured_alone
         from verify.waves.operating_point import operating_points
 
+        drive = scene.drive
+        assert drive is not None
         exact = DrivenCase(
             beam=scene.beam,
             model="analytic",
             count=None,
             forces=scene.forces,
-            frequency_hz=scene.drive.frequency_hz,
-            kind=scene.drive.kind,
+            frequency_hz=drive.frequency_hz,
+            kind=drive.kind,
         )
         models = [model.name for model in discrete("solve_harmonic", scene.beam)]
         rows: list[Row] = []
         for model, count in [("analytic", None), *((model, count) for model in models for count in self.counts)]:
             name = f"{count} {MODELS[model].title}" if count else MODELS[model].title
             progress(name)
-            rows.append(
-                {"name": name, "model": model, "N": count} | _waves(replace(exact, model=model, count=count), cache)
-            )
+            row: Row = {"name": name, "model": model, "N": count}
+            rows.append(row | _waves(replace(exact, model=model, count=count), cache))
         progress("operating points")
         beam = replace(scene.beam, loss_factor=scene.beam.loss_factor or self.operating_loss_factor)
         case = replace(exact, beam=beam, model=self.model, count=self.count if MODELS[self.model].sized else None)
@@ -121,110 +114,62 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         fields |= {model: driven(replace(exact, model=model, count=self.count), cache) for model in models}
         other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
         ratio = measured_alone(driven(other, cache), None, "standing_wave_ratio")
-        wave = [Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
-        wave += [Column("crest speed", "m/s", "+.5g", prefix=True)]
-        best = [Column("best frequency", "Hz", ".2f"), *(dataclasses.replace(c, name=f"{c.name} there") for c in wave)]
-        wave_table = Table(
-            f"The wave over N, at {exact.frequency_hz:g} Hz and at each model's frequency of least reflection",
-            [Column("model"), Column("N"), *wave, *best],
-            [(MODELS[row["model"]].title, row["N"], *_cells(row["drive"])[1:], *_cells(row["best"])) for row in rows],
-            [
-                "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths.",
-                f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
-            ],
-        )
+
+        columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
+        columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
+        columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
+        columns += [si("crest speed there", "m/s", "+.5g")]
+        notes = [
+            "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Right: at the "
+            "model's own frequency of least reflection.",
+            f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
+        ]
+        cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
         at = [Column("operating point"), Column("frequency", "Hz", ".2f"), Column("phase", "°", ".2f")]
-        at += [Column("reflection", format=".4f"), Column("crest speed", "m/s", "+.5g", prefix=True)]
+        at += [Column("reflection", format=".4f"), si("crest speed", "m/s", "+.5g")]
         at += [Column("reflection per Hz", "1/Hz", ".2g"), Column("reflection per degree", "1/°", ".2g")]
-        title = f"Where to drive, {MODELS[self.model].title}, loss factor {beam.loss_factor:g}"
         keys = ("frequency_hz", "phase_deg", "reflection", "crest_speed", "per_hertz", "per_degree")
-        point_table = Table(title, at, [(_point_name(p), *(getattr(p, key) for key in keys)) for p in points])
+        names = ["least reflection" if p.what.startswith("least") else "largest crest speed" for p in points]
+        where = [(name, *(getattr(p, key) for key in keys)) for name, p in zip(names, points, strict=True)]
         size = self.count if self.count in self.counts else max(self.counts)
         ratios = [f"{r['name']} {r['drive'].standing_wave_ratio:.5g}" for r in rows if r["N"] in (None, size)]
+        x, up, magnified, widest = ellipses(fields["analytic"])
+        paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
+        start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
+        caption = (
+            f"To scale up to {widest:.3g} times as wide as high; motion along the beam magnified {magnified:.2g} times."
+        )
         return Result(
-            summary=f"Standing-wave ratio at {exact.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
-            tables=[wave_table, point_table],
-            figures=self._figures(rows, fields, case, points),
-            movies=[_movie(fields, self.count)],
+            summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
+            tables=[
+                Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
+                Table(f"Where to drive, {MODELS[self.model].title}, loss factor {beam.loss_factor:g}", at, where),
+            ],
+            figures=[
+                Figure(
+                    "wave-envelopes",
+                    f"Envelope of the wave, N = {self.count}",
+                    ENVELOPES,
+                    lambda ax: _draw_envelopes(ax, fields),
+                ),
+                Figure(
+                    "wave-ellipses",
+                    "Surface ellipses along the beam, exact field",
+                    caption,
+                    lambda ax: plot_lines(ax, [*paths, start], ("x", "m"), ("deflection", "m")),
+                ),
+                Figure(
+                    "wave-sizes", "Error of the standing-wave ratio over N", SIZES, lambda ax: _draw_sizes(ax, rows)
+                ),
+            ],
+            movies=[movie("wave-moving", f"One period, N = {self.count}", MOVIE, _movie(fields, self.count))],
             warnings=[
                 *(f"{row['name']}: {row['note']}." for row in rows if row["note"]),
-                *(f"{_point_name(point)}: {point.note}." for point in points if point.note),
+                *(f"{name}: {point.note}." for name, point in zip(names, points, strict=True) if point.note),
                 *map(str, problems),
             ],
             data={"rows": rows, "points": points, "other_drive_standing_wave_ratio": ratio},
         )
-
-    def _figures(
-        self, rows: list[Row], fields: Fields, case: "DrivenCase", points: "tuple[OperatingPoint, ...]"
-    ) -> "list[Figure]":
-        from verify.report.result import Figure
-
-        _, _, magnified, widest = _ellipses(fields["analytic"])
-        return [
-            Figure(
-                "wave-envelopes",
-                f"Envelope of the wave, N = {self.count}",
-                "A pure travelling wave on one section without losses has a flat envelope; ripples are reflection. "
-                "Near forces and ends the near field decays.",
-                lambda ax: _draw_envelopes(ax, fields),
-            ),
-            Figure(
-                "wave-ellipses",
-                "Surface ellipses along the beam, exact field",
-                f"To scale they are up to {widest:.3g} times as wide as high; motion along the beam is magnified "
-                f"{magnified:.2g} times. Dots: t = 0.",
-                lambda ax: _draw_ellipses(ax, fields["analytic"]),
-            ),
-            Figure(
-                "wave-map",
-                "Standing-wave ratio over frequency and phase",
-                f"Window [L/4, 3L/4], loss factor {case.beam.loss_factor:g}, cut off at {LARGEST_RATIO:g}. Markers: "
-                "operating points.",
-                lambda ax: self._draw_map(ax, case, points),
-            ),
-            Figure(
-                "wave-sizes",
-                "Error of the standing-wave ratio over N",
-                "Against the exact beam: solid at the drive's frequency, dotted each model at its own frequency of "
-                "least reflection.",
-                lambda ax: self._draw_sizes(ax, rows),
-            ),
-        ]
-
-    def _draw_map(self, ax: "Axes", case: "DrivenCase", points: "tuple[OperatingPoint, ...]") -> None:
-        import numpy as np
-
-        from verify.waves.operating_point import landscape
-
-        span = self.frequency_hz or (0.9 * case.frequency_hz, 1.1 * case.frequency_hz, 121)
-        frequencies, phases = np.linspace(*span), np.linspace(*self.phase_deg)
-        reflection, _ = landscape(case).over(frequencies, phases)
-        ratio = (1.0 + reflection) / np.maximum(1.0 - reflection, 1e-12)
-        mesh = ax.pcolormesh(frequencies, phases, np.minimum(ratio, LARGEST_RATIO).T, shading="nearest", cmap="viridis")
-        ax.figure.colorbar(mesh, ax=ax, label="standing-wave ratio")
-        for point, marker in zip(points, ("o", "*"), strict=False):
-            ax.plot(
-                point.frequency_hz, point.phase_deg, marker, color="#ff5a36", markersize=9, label=_point_name(point)
-            )
-        ax.set(xlabel="frequency, Hz", ylabel="phase of the second force, °", xlim=(span[0], span[1]))
-        ax.grid(False)
-        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-
-    def _draw_sizes(self, ax: "Axes", rows: list[Row]) -> None:
-        from verify.models.catalogue import MODELS
-        from verify.report.plotting import MODEL_COLORS
-
-        for model in dict.fromkeys(row["model"] for row in rows[1:]):
-            own = [row for row in rows if row["model"] == model]
-            color, title = MODEL_COLORS.get(model, MODELS[model].colour), MODELS[model].title
-            for key, style, text in (("drive", "-o", "at the drive"), ("best", ":o", "at its best frequency")):
-                pairs = [(row["N"], row[key], rows[0][key]) for row in own]
-                known = [(n, abs(a.standing_wave_ratio - b.standing_wave_ratio)) for n, a, b in pairs if a and b]
-                if known:
-                    ax.loglog(*zip(*known, strict=True), style, color=color, label=f"{title}, {text}")
-        size_axis(ax, self.counts)
-        ax.set_ylabel("|difference of the standing-wave ratio|")
-        ax.legend()
 
 
 def _waves(case: "DrivenCase", cache: "SolutionCache") -> Row:
@@ -248,14 +193,10 @@ def _cells(one: "Operation | None") -> tuple[float | None, ...]:
     return (one.frequency_hz, one.standing_wave_ratio, one.axis_ratio, one.crest_speed) if one else (None,) * 4
 
 
-def _point_name(point: "OperatingPoint") -> str:
-    return "least reflection" if point.what.startswith("least") else "largest crest speed"
+def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
+    """Motion of surface points of the middle half over one period.
 
-
-def _ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
-    """Motion of 13 surface points of the middle half over one period.
-
-    (x with the motion along the beam magnified so that neighbours do not touch, (13, FRAMES + 1), height likewise,
+    (x with the motion along the beam magnified so that neighbours do not touch, (POINTS, FRAMES + 1), height likewise,
     metres, that magnification, largest true ratio of width to height).
     """
     import numpy as np
@@ -263,7 +204,7 @@ def _ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     from verify.waves.measures import lifted
 
     turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
-    places = np.linspace(0.25, 0.75, 13) * field.beam.length
+    places = np.linspace(0.25, 0.75, POINTS) * field.beam.length
     along = (lifted(field.beam, field.turn(places))[:, None] * turn).real
     up = (field.deflection(places)[:, None] * turn).real
     magnified = float(0.42 * (places[1] - places[0]) / abs(along).max())
@@ -275,57 +216,45 @@ def _draw_envelopes(ax: "Axes", fields: Fields) -> None:
     import numpy as np
 
     from verify.models.catalogue import MODELS
-    from verify.report.plotting import MODEL_COLORS
-    from verify.units import unit_of, unit_over
 
-    length = fields["analytic"].beam.length
-    x = np.linspace(0.0, length, 601)
-    lines = {model: abs(field.deflection(x)) for model, field in fields.items()}
-    along, up = unit_of(length), unit_over(float(line.max()) for line in lines.values())
-    for model, line in lines.items():
-        color, width = MODEL_COLORS.get(model, MODELS[model].colour), 1.4 if MODELS[model].sized else 4.0
-        ax.plot(along.factor * x, up.factor * line, color=color, linewidth=width, label=MODELS[model].title)
-    ax.set(xlabel=f"x, {along.name}", ylabel=f"amplitude, {up.name}")
-    ax.legend()
+    x = np.linspace(0.0, fields["analytic"].beam.length, 601)
+    lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
+    plot_lines(ax, lines, ("x", "m"), ("amplitude", "m"))
 
 
-def _draw_ellipses(ax: "Axes", field: "HarmonicField") -> None:
-    from verify.report.plotting import MODEL_COLORS
-    from verify.units import unit_of, unit_over
+def _draw_sizes(ax: "Axes", rows: list[Row]) -> None:
+    from verify.models.catalogue import MODELS
 
-    x, up, *_ = _ellipses(field)
-    along, height = unit_of(field.beam.length), unit_over([float(abs(up).max())])
-    ax.plot((along.factor * x).T, (height.factor * up).T, color=MODEL_COLORS["segment"])
-    ax.plot(along.factor * x[:, 0], height.factor * up[:, 0], "o", color=SURFACE)
-    ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {height.name}")
+    lines = []
+    for model in dict.fromkeys(row["model"] for row in rows[1:]):
+        own = [row for row in rows if row["model"] == model]
+        for key, style, text in (("drive", "-o", "at the drive"), ("best", ":o", "at its best frequency")):
+            pairs = [(row["N"], row[key], rows[0][key]) for row in own]
+            errors = [a.standing_wave_ratio - b.standing_wave_ratio if a and b else None for _, a, b in pairs]
+            label, color = f"{MODELS[model].title}, {text}", model_style(model)["color"]
+            lines.append((label, color, style, [n for n, _, _ in pairs], errors))
+    plot_errors(ax, lines, "|difference of the standing-wave ratio|")
 
 
-def _movie(fields: Fields, count: int) -> Any:
-    from verify.report.result import Movie
-
-    def animate(figure: "MatplotlibFigure") -> "FuncAnimation":
+def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
+    def set_up(ax: "Axes") -> Any:
         import numpy as np
-        from matplotlib.animation import FuncAnimation
 
         from verify.models.catalogue import MODELS
-        from verify.report.plotting import MODEL_COLORS
         from verify.units import unit_of, unit_over
 
-        exact, ax = fields["analytic"], figure.subplots()
-        x_surface, height, *_ = _ellipses(exact)
+        exact = fields["analytic"]
+        x_surface, height, *_ = ellipses(exact)
         places = {m: np.linspace(0.0, exact.beam.length, (count if MODELS[m].sized else 160) + 1) for m in fields}
         waves = {model: field.deflection(places[model]) for model, field in fields.items()}
         along, up = unit_of(exact.beam.length), unit_over(float(abs(wave).max()) for wave in waves.values())
+        top = 1.15 * up.factor * max(float(abs(wave).max()) for wave in waves.values())
         lines = {}
-        for model in fields:
+        for model, x in places.items():
             style = {"analytic": "-", "segment": "-o"}.get(model, "x")
-            color, width = MODEL_COLORS.get(model, MODELS[model].colour), 1.2 if MODELS[model].sized else 4.0
-            (lines[model],) = ax.plot(
-                along.factor * places[model], np.zeros(len(places[model])), style, color=color, linewidth=width
-            )
-            lines[model].set(label=MODELS[model].title, markersize=3.0)
+            (lines[model],) = ax.plot(along.factor * x, 0.0 * x, style, markersize=3.0, **model_style(model))
+            lines[model].set_label(MODELS[model].title)
         (points,) = ax.plot([], [], "o", color=SURFACE, label="surface points")
-        top = 1.15 * max(up.factor * float(abs(wave).max()) for wave in waves.values())
         ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}", ylim=(-top, top))
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
 
@@ -336,10 +265,6 @@ def _movie(fields: Fields, count: int) -> Any:
             points.set_data(along.factor * x_surface[:, frame], up.factor * height[:, frame])
             return [*lines.values(), points]
 
-        return FuncAnimation(figure, update, frames=FRAMES, interval=60)
+        return update, FRAMES
 
-    caption = (
-        "One period of the drive. Links are straight between their joints. The motion of surface points along the beam "
-        "is magnified as in the ellipses."
-    )
-    return Movie("wave-moving", f"The wave over one period, N = {count}", caption, animate)
+    return set_up

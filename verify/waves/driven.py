@@ -13,11 +13,9 @@ from verify.errors import InputError, ResonanceError
 from verify.judge.compare import relative_error, settled_order
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.models.eigen import field_seconds
 from verify.models.fields import HarmonicField, phasor
 from verify.models.search import Least, least_over
 from verify.models.sweeps import HarmonicSweep
-from verify.patience import check_work
 from verify.waves.case import DrivenCase
 from verify.waves.found import WaveMeasures
 from verify.waves.imposed import driven_field
@@ -53,8 +51,6 @@ class Operation(msgspec.Struct, frozen=True, kw_only=True):
     """m/s for the scene's forces."""
 
 
-SEARCHED = 70
-"""Driven fields behind a best frequency: a grid of 41, the rest by Brent's method."""
 SEARCH_SPAN = 0.015
 """Around the drive's frequency, relative."""
 
@@ -102,16 +98,6 @@ def swept(case: DrivenCase, frequencies: Array, bench: "SolutionCache") -> Harmo
         solve = MODELS.named(case.model).sweep_harmonic
         bench.sweeps[key] = solve(case.beam, case.forces, frequencies, case.count, **dict(case.settings))
     return bench.sweeps[key]
-
-
-def check_fields(beam: Beam, name: str, counts: Sequence[int | None], times: int = 1) -> None:
-    """Raise InputError where driven fields of a model of parts at all sizes, so many times, would take too long."""
-    sizes = [count for count in counts if count is not None]
-    if not sizes:
-        return
-    model, laden = MODELS.named(name), bool(set(beam.added) - {"section"})
-    seconds = times * sum(field_seconds(model.unknowns(beam, count), laden) for count in sizes)
-    check_work("count", max(sizes), seconds, f"lower it, {times * len(sizes)} driven fields are asked for")
 
 
 def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMeasures:
@@ -210,7 +196,6 @@ def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: 
 def quietest_drive(case: DrivenCase, span: float, window: Window | None, bench: "SolutionCache") -> Least:
     """Where within `span` of the drive's frequency the reflection is least. Raises InputError where the wave stands."""
     centre = case.frequency_hz
-    check_fields(case.beam, case.model, (case.count,), SEARCHED)
 
     def reflection(frequency: float) -> float:
         try:
@@ -265,7 +250,6 @@ def wave_order(
 ) -> float:
     """The observed order of a discrete model's figure towards the exact field's of its theory. Raises InputError."""
     places = window or middle_half(case.beam)
-    check_fields(case.beam, case.model, counts)
 
     def figure(one: DrivenCase) -> complex:
         field = driven(one, bench)

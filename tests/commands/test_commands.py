@@ -1,0 +1,248 @@
+"""Every command as it is called: exit status, what stands on which stream, and the numbers."""
+
+import json
+from math import pi, sqrt
+from pathlib import Path
+
+import pytest
+
+from verify.cli import COMMANDS, status_of
+
+SMALL = str(Path(__file__).parents[1] / "report" / "small.toml")
+BARE = """name = "bare"
+[beam]
+length = 0.43
+bending_stiffness = 3.1
+mass_per_length = 0.27
+supports = ["pinned", "pinned"]
+[spectrum]
+modes = 3
+count = 9
+[[gate]]
+id = "fundamental"
+quantity = "mode.frequency"
+arguments = { model = "analytic", mode = 1 }
+expect = 28.7860404
+within = 1e-4
+why = "Closed form."
+"""
+FUNDAMENTAL = pi / 2.0 * sqrt(3.1 / 0.27) / 0.43**2
+
+
+@pytest.fixture
+def bare(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bare.toml").write_text(BARE)
+
+
+@pytest.fixture
+def call(capsys):
+    """Call a command line; (exit status, standard output, error stream)."""
+
+    def called(line, *more):
+        status = status_of([*line.split(), *more])
+        out, err = capsys.readouterr()
+        return status, out, err
+
+    return called
+
+
+@pytest.fixture
+def data(call):
+    """JSON on standard output of a command that succeeds."""
+
+    def called(line, *more):
+        status, out, err = call(line, "--json", *more)
+        assert (status, err) == (0, "")
+        return json.loads(out)
+
+    return called
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help(call, name):
+    status, out, _ = call(f"{name} --help")
+    assert status == 0
+    assert out.startswith(f"Usage: verify {name}")
+
+
+def test_help_lists_the_commands(call):
+    status, out, _ = call("--help")
+    assert status == 0
+    assert all(f"\n  {name} " in out for name in COMMANDS)
+
+
+REFUSED = [
+    ("runn", "No such command"),
+    ("measure bare.toml", "Missing argument 'QUANTITY'"),
+    ("measure nowhere mode.frequency model=fem mode=1 count=4", "neither a packaged scene nor a file"),
+    ("measure bare.toml mode.frequenzy model=fem mode=1 count=4", "did you mean 'mode.frequency'"),
+    ("measure bare.toml mode.frequency model=fem mode=1", "count is missing"),
+    ("measure bare.toml mode.frequency model=fem mode=1 count=4 n=2", "n is not a known key"),
+    ("measure bare.toml mode.frequency model=fem mode=0 count=4", "mode = 0"),
+    ("measure bare.toml mode.frequency model=fem mode=40 count=4", "mode = 40"),
+    ("measure bare.toml mode.deflection model=fem mode=1 count=4 x=0.5", "off the beam"),
+    ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.lenght=1", "did you mean 'length'"),
+    ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.length=-1", "beam.length = -1"),
+    ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.length", "write key=value"),
+    ("table bare.toml --study spektrum", "did you mean 'spectrum'"),
+    ("table bare.toml --study wave", "[drive]"),
+    ("table bare.toml modes=0 counts=4,8", "modes"),
+    ("table bare.toml moods=1", "did you mean 'modes'"),
+    ("table bare.toml --csv --json", "exclude each other"),
+    ("choose bare.toml --mode 2 --error 5", "per cent"),
+    ("choose bare.toml --mode 0 --error 1%", "mode = '0'"),
+    ("choose bare.toml --mode 1,3 --error 1%", "one mode, or all of a range"),
+    ("choose bare.toml --mode 2 --error 1% wall=soft", "wall"),
+    ("choose bare.toml --mode 2 --error 1% wall", "RULE=VALUE"),
+    ("quantities nothing-like-it", "no quantity matches"),
+    ("plan bare.toml --set gate.nowhere.within=1", "gate.nowhere"),
+    ("scenes show nowhere", "neither a packaged scene nor a file"),
+    ("scenes init bare.toml", "exists"),
+    ("scenes init other.toml --from nowhere", "neither a packaged scene nor a file"),
+    ("schema beam.sprung", "did you mean 'beam.spring'"),
+    ("diff bare.toml bare.toml", "no saved run"),
+    ("diff here there", "does not exist"),
+    ("export bare.toml --to a.doc", "no file type"),
+    ("run bare.toml --keep -1", "--keep"),
+    ("run bare.toml --set spectrum.modes=x", "spectrum.modes"),
+    ("sweep bare.toml", "sweep"),
+    ("sweep bare.toml count=4,8", "QUANTITY is missing"),
+    ("sweep bare.toml mode.frequency model=fem mode=1 cuont=4,8", "did you mean 'count'"),
+]
+
+
+@pytest.mark.parametrize(("line", "message"), REFUSED)
+def test_bad_input_is_one_message(call, bare, tmp_path, line, message):
+    status, out, err = call(line)
+    assert (status, out) == (2, "")
+    assert message in err
+    assert "Traceback" not in err
+    assert [one.name for one in tmp_path.iterdir()] == ["bare.toml"]
+
+
+def test_control_characters_are_escaped(call, bare):
+    _, _, err = call("measure", "bare\x1b[2J.toml", "x")
+    assert "\x1b" not in err
+
+
+def test_all_errors_of_a_scene(call, bare):
+    status, _, err = call("plan bare.toml --set beam.length=0 --set beam.supports=pinned --set spectrum.count=0")
+    assert status == 2
+    assert len(err.splitlines()) >= 2
+    assert all(line.startswith("verify: ") for line in err.splitlines())
+
+
+def test_measure_is_the_closed_form(call, data, bare):
+    line = "measure bare.toml mode.frequency model=analytic mode=1"
+    assert data(line)["value"] == pytest.approx(FUNDAMENTAL, rel=1e-12)
+    assert call(line)[1] == f"mode.frequency = {FUNDAMENTAL:.12g} Hz\n"
+    longer = data(line, "--set", "beam.length=0.86")
+    assert longer["value"] == pytest.approx(FUNDAMENTAL / 4.0, rel=1e-12)
+
+
+def test_measure_shows_complex_values(data):
+    value = data(f"measure {SMALL} wave.deflection model=analytic x=0.2")["value"]
+    assert set(value) == {"re", "im"}
+    assert value["im"] != 0.0
+
+
+def test_plan_lists_parts(data, bare):
+    (table,) = data("plan bare.toml")["tables"]
+    rows = {row["what"]: row for row in table["rows"]}
+    assert rows["fundamental"]["runs"] is True
+    assert rows["spectrum"]["runs"] is True
+    assert rows["motion"]["runs"] is False
+    (table,) = data("plan bare.toml", "--set", "beam.length=0.5")["tables"]
+    assert "beam.length" in table["rows"][0]["quantity, or why skipped"]
+
+
+def test_scenes_in_every_format(call, data):
+    names = [row["scene"] for row in data("scenes")["tables"][0]["rows"]]
+    assert {"paper", "steel-cantilever"} <= set(names)
+    assert call("scenes list --csv")[1].splitlines()[0] == "scene,title,gates"
+    assert call("scenes --markdown")[1].count("\n") == len(names) + 2
+    assert all(name in call("scenes")[1] for name in names)
+
+
+def test_scenes_show_the_file_or_the_values(call, data, bare):
+    assert call("scenes show bare.toml")[1] == BARE
+    _, out, _ = call("scenes show bare.toml --set beam.length=0.86")
+    assert "length = 0.86" in out
+    assert data("scenes show bare.toml", "--set", "spectrum.modes=2")["spectrum"] == {"modes": 2, "count": 9}
+
+
+def test_new_scenes_are_valid(call, bare):
+    assert call("scenes init mine.toml")[0] == 0
+    assert call("plan mine.toml")[0] == 0
+    assert call("scenes init copy.toml --from steel-cantilever")[0] == 0
+    assert 'name = "copy"' in Path("copy.toml").read_text()
+    assert call("scenes init copy.toml --from bare.toml --force")[0] == 0
+    assert call("plan copy.toml")[0] == 0
+
+
+def test_quantities_are_searched(call, data):
+    every, few = data("quantities"), data("quantities mode order")
+    assert len(every) > len(few) > 0
+    assert {"mode.order"} <= {one["name"] for one in few}
+    assert "Arguments of mode.plate_error" in call("quantities mode.plate_error")[1]
+
+
+def test_table_in_every_format(call, data, bare):
+    line = "table bare.toml modes=1,2 counts=5,7,9"
+    first = data(line)["tables"][0]["rows"]
+    assert sorted({row["N"] for row in first}) == [5, 7, 9]
+    assert len(call(f"{line} --csv")[1].splitlines()) == len(first) + 1
+    assert call(f"{line} --markdown")[1].startswith("| mode |")
+    assert "order" in call(line)[1]
+
+
+def test_table_of_another_study(data, bare):
+    rows = data("table bare.toml --study spectrum")["tables"][0]["rows"]
+    assert [row["mode"] for row in rows] == [1, 2, 3]
+    assert len(data("table bare.toml modes=2 --study spectrum")["tables"][0]["rows"]) == 2
+
+
+def test_charts_are_written(call, bare):
+    assert call("table bare.toml --study spectrum --charts charts")[0] == 0
+    assert any(one.read_text().startswith("<svg") for one in Path("charts").glob("*.svg"))
+
+
+def test_choose_is_sufficient(data, bare):
+    rows = data("choose bare.toml --mode 2 --error 0.5%")["tables"][0]["rows"]
+    for row in rows:
+        assert abs(row["error"]) <= 0.005
+        smaller = f"measure bare.toml mode.frequency_error mode=2 count={row['N'] - 1} model="
+        model = "segment" if row["model"].startswith("segment") else "fem"
+        assert abs(data(smaller + model)["value"]) > 0.005
+
+
+def test_choose_takes_ranges_and_rules(data):
+    rows = data(f"choose {SMALL} wall=half,gregory --mode 1-3 --error 1%")["tables"][0]["rows"]
+    assert len(rows) == 3
+    assert max(row["N"] for row in rows) < 60
+
+
+def test_sweep_of_a_quantity(data, bare):
+    line = "sweep bare.toml mode.frequency model=segment mode=2 count=9,17 beam.length=0.43,0.86"
+    rows = data(line)["tables"][0]["rows"]
+    assert len(rows) == 4
+    short, long = ([row["mode.frequency"] for row in rows if row["beam.length"] == length] for length in (0.43, 0.86))
+    assert [a / b for a, b in zip(short, long, strict=True)] == pytest.approx([4.0, 4.0], rel=1e-9)
+
+
+def test_schema_of_sections(call, data):
+    assert "beam.spring" in call("schema")[1]
+    assert "stiffness" in call("schema beam.spring")[1]
+    assert data("schema")["properties"]["beam"]
+    assert data("schema beam")["required"] == ["length"]
+
+
+def test_schema_file(call, bare):
+    assert call("schema --to s.json")[0] == 0
+    assert json.loads(Path("s.json").read_text())["$schema"].startswith("http://json-schema.org")
+
+
+def test_export_by_command(call, bare):
+    status, out, _ = call("export bare.toml --what modes --mode 3 --to m.csv")
+    assert (status, out) == (0, "wrote m.csv: modes 1 to 3, 9 segments\n")

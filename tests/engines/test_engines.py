@@ -1,0 +1,143 @@
+"""The chain that engines get, its exact references, and each engine where it is installed."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import segment_model
+from verify.beam import PointForce
+from verify.chain.dynamics import at_rest
+from verify.chain.splitting import linear_deflection, modal_basis
+from verify.chain.stepping import step_limit
+from verify.chain.system import build_system
+from verify.engines import ENGINES, chain_of, missing, references, rider_of
+from verify.errors import InputError
+from verify.slider import Slider, changed
+
+FORCES = (
+    PointForce(position=0.0731, amplitude=0.013, phase_deg=-37.0),
+    PointForce(position=0.5219, amplitude=0.021, phase_deg=71.0),
+    PointForce(position=0.0797, amplitude=0.005, phase_deg=160.0),
+)
+"""The first and the last on one link of 13, none on a joint."""
+FREQUENCY, END = 1234.5, 2e-3
+SLIDER = Slider(mass=2.3e-3, mu=0.31, slope=3e3, position=0.297, speed=1.7e-4, coupling="one-way")
+STEPS = {"Exudyn": 500, "MuJoCo": 50, "Pinocchio": 50}
+ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2), "Pinocchio": (3.7, 5.2)}
+
+
+@pytest.fixture
+def chain(titanium_strip):
+    return chain_of(titanium_strip, 13, FORCES, FREQUENCY)
+
+
+@pytest.fixture
+def rider(titanium_strip):
+    return rider_of(titanium_strip, SLIDER)
+
+
+@pytest.fixture(params=ENGINES.own())
+def engine(request):
+    if why := missing(ENGINES[request.param]):
+        pytest.skip(why)
+    return ENGINES[request.param]
+
+
+def relative_rms(values, exact):
+    return float(np.sqrt(np.mean((values - exact) ** 2) / np.mean(exact**2)))
+
+
+def test_chain_has_the_mass_and_stiffness_of_the_beam(titanium_strip, chain):
+    assert chain.n * chain.mass == pytest.approx(titanium_strip.mass_per_length * 0.73, rel=1e-14)
+    assert chain.spring == pytest.approx(13 * titanium_strip.bending_stiffness / 0.73, rel=1e-14)
+    assert chain.inertia == pytest.approx(chain.mass * (0.73 / 13) ** 2 / 12, rel=1e-14)
+    assert chain.locate(0.0731) == (1, pytest.approx(0.0731 - 0.73 / 13, rel=1e-12))
+    phases = 2 * np.pi * FREQUENCY * 1.3e-4 + np.radians([-37.0, 71.0, 160.0])
+    assert chain.force_values(1.3e-4) == pytest.approx([0.013, 0.021, 0.005] * np.cos(phases), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "count", "message"),
+    [
+        ({"supports": ("clamped", "pinned")}, 13, "beam.supports"),
+        ({"tension": 3.0}, 13, "beam.tension"),
+        ({"loss_factor": 0.01}, 13, "beam.loss_factor = 0.01"),
+        ({"length": 0.5}, 13, r"force\[1\].position"),
+        ({}, 5, "count = 5"),
+    ],
+)
+def test_other_beams_are_rejected(titanium_strip, change, count, message):
+    with pytest.raises(InputError, match=message):
+        chain_of(replace(titanium_strip, **change), count, FORCES, FREQUENCY)
+
+
+@pytest.mark.parametrize("change", [{"law": "coulomb"}, {"kinematics": "following"}, {"coupling": "auto"}])
+def test_other_sliders_are_rejected(titanium_strip, change):
+    ((name, value),) = change.items()
+    with pytest.raises(InputError, match=f"slider.{name} = '{value}'"):
+        rider_of(titanium_strip, changed(SLIDER, **change))
+
+
+def test_surface_speed_is_exact_for_parabolic_spins(chain, rider):
+    middles = (np.arange(13) + 0.5) * chain.link
+    spins, x = 3.0 - 2.0 * middles + 7.0 * middles**2, 0.2573
+    joints = 3.0 - 2.0 * x + 7.0 * (x**2 + 0.25 * chain.link**2)  # means of two links
+    assert rider.surface_speed(chain, spins, x) == pytest.approx(-rider.half_thickness * joints, rel=1e-12)
+    assert rider.surface_speed(chain, spins[2:7], x, 2) == rider.surface_speed(chain, spins, x)
+
+
+def test_references_agree_with_the_package(titanium_strip, chain):
+    modes = segment_model.solve_modes(titanium_strip, 12, n_segments=13)
+    assert references.frequencies(chain) == pytest.approx(modes.frequencies_hz, rel=1e-13)
+    system = build_system(titanium_strip, 13, list(FORCES), FREQUENCY)
+    times = np.linspace(1e-5, 7e-3, 141)
+    for x in (0.31, 0.365):
+        own = linear_deflection(modal_basis(system), at_rest(system), times, x)
+        assert np.abs(references.deflection(chain, times, x) - own).max() < 1e-10 * np.abs(own).max()
+    assert references.stability_limit(chain) == pytest.approx(step_limit(system, at_rest(system)), rel=1e-3)
+
+
+def test_slider_on_a_still_chain_decays_exactly(titanium_strip, rider):
+    still = chain_of(titanium_strip, 13, [PointForce(position=0.2, amplitude=0.0)], FREQUENCY)
+    times, _, speed = references.ride(still, rider, 3e-4, 600)
+    rate = rider.friction * rider.slope / rider.mass
+    exact = np.arcsinh(np.sinh(rider.slope * rider.speed) * np.exp(-rate * times)) / rider.slope
+    assert speed == pytest.approx(exact, rel=1e-9)
+
+
+def test_missing_engine_is_named(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    for engine in ENGINES.values():
+        with pytest.raises(InputError, match=f"{engine.name} is not installed: pip install {engine.package}"):
+            engine.adapter()
+
+
+def test_engine_frequencies_are_the_chains(engine, chain):
+    assert engine.adapter().frequencies(chain) == pytest.approx(references.frequencies(chain), rel=1e-9)
+
+
+def test_engine_converges_at_its_order(engine, chain):
+    steps = STEPS[engine.name]
+    runs = [engine.adapter().run(chain, n, END) for n in (steps, 2 * steps)]
+    errors = [relative_rms(run.deflection, references.deflection(chain, run.times)) for run in runs]
+    low, high = ORDERS[engine.name]
+    assert low < np.log2(errors[0] / errors[1]) < high
+    assert errors[1] < 1e-3
+    assert [run.failure for run in runs] == ["", ""]
+    assert runs[1].steps == pytest.approx(2 * steps, abs=1)
+
+
+def test_engine_moves_the_slider(engine, chain, rider):
+    times, distance, speed = references.ride(chain, rider, END, 8000)
+    run = engine.adapter().run(chain, 2 * STEPS[engine.name], END, rider)
+    assert relative_rms(run.distance, np.interp(run.times, times, distance)) < 1e-3
+    assert relative_rms(run.speed, np.interp(run.times, times, speed)) < 1e-3
+
+
+def test_unstable_step_is_reported(engine, chain, capfd):
+    if engine.implicit:
+        pytest.skip("it has no stability limit")
+    run = engine.adapter().run(chain, round(2e-2 / (1.5 * references.stability_limit(chain))), 2e-2)
+    assert "at t = 0.0" in run.failure
+    assert run.times[-1] < 2e-2
+    assert capfd.readouterr() == ("", "")

@@ -1,0 +1,271 @@
+"""Every quantity: a finite value on one scene, bad input refused, and no argument without effect."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify.analytic_modes import solve_harmonic
+from verify.attached import PointMass
+from verify.beam import Beam, PointForce
+from verify.device import Device
+from verify.errors import InputError
+from verify.exact.closed_forms import frequency_hz
+from verify.fem_beam import solve_modes
+from verify.judge.bracket import Bracket
+from verify.judge.cache import SolutionCache
+from verify.motion.simulate import simulate
+from verify.quantities import QUANTITIES, describe, evaluate, parse_arguments, quantity
+from verify.quantities.base import as_plain, as_text
+from verify.slider import Contact, Slider
+from verify.travelling_wave import measure
+
+STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
+DAMPED = replace(STRIP, loss_factor=0.021)
+BODY = PointMass(position=0.213, mass=0.047, rotary_inertia=3.1e-5)
+LOADED = replace(STRIP, supports=("clamped", "free"), tension=7.1, mass=(BODY,))
+ELASTIC = replace(LOADED, supports=("clamped", "pinned"), loss_factor=0.021)
+RIDER = Slider(mass=3e-6, mu=0.23, slope=310.0, position=0.271, speed=0.004, preload=0.003)
+LIGHT = Slider(mass=1e-6, mu=0.003, slope=2100.0, position=0.271, speed=3e-4, preload=0.003)
+HEAVY = replace(RIDER, mass=0.02, coupling="two-way")
+TOUCHING = Contact(stiffness=6.1e4, damping=13.0)
+POINT = replace(RIDER, mass=0.003, law="coulomb", slope=None, speed=-1.3e-4, preload=0.31, contact=TOUCHING)
+ENDED = Device(position=0.647, stiffness=910.0, mass=0.0071, dashpot=1.3)
+FORCES = (PointForce(position=0.0411, amplitude=1.3, phase_deg=17.0), PointForce(position=0.6727, phase_deg=101.0))
+AT_ONCE = {"start": "rest", "soft_start_periods": 0.0, "modal_damping": None, "steps_per_period": 40}
+
+
+def scene_of(beam, slider=None, duration=None, devices=()):
+    drive = SimpleNamespace(frequency_hz=731.0, kind="force")
+    motion = SimpleNamespace(duration=duration, **AT_ONCE) if duration else None
+    return SimpleNamespace(beam=beam, drive=drive, forces=FORCES, devices=devices, slider=slider, motion=motion)
+
+
+BARE = SimpleNamespace(beam=STRIP, drive=None, forces=(), devices=(), slider=None, motion=None)
+SCENES = {
+    "bare": BARE,
+    "clamped": scene_of(replace(STRIP, supports=("clamped", "pinned"))),
+    "loaded": scene_of(LOADED),
+    "driven": scene_of(DAMPED, RIDER, 1.1e-3),
+    "heavy": scene_of(DAMPED, HEAVY, 1.1e-3),
+    "elastic": scene_of(ELASTIC),
+    "undamped": scene_of(STRIP, LIGHT, 7e-4),
+    "motor": scene_of(DAMPED, replace(POINT, coupling="one-way")),
+    "device": scene_of(DAMPED, devices=(ENDED,)),
+}
+SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
+TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
+BELT = {"mass": 0.31, "stiffness": 47.0, "static": 1.1, "kinetic": 0.7, "speed": 0.13}
+LAYER = {"contact_half_angle": 1.1, "speed_ratio": 0.71}
+FREE = {**HELD, "periods": 60}
+# fmt: off
+CASES: dict[str, tuple[str, dict[str, Any]]] = {
+    "mode.frequency": ("loaded", {**SEGMENT, "mode": 3, "joints": "tensioned"}),
+    "mode.frequency_error": ("loaded", {**FEM, "mode": 3}), "mode.plate_error": ("bare", {"mode": 5}),
+    "mode.law_ratio": ("clamped", {**SEGMENT, "mode": 2}),
+    "mode.shape_error": ("clamped", {**SEGMENT, "mode": 2, "reading": "raw"}),
+    "mode.curvature_error": ("clamped", {**SEGMENT, "mode": 2}),
+    "mode.deflection": ("loaded", {"model": "analytic", "mode": 3, "x": 0.31}),
+    "mode.slope": ("loaded", {**SEGMENT, "mode": 2, "x": 0.31}),
+    "mode.node_position": ("loaded", {**FEM, "mode": 4, "node": 2}),
+    "mode.order": ("clamped", {"model": "segment", "mode": 5, "counts": [12, 16, 24], "wall": "half"}),
+    "mode.shape_order": ("clamped", {"model": "segment", "mode": 2, "counts": [8, 16, 32], "reading": "raw"}),
+    "mode.bracket": ("clamped", {"mode": 3, "count": 9, "wall": "half"}),
+    "mode.count_needed": ("clamped", {"model": "segment", "mode": 3, "error": 4e-3, "wall": "half"}),
+    "mode.stock_difference": ("clamped", {"mode": 3, "count": 17}), "drive.rule_frequency": ("bare", {"mode": 5}),
+    "drive.quarter_wavelength": ("driven", {}), "beam.buckling_load": ("loaded", {**SEGMENT}),
+    "wave.deflection": ("device", {**FEM, "x": 0.31}), "wave.slope": ("driven", {**SEGMENT, "count": 14, "x": 0.31}),
+    "wave.curvature": ("driven", {"x": 0.31}),
+    **{f"wave.{name}": ("device", {}) for name in ("standing_wave_ratio", "reflection", "energy_flux", "crest_speed")},
+    **{f"wave.{name}": ("driven", {**SEGMENT, "count": 30}) for name in ("envelope", "travelling_index")},
+    "wave.signed_area_spread": ("driven", {"window": [0.2, 0.5]}), "wave.axis_ratio": ("driven", {"x": 0.31}),
+    "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
+    "wave.order": ("driven", {"model": "fem", "counts": [20, 40, 80]}),
+    "wave.lumped_swr": ("bare", {"x": 0.31, "modes": [5, 6]}),
+    "wave.receptance": ("driven", {**FEM, "position": 0.21, "x": 0.31}),
+    "wave.reflection_per_hertz": ("driven", {**FEM}), "wave.reflection_per_degree": ("driven", {}),
+    "wave.fastest_crests": ("driven", {"limit": 0.7}), "wave.absorber_impedance": ("driven", {"position": 0.083}),
+    "wave.absorber_reflection": ("driven", {"position": 0.083, "resistance": 1.3, "mass": 0.003, "stiffness": 910.0}),
+    **{f"slider.{name}": ("driven", TIME) for name in ("displacement", "mean_speed", "largest_friction", "reversal")},
+    **{f"slider.{name}": ("driven", TIME) for name in ("mean_friction", "mean_surface_speed", "imbalance")},
+    "slider.order": ("driven", {"count": 12, "steps": [2e-5, 1e-5, 5e-6]}),
+    "slider.deflection": ("driven", {**TIME, "x": 0.31}), "slider.energy": ("driven", {**TIME, "of": "friction_loss"}),
+    "slider.coupling_size": ("driven", {"of": "friction", **FEM}),
+    "slider.terminal_speed": ("driven", {"amplitude": 1e-6, "slope": 310.0, "mu": 0.23}),
+    "motion.deflection": ("driven", {**TIME, "x": 0.31}),
+    "motion.reflection": ("driven", {**TIME, "time": 4e-3, "window": [0.2, 0.5], "start": "steady"}),
+    **{f"slider.{name}": ("motor", HELD) for name in ("stall_force", "normal_mean", "contact_share", "stuck_share")},
+    **{f"slider.{name}": ("motor", {**HELD, "speed": -3e-4}) for name in ("force_speed", "power", "wear_power")},
+    "slider.efficiency": ("motor", {**HELD, "speed": -3e-4}), "slider.no_load_speed": ("motor", HELD),
+    "slider.free_speed": ("motor", {**FREE, "periods": 400, "last": 100}),
+    "slider.start_time": ("motor", {**FREE, "periods": 400, "last": 100}), "slider.contact_imbalance": ("motor", FREE),
+    "chain.cantilever_tip": ("bare", {"segments": 7, "load": 1.7}),
+    "chain.rollup_gap": ("bare", {"segments": 7, "wall": "gregory"}),
+    "chain.hanging_frequency": ("bare", {"segments": 7, "mode": 2}),
+    "chain.turning_frequency": ("bare", {"segments": 7, "mode": 2, "speed": 1.3}),
+    "chain.large_amplitude_frequency": ("bare", {"segments": 6, "amplitude": 0.9}),
+    "chain.energy_drift": ("bare", {"segments": 5, "periods": 0.2}), "chain.imbalance": ("bare", {"segments": 4}),
+    "chain.contact_line_error": ("clamped", {"segments": 9, "mode": 2, "x": 0.31}),
+    "chain.transient_deflection": ("undamped", {"segments": 5, "time": 7e-4, "x": 0.31}),
+    "chain.axial_departure": ("undamped", {"segments": 5, "force": 30.0, "time": 7e-4}),
+    **{f"chain.slider_{n}": ("undamped", {"segments": 5}) for n in ("displacement", "mean_speed", "imbalance")},
+    "friction.creep_speed": ("bare", {"mu": 0.23, "slope": 310.0, "pull": 1.1}),
+    "friction.belt_stick_time": ("bare", BELT), "friction.belt_slip_time": ("bare", BELT),
+    "friction.coulomb_decrement": ("bare", {"mass": 0.31, "stiffness": 47.0, "force": 0.7}),
+    "slider.winkler_speed_ratio": ("bare", {"contact_half_angle": 1.1}),
+    "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}), "slider.layer_efficiency": ("bare", LAYER),
+    "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}),
+    "contact.restitution": ("bare", {"mass": 0.003, "stiffness": 6.1e4, "damping": 1.3}),
+    "slider.wave_force": ("driven", {**LAYER, "points": 21, "steps_per_period": 32}),
+    "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),
+}
+# fmt: on
+CACHES = {name: SolutionCache(scene.beam) for name, scene in SCENES.items()}
+
+
+def figure(name, remove="", **changed):
+    where, arguments = CASES[name]
+    given = {key: value for key, value in {**arguments, **changed}.items() if key != remove}
+    return evaluate(name, given, SCENES[where], CACHES[where])
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_value_is_finite(name):
+    value = figure(name)
+    kind = Bracket if name == "mode.bracket" else complex if isinstance(value, complex) else float
+    assert isinstance(value, kind | int)
+    assert np.isfinite([value.lower, value.upper] if isinstance(value, Bracket) else [value]).all()
+    assert as_text(value)
+    assert as_plain(value) is not None
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_bad_value_is_refused(name):
+    bad = {"whole number": 0.5, "number": float("nan"), "true | false": "perhaps"}
+    for argument in QUANTITIES[name].arguments:
+        with pytest.raises(InputError, match=argument.name):
+            figure(name, **{argument.name: bad.get(argument.type, "nonsense")})
+        if argument.required:
+            with pytest.raises(InputError, match=f"{argument.name} is missing"):
+                figure(name, remove=argument.name)
+    with pytest.raises(InputError, match="lenght is not a known key"):
+        figure(name, lenght=1.0)
+
+
+OTHERS: dict[str, Any] = {
+    "count": 17, "mode": 2, "x": 0.37, "wall": "third-order", "joints": "tensioned", "grading": 1.3,
+    "theory": "timoshenko", "attachment": "lever", "reading": "raw", "frequency_hz": 700.0, "phase_deg": 61.0,
+    "position": 0.053, "loss_factor": 0.013, "modal_damping": 0.031, "joint_dashpot": 0.002, "load": "lever",
+    "drive": "displacement", "window": [0.21, 0.47], "modes": 7, "time": 8e-4, "start": "steady",
+    "soft_start_periods": 0.7, "force": 2.1, "mu": 0.17, "slope": 210.0, "law": "coulomb", "coupling": "one-way",
+    "line": "raw", "kinematics": "following", "normal": "massless", "preload": 0.29, "slider_position": 0.301,
+    "slider_speed": 0.007, "step": 1.1e-5, "steps_per_period": 31, "stiffness": 7e4, "damping": 17.0, "mass": 0.004,
+    "tangential_stiffness": 2e4, "restitution": 0.3, "points": 3, "foot_length": 0.03, "speed": -2e-4,
+    "links": "stretching", "segments": 6, "epsilon": 0.2, "ratio": 0.7, "turning": True, "alone": True,
+}  # fmt: skip
+EFFECTS = [
+    ("mode.frequency", "elastic", {"model": "segment", "count": 14, "mode": 3}),
+    ("mode.frequency", "elastic", {"model": "fem", "count": 14, "mode": 3}),
+    ("mode.frequency", "elastic", {"model": "analytic", "mode": 3}),
+    ("wave.deflection", "elastic", {"model": "segment", "count": 14, "x": 0.31}),
+    ("wave.deflection", "elastic", {"model": "analytic", "x": 0.31}),
+    ("wave.axis_ratio", "driven", {"model": "fem", "count": 14}),
+    ("wave.receptance", "elastic", {"model": "fem", "count": 14, "position": 0.21, "x": 0.31}),
+    ("wave.absorber_reflection", "device", {"position": 0.04, "resistance": 1.3, "model": "analytic"}),
+    ("slider.displacement", "heavy", {"count": 14}),
+    ("motion.deflection", "driven", {"model": "analytic", "x": 0.31}),
+    ("chain.slider_displacement", "undamped", {"segments": 5, "coupling": "one-way", "normal": "massless"}),
+    ("slider.layer_force", "bare", LAYER),
+    ("slider.force_speed", "motor", {**HELD, "speed": -3e-4, "law": "coulomb", "coupling": "one-way"}),
+]
+
+
+@pytest.mark.parametrize(("name", "where", "arguments"), EFFECTS)
+def test_argument_changes_value_or_is_refused(name, where, arguments):
+    scene, cache = SCENES[where], SolutionCache(SCENES[where].beam)
+    value = evaluate(name, arguments, scene, cache)
+    for argument in QUANTITIES[name].arguments:
+        if argument.name in OTHERS and arguments.get(argument.name) != OTHERS[argument.name]:
+            try:
+                assert evaluate(name, {**arguments, argument.name: OTHERS[argument.name]}, scene, cache) != value, (
+                    argument
+                )
+            except InputError as refused:
+                assert argument.name in str(refused)
+
+
+def test_equals_direct_call():
+    exact = frequency_hz(STRIP, 3)
+    assert evaluate("mode.frequency", {"model": "analytic", "mode": 3}, SCENES["bare"], CACHES["bare"]) == exact
+    fem = float(solve_modes(STRIP, 3, 9).frequencies_hz[2])
+    asked = {**FEM, "mode": np.int64(3)}
+    assert evaluate("mode.frequency_error", asked, SCENES["bare"], CACHES["bare"]) == (fem - exact) / exact
+    run = simulate(
+        DAMPED, FORCES, 731.0, 1.1e-3, model="segment", count=12, slider=RIDER, steps_per_period=40, samples=2
+    )
+    assert figure("slider.displacement") == run.displacement
+    assert figure("slider.energy") == pytest.approx(run.ledger.rubbed, rel=1e-12)
+    wave = measure(solve_harmonic(DAMPED, FORCES, 731.0), (0.2, 0.5))
+    assert figure("wave.signed_area_spread") == pytest.approx(wave.signed_area_spread, rel=1e-9)
+
+
+def test_words_are_read_by_type():
+    words = ["model=fem", "mode=3", "counts=20, 40-80:20", "grading=1.3"]
+    expected = {"model": "fem", "mode": 3, "counts": [20, 40, 60, 80], "grading": 1.3}
+    assert parse_arguments("mode.order", words) == expected
+    needed = parse_arguments("mode.count_needed", ["model=fem", "mode=3", "error=0.7%"])
+    assert needed["error"] == pytest.approx(0.007, rel=1e-15)
+    assert parse_arguments("wave.absorber_reflection", ["position=0.1", "ratio=1", "turning=true"])["turning"] is True
+    with pytest.raises(InputError, match=r"did you mean 'mode\.frequency'"):
+        parse_arguments("mode.freqency", [])
+    wrong = {"mode": "KEY=VALUE", "mod=3": "did you mean 'mode'", "mode=3 mode=4": "second", "counts=80-20": "upwards"}
+    for text, sentence in wrong.items():
+        with pytest.raises(InputError, match=sentence):
+            parse_arguments("mode.order", text.split())
+
+
+@pytest.mark.parametrize(
+    ("name", "where", "changed", "sentence"),
+    [
+        ("wave.reflection", "bare", {}, "drive.force is missing: add"),
+        ("slider.displacement", "bare", {}, "time is missing and the scene has no"),
+        ("slider.stall_force", "driven", {}, "slider.contact is missing: add"),
+        ("chain.transient_deflection", "bare", {}, "drive is missing"),
+        ("drive.quarter_wavelength", "bare", {}, "frequency_hz is missing"),
+        ("mode.frequency", "device", {"count": 14}, "does not model drive.device"),
+        ("wave.deflection", "driven", {"x": 0.74}, "x = 0.74 lies off the beam"),
+        ("wave.receptance", "driven", {"position": -0.01}, "position = -0.01 lies off the beam"),
+        ("slider.mean_speed", "driven", {"slider_position": 0.74}, "slider_position = 0.74 lies off the beam"),
+        ("slider.order", "driven", {"counts": [8, 16, 32]}, "counts = .* and steps = .*: give one"),
+        ("contact.restitution", "bare", {"damping_ratio": 0.2}, "mass = 0.003 beside damping_ratio"),
+    ],
+)
+def test_refused_with_field_and_remedy(name, where, changed, sentence):
+    with pytest.raises(InputError, match=sentence):
+        evaluate(name, {**CASES[name][1], **changed}, SCENES[where], CACHES[where])
+
+
+def test_listing_finds_by_word():
+    found = {one["name"]: one for one in describe("ORDER", "mode", "shape")}
+    assert set(found) == {"mode.shape_order"}
+    counts = next(one for one in found["mode.shape_order"]["arguments"] if one["name"] == "counts")
+    assert (counts["required"], counts["type"]) == (True, "list of whole numbers")
+    assert all(one["summary"] and all(a["description"] for a in one["arguments"]) for one in describe())
+    with pytest.raises(InputError, match="no quantity matches"):
+        describe("nonsense")
+
+
+def test_own_quantity_is_registered():
+    @quantity("mine.weight", unit="N", reads=("beam",))
+    def weight(scene: Any, *, gravity: float = 9.81) -> float:
+        """Weight of the beam."""
+        return scene.beam.mass_per_length * scene.beam.length * gravity
+
+    try:
+        mass = evaluate("mine.weight", {"gravity": 1.0}, SCENES["bare"], CACHES["bare"])
+        assert mass == pytest.approx(0.73 * 0.031 * 0.0023 * 4470.0, rel=1e-12)
+        assert QUANTITIES.named("mine.weight").summary == "Weight of the beam."
+    finally:
+        del QUANTITIES["mine.weight"]

@@ -1,0 +1,235 @@
+"""Bad input to scenes, beams, sliders and the public verbs: one sentence with field, value and remedy."""
+
+from math import inf, nan
+
+import numpy as np
+import pytest
+
+from verify import (
+    Beam,
+    Contact,
+    Device,
+    Foot,
+    InputError,
+    PointForce,
+    PointMass,
+    PointSpring,
+    Section,
+    Slider,
+    analytic_modes,
+    bend,
+    fem_beam,
+    free_vibration,
+    load_scene,
+    run_motor,
+    run_motors,
+    segment_model,
+    simulate,
+    travelling_wave,
+)
+from verify.device import of_impedance
+from verify.errors import NAMES, SENTENCE, near_name, one_line, shown
+from verify.judge.cache import SolutionCache
+from verify.quantities.base import evaluate
+
+TITANIUM = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
+PLAIN = {"length": 0.73, "bending_stiffness": 3.4, "mass_per_length": 0.31}
+STRIP = Beam(**TITANIUM, loss_factor=0.01)
+CANTILEVER = Beam(**TITANIUM, supports=("clamped", "free"))
+FORCE = PointForce(position=0.083, amplitude=1.7, phase_deg=23.0)
+FORCES = [FORCE, PointForce(position=0.61, amplitude=0.9, phase_deg=-50.0)]
+HERTZ = 411.0
+SLIDER = Slider(mass=0.0031, mu=0.17)
+HOPPER = Slider(mass=0.0031, mu=0.17, position=0.2, contact=Contact(stiffness=2e5), coupling="one-way")
+
+
+def beam(**given):
+    return lambda: Beam(**TITANIUM | given)
+
+
+def plain(**given):
+    return lambda: Beam(**PLAIN | given)
+
+
+def slider(**given):
+    return lambda: Slider(**{"mass": 0.0031, "mu": 0.17} | given)
+
+
+def contact(**given):
+    return lambda: Contact(**given)
+
+
+def foot(**given):
+    return lambda: Foot(**{"length": 0.02, "points": 5} | given)
+
+
+def scene(*overrides, name="paper-slider"):
+    return lambda: load_scene(name, overrides)
+
+
+def figure(name, **arguments):
+    return lambda: evaluate(name, arguments, SCENE, SolutionCache(SCENE.beam))
+
+
+SCENE = load_scene("free-free-bar")
+BEAMS = [
+    *((beam(**{field: value}), rf"beam\.{field} = .*: give a finite number above 0 \(.+\)")
+      for field in TITANIUM for value in (0.0, -1.5, nan, inf, True)),
+    (beam(length="0.73"), r"beam\.length = '0\.73': give a finite number"),
+    (beam(length=10**400), r"beam\.length = a whole number of 1329 bits: give a finite number"),
+    (beam(thickness=1e-110), r"beam: thickness is about 1e-110 \(SI\).*check their units"),
+    (beam(length=1e-30, thickness=1e10), r"beam: bending stiffness / .* check their units"),
+    (beam(poissons_ratio=0.6), r"beam\.poissons_ratio = 0\.6: give a finite number"),
+    (beam(loss_factor=-0.01), r"beam\.loss_factor = -0\.01"),
+    (beam(tension=inf), r"beam\.tension = inf"),
+    (beam(foundation=-1.0), r"beam\.foundation = -1\.0"),
+    (beam(supports=("pinned",)), r"beam\.supports = \('pinned',\): give two"),
+    (beam(supports=("pinned", "clampd")), r"beam\.supports has 'clampd': did you mean 'clamped'"),
+    (beam(shape="tube"), r"beam\.width = 0\.031 is no size of a tube: leave it out"),
+    (beam(shape="squar"), r"beam\.shape = 'squar' is not known"),
+    (beam(bending_stiffness=3.0), r"beam\.bending_stiffness = 3\.0 beside a shape .* give one of them"),
+    (plain(width=0.03), r"beam\.width = 0\.03 makes nothing .* leave it out"),
+    (lambda: Beam(length=0.73, width=0.031), r"beam\.thickness is missing: a rectangle needs"),
+    (lambda: Beam(length=0.5, shape="tube", diameter=0.02, wall_thickness=0.011, youngs_modulus=7e10, density=2700.0),
+     r"beam\.wall_thickness = 0\.011: give a finite number above 0 and below 0\.01"),
+    (beam(section=(Section(length=0.3), Section(length=0.4))), r"lengths add up to 0\.7 m .*: make them equal"),
+    (beam(section=(Section(length=0.73 - 1e-9), Section(length=1e-9))), r"beam\.section\[1\]\.length = 1e-09 m is less than"),
+    (beam(section=(Section(length=0.4), Section(length=0.33, thickness=1e-8))), r"beam\.section\[0\] is .* as stiff"),
+    (beam(section=[0.4, 0.33]), r"beam\.section has 0\.4: give a Section"),
+    (beam(mass=[PointMass(position=0.8, mass=0.1)]), r"beam\.mass\[0\]\.position = 0\.8 lies off the beam"),
+    (beam(mass=[PointMass(position=0.0, mass=0.1)]), r"beam\.mass\[0\]\.mass = 0\.1 would do nothing at a pinned end"),
+    (lambda: PointMass(position=0.1), r"beam\.mass at position = 0\.1"),
+    (lambda: PointMass(position=-0.1, mass=1.0), r"beam\.mass\.position = -0\.1"),
+    (lambda: PointSpring(position=0.1), r"beam\.spring at position = 0\.1 is slack: give stiffness or rotational"),
+    (lambda: PointSpring(position=0.1, stiffness=-3.0), r"beam\.spring\.stiffness = -3\.0"),
+    (lambda: PointForce(position=-0.1), r"force\.position = -0\.1: give a position on the beam"),
+    (lambda: PointForce(position=0.1, amplitude=nan), r"force\.amplitude = nan"),
+    (lambda: Device(position=0.1), r"device at position = 0\.1 does nothing: give it one of stiffness"),
+    (lambda: Device(position=0.1, dashpot=-2.0), r"device\.dashpot = -2\.0"),
+    (lambda: of_impedance(0.1, -1.0 + 2.0j, 100.0), r"impedance = .* gives energy"),
+    (lambda: Beam(**TITANIUM).second_moment and Beam(**PLAIN).area, r"beam\.shape: a section given by its stiffness"),
+    (lambda: Beam(**PLAIN).surface_distance, r"beam\.extreme_fibre is missing"),
+]  # fmt: skip
+SLIDERS = [
+    (slider(mass=0.0), r"slider\.mass = 0\.0: give a finite number above 0"),
+    (slider(mu=-0.2), r"slider\.mu = -0\.2"),
+    (slider(law="viscous"), r"slider\.law = 'viscous' is not known: known are tanh, coulomb"),
+    (slider(law="coulomb", slope=100.0), r"slider\.slope = 100\.0 is K of Eq\. \(3\).* leave it out"),
+    (slider(mu_static=0.3), r"slider\.mu_static = 0\.3 is for law = 'coulomb'"),
+    (slider(law="coulomb", mu_static=0.1), r"slider\.mu_static = 0\.1: give a finite number of at least 0\.17"),
+    (slider(gravity=0.0), r"slider\.gravity = 0\.0 without slider\.preload presses on nothing"),
+    (slider(pull=0.3), r"slider\.pull .*: give slider\.contact too"),
+    (slider(contact=Contact(), foot=[Foot(length=0.02, points=3)]), r"slider\.foot: a hard contact is of one point"),
+    (slider(contact=Contact(layer_stiffness=1e7)), r"slider\.contact\.layer_stiffness is for each metre of foot"),
+    (slider(contact=3.0), r"slider\.contact = 3\.0: give a Contact"),
+    (contact(stiffness=-1.0), r"slider\.contact\.stiffness = -1\.0"),
+    (contact(stiffness=1e5, layer_stiffness=1e6), r"slider\.contact\.stiffness = .* give one"),
+    (contact(restitution=1.2), r"slider\.contact\.restitution = 1\.2: .* give 0 to 1"),
+    (contact(stiffness=1e5, restitution=0.4), r"slider\.contact\.restitution = 0\.4 .* leave one out"),
+    (contact(damping=3.0), r"slider\.contact\.damping = 3\.0 .* give slider\.contact\.stiffness too"),
+    (foot(points=0), r"slider\.foot\.points = 0: give a whole number of at least 1"),
+    (foot(length=0.0), r"slider\.foot\.points = 5 on no length: give slider\.foot\.length"),
+    (foot(pitches="no"), r"slider\.foot\.pitches = 'no': give a bool"),
+    (foot(face="uper"), r"slider\.foot\.face = 'uper' is not known: did you mean 'upper'"),
+    (foot(mirrored=True, face="lower"), r"slider\.foot\.mirrored = true on the lower face"),
+    (foot(pitches=False, inertia=1e-6), r"slider\.foot\.inertia = 1e-06 with pitches = false"),
+]
+SCENES = [
+    (scene("drive.frequency_hz=1e300"), r"drive\.frequency_hz = 1e\+300 Hz .* check the beam's units"),
+    (scene("drive.kind=voltage"), r"drive\.kind = 'voltage': it is not known, known are force, displacement"),
+    (scene("drive.force.0.position=0.6"), r"drive\.force\.position = 0\.6 lies off the beam"),
+    (scene("drive.force.0.position=0.0"), r"drive\.force\.position = 0\.0 m stands on a pinned support"),
+    (scene("slider.position=0.51"), r"slider\.position = 0\.51 lies off the beam"),
+    (scene("slider.kinematic=following"), r"slider\.kinematic is not known|slider\.kinematic is not a known key"),
+    (scene("motion.duration=0"), r"motion\.duration = 0"),
+    (scene("motion.start=steady"), r"motion\.soft_start_periods = 2"),
+    (scene("motion.samples=1"), r"motion\.samples = 1"),
+    (scene("claim.mean-speed.tolerance=0"), r"claim\.mean-speed\.tolerance = 0"),
+    (scene("claim.mean-speed.read=guessed"), r"claim\.mean-speed\.read = 'guessed'"),
+    (scene("name=../x"), r"name = '\.\./x'"),
+    (scene(f"name={'x' * 121}"), r"name = 'x+ \.\.\. x+'|name = 'x+"),
+    (scene("gate.slider-reversed.id=slider-on-elements"), r"gate\.slider-on-elements occurs twice"),
+    (scene("gate.slider-reversed.reference=hearsay"), r"gate\.slider-reversed\.reference = 'hearsay'"),
+    (scene("spectrum.modes=10001", name="paper"), r"spectrum\.modes = 10001: give a whole number <= 10000"),
+    (scene("convergence.modes=0", name="paper"), r"convergence\.modes\[0\] = 0"),
+    (scene("drive.device.0.position=0.5", name="absorbing-end"), r"device\.position = 0\.0 m stands on a pinned support"),
+    (scene("drive.kind=displacement", name="absorbing-end"), r"drive\.kind = 'displacement': with a drive\.device"),
+]  # fmt: skip
+VERBS = [
+    (lambda: segment_model.solve_modes(STRIP, 5, 1), r"n_segments = 1: give a whole number of at least 2"),
+    (lambda: segment_model.solve_modes(STRIP, 50, 20), r"n_modes = 50"),
+    (lambda: segment_model.solve_modes(STRIP, 3, 20, wall="gregry"), r"wall = 'gregry' is not known: did you mean"),
+    (lambda: segment_model.solve_modes(STRIP, 3, 20, joints=7), r"joints = 7 is not known"),
+    (lambda: segment_model.solve_modes("strip", 3, 20), r"beam = 'strip': give a Beam"),
+    (lambda: fem_beam.solve_modes(STRIP, 0, 20), r"n_modes = 0: give a whole number of at least 1"),
+    (lambda: fem_beam.solve_modes(STRIP, 3, 2.5), r"n_elements = 2\.5: give a whole number of at least 1"),
+    (lambda: fem_beam.solve_modes(STRIP, 3, 20, theory="raleigh"), r"theory = 'raleigh' is not known: did you mean"),
+    (lambda: analytic_modes.solve_modes(STRIP, True), r"n_modes = True: give a whole number of at least 1"),
+    (lambda: analytic_modes.exact_frequency_hz(STRIP, 0), r"mode = 0: modes are numbered from 1"),
+    (lambda: analytic_modes.solve_harmonic(STRIP, [], HERTZ), r"forces"),
+    (lambda: analytic_modes.solve_harmonic(STRIP, [PointForce(position=0.8)], HERTZ), r"force\.position = 0\.8"),
+    (lambda: fem_beam.solve_harmonic(STRIP, FORCE, 0.0, 20), r"frequency_hz = 0\.0: give a finite number above 0"),
+    (lambda: fem_beam.solve_harmonic(STRIP, FORCE, nan, 20), r"frequency_hz = nan"),
+    (lambda: segment_model.solve_harmonic(STRIP, FORCE, HERTZ, 20, joint_dashpot=-1.0), r"joint_dashpot = -1\.0"),
+    (lambda: segment_model.solve_harmonic(STRIP, FORCE, HERTZ, 20, reading="rw"), r"reading = 'rw' is not known"),
+    (lambda: analytic_modes.sweep_harmonic(STRIP, FORCE, []), r"frequenc"),
+    (lambda: analytic_modes.solve_harmonic(STRIP, FORCE, HERTZ).deflection([0.9]), r"x = .*0\.9|0\.9"),
+    (lambda: travelling_wave.measure(analytic_modes.solve_harmonic(STRIP, FORCES, HERTZ), (0.5, 0.2)), r"window"),
+    (lambda: simulate(STRIP, FORCE, HERTZ, 0.0, count=9), r"duration = 0\.0"),
+    (
+        lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, model="segmnt"),
+        r"model = 'segmnt'.* did you mean 'segment'",
+    ),
+    (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, samples=1), r"samples = 1"),
+    (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, slider=3.0), r"slider = 3\.0: give a Slider"),
+    (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, slider=HOPPER), r"slider\.contact"),
+    (lambda: run_motor(STRIP, FORCES, HERTZ, 1e-3, slider=SLIDER, count=9), r"slider\.contact"),
+    (lambda: run_motor(STRIP, FORCES, HERTZ, -1.0, slider=HOPPER, count=9), r"duration = -1\.0"),
+    (lambda: run_motors(STRIP, FORCES, HERTZ, 1e-3, sliders=[], count=9), r"sliders"),
+    (lambda: free_vibration(STRIP, 2, 0.0, model="fem", count=9), r"duration = 0\.0"),
+    (lambda: free_vibration(STRIP, 0, 1e-3, model="fem", count=9), r"shape = 0"),
+    (lambda: bend(CANTILEVER, 9, nan), r"load\.force y = nan"),
+    (lambda: bend(STRIP, 9, 1.0), r"beam\.supports"),
+    (lambda: bend(CANTILEVER, 0, 1.0), r"count = 0"),
+    (lambda: Beam(**TITANIUM, mass=np.array(3.0)), r"beam\.mass has .*: give a PointMass"),
+    (lambda: Beam(**TITANIUM | {"length": np.ma.array([0.7], mask=[True])}), r"beam\.length .*under a mask"),
+    (figure("mode.frequncy"), r"quantity = 'mode\.frequncy' is not known: did you mean 'mode\.frequency'"),
+    (figure("mode.frequency", model="segmnt", mode=3), r"model = 'segmnt'.* did you mean 'segment'"),
+    (figure("mode.frequency", model="segment", mode=3), r"count is missing"),
+    (figure("mode.frequency", model="analytic"), r"mode is missing"),
+    (figure("mode.frequency", model="analytic", mode=3, colour=1), r"colour is no argument of mode\.frequency"),
+    (figure("mode.frequency", model="fem", mode=9, count=3), r"mode = 9: .* raise count"),
+    (figure("mode.order", model="fem", mode=3, counts=[10, 20]), r"counts = \[10, 20\]: .* three or more"),
+    (figure("mode.deflection", model="analytic", mode=3, x=1.0), r"x = 1\.0 lies off the beam"),
+    (figure("wave.reflection", frequency_hz=-3.0), r"frequency_hz = -3\.0"),
+]
+CASES = {"beam": BEAMS, "slider": SLIDERS, "scene": SCENES, "verb": VERBS}
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [pytest.param(*case, id=f"{kind}-{i}") for kind, cases in CASES.items() for i, case in enumerate(cases)],
+)
+def test_bad_input_is_one_sentence(call, message):
+    with pytest.raises(InputError, match=message) as caught:
+        call()
+    for sentence in caught.value.sentences:
+        assert "\n" not in sentence
+        assert len(sentence) <= SENTENCE
+        assert "null" not in sentence
+        assert "<class" not in sentence
+
+
+def test_message_is_one_short_printable_line():
+    text = str(InputError(f"beam.{'a' * 9000}\n\x1b[31m: give a number"))
+    assert text.startswith("beam.aaa")
+    assert text.endswith("\\n\\x1b[31m: give a number")
+    assert len(text) <= SENTENCE
+    assert one_line("a\tb") == "a\\tb"
+    assert shown([10**200, "z" * 500]).startswith("[a whole number of 665 bits, 'zzz")
+
+
+def test_of_many_names_the_first_are_listed():
+    names = [f"name-{n}" for n in range(100, 126)]
+    assert near_name("other", names) == f"known are {', '.join(names[:NAMES])} and {26 - NAMES} more"
+    assert near_name("Name-120", names) == "did you mean 'name-120'?"

@@ -1,0 +1,326 @@
+"""The sets: questions with their methods and references, on the paper's beam or that of a scene."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil
+from typing import Any
+
+import numpy as np
+from msgspec.structs import replace
+
+from verify.beam import Beam, PointForce
+from verify.bench.work_precision import Method, Question
+from verify.errors import InputError, near_name
+from verify.models.arrays import Array
+from verify.models.catalogue import MODELS
+from verify.slider import Slider
+
+SIZES = (24, 49, 98, 196, 392)
+PARTS = {"segment": "segments", "fem": "elements"}
+LINKS = 49
+SOFT_START = 2.0
+"""Periods over which forces grow: under a step load errors fall at no integer order."""
+BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+FORCES = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
+SLIDER = Slider(mass=1.0193679918450561e-3, mu=0.2, slope=1e4)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A driven beam with a slider, one mode of it, and how long it moves."""
+
+    beam: Beam = BEAM
+    forces: tuple[PointForce, ...] = FORCES
+    frequency_hz: float = 4276.0
+    slider: Slider = SLIDER
+    duration: float = 1e-3
+    mode: int = 22
+    sizes: Sequence[int] = SIZES
+
+    @property
+    def name(self) -> str:
+        """Conditions."""
+        return f"{self.frequency_hz:g} Hz, {1e3 * self.duration:g} ms"
+
+
+def problem_of(scene: Any) -> Problem:
+    """The beam, drive and slider of a scene, those of the paper where it has none."""
+    own = Problem(beam=scene.beam)
+    if scene.drive is None:
+        return own
+    duration = scene.motion.duration if scene.motion else 4.0 / scene.drive.frequency_hz
+    slider = scene.slider or own.slider
+    return Problem(scene.beam, tuple(scene.forces), scene.drive.frequency_hz, slider, duration)
+
+
+def rms(values: Any, exact: Any) -> float:
+    """Rms of a difference over the rms of what is exact."""
+    return float(np.sqrt(np.mean(abs(values - exact) ** 2) / np.mean(abs(exact) ** 2)))
+
+
+def modes(problem: Problem) -> Iterator[Question]:
+    """A natural frequency over the number of parts."""
+    from verify.elements.stock import stock_frequency_hz
+    from verify.exact.modes import exact_frequency_hz
+
+    beam, mode = problem.beam, problem.mode
+    exact = exact_frequency_hz(beam, mode)
+
+    def solver(model: str, **settings: str) -> Callable[[int], float]:
+        return lambda n: float(MODELS[model].solve_modes(beam, mode, n, **settings).frequencies_hz[mode - 1])
+
+    segments, elements = solver("segment"), solver("fem")
+    methods = [
+        Method("segments", segments, problem.sizes, model="segment"),
+        Method("elements", elements, problem.sizes, model="fem"),
+        Method("mean of both", lambda n: 0.5 * (segments(n) + elements(n)), problem.sizes, model="mean"),
+        Method("stock scikit-fem", lambda n: stock_frequency_hz(beam, mode, n), problem.sizes),
+        Method("exact", lambda _: exact_frequency_hz(beam, mode), (0,), "", "analytic"),
+    ]
+    walls = ("half", "welded", "third-order") if "clamped" in beam.supports else ()
+    methods += [Method(f"segments, {wall} wall", solver("segment", wall=wall), problem.sizes) for wall in walls]
+    title = f"frequency of mode {mode}"
+    yield Question("modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, methods)
+
+
+def field(problem: Problem) -> Iterator[Question]:
+    """The steady field over the number of parts."""
+    x = np.linspace(0.0, problem.beam.length, 8 * max(problem.sizes) + 1)
+
+    def solver(model: str, shift: float = 0.0) -> Callable[[Any], Any]:
+        hertz = problem.frequency_hz * (1.0 + shift)
+        return lambda n: MODELS[model].solve_harmonic(problem.beam, problem.forces, hertz, n or None).deflection(x)
+
+    exact = solver("analytic")(None)
+    rounding = rms(solver("analytic", 1e-7)(None), exact) * 1e7 * 8 * np.finfo(float).eps
+    methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
+    methods.append(Method("exact", solver("analytic"), (0,), "", "analytic"))
+    title = f"deflection at {problem.frequency_hz:g} Hz, rms over the beam"
+    yield Question("field", title, "exact field", rounding, lambda found: rms(found, exact), methods)
+
+
+def moved(problem: Problem, model: str, count: int | None, **more: Any) -> Any:
+    """A motion from rest."""
+    from verify.motion.simulate import simulate
+
+    given = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
+    run = simulate(*given, model=model, count=count, soft_start_periods=SOFT_START, ledger=False, **more)
+    if not run.statistics.finished:
+        raise InputError(f"the run {run.statistics.stopped}: shorten motion.duration")
+    return run
+
+
+def transient(problem: Problem) -> Iterator[Question]:
+    """The deflection of one place over time, over the number of parts."""
+    more: dict[str, Any] = {"at": [0.37 * problem.beam.length], "samples": 201}
+
+    def solver(model: str) -> Callable[[Any], Any]:
+        return lambda n: moved(problem, model, n or None, **more).deflection[:, 0]
+
+    exact = moved(problem, "analytic", None, modes=800, **more).deflection[:, 0]
+    uncertainty = max(rms(solver("analytic")(None), exact), 1e-13)
+    methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
+    methods.append(Method("exact, 400 modes", solver("analytic"), (0,), "", "analytic"))
+    title = f"deflection at 0.37 L, rms over time, {problem.name}"
+    yield Question("transient", title, "exact beam, 800 modes", uncertainty, lambda found: rms(found, exact), methods)
+
+
+def slider(problem: Problem) -> Iterator[Question]:
+    """The displacement of the slider over the number of parts, at equal time steps."""
+    one = replace(problem.slider, coupling="one-way")
+
+    def solver(model: str) -> Callable[[Any], float]:
+        return lambda n: float(moved(problem, model, n or None, slider=one, samples=2).travelled[-1])
+
+    exact = solver("analytic")(None)
+    methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
+    methods.append(Method("exact, 400 modes", solver("analytic"), (0,), "", "analytic"))
+    title = f"displacement, one-way, {problem.name}"
+    yield Question("slider", title, "exact beam at the same time step", 1e-12, lambda d: d / exact - 1.0, methods)
+
+
+def ride(problem: Problem) -> Iterator[Question]:
+    """The displacement of the slider on 49 segments over the time step, each coupling against its own small step."""
+
+    def method(coupling: str) -> tuple[Method, float]:
+        one = replace(problem.slider, coupling=coupling)
+
+        def run(per_period: int) -> float:
+            step = 1.0 / (problem.frequency_hz * per_period)
+            return float(moved(problem, "segment", LINKS, slider=one, step=step, samples=2).travelled[-1])
+
+        fine, finer = run(1024), run(2048)
+        steps = (16, 32, 64, 128, 256)
+        own = Method(coupling, run, steps, "steps / period", error=lambda found: found / finer - 1.0)
+        return own, abs(fine / finer - 1.0)
+
+    pairs = [method("one-way"), method("two-way")]
+    title = f"displacement, {LINKS} segments, {problem.name}"
+    yield Question("ride", title, "2048 steps a period", max(u for _, u in pairs), float, [one for one, _ in pairs])
+
+
+def chain_in_time(problem: Problem) -> tuple[Any, Any, Array]:
+    """(system, start, times) of the nonlinear chain from rest under a step load, in a twentieth of a period."""
+    from verify.chain.dynamics import at_rest
+    from verify.chain.system import build_system
+
+    system = build_system(problem.beam, LINKS, problem.forces, problem.frequency_hz)
+    count = ceil(20.0 * problem.duration * problem.frequency_hz)
+    return system, at_rest(system), np.linspace(problem.duration / count, problem.duration, count)
+
+
+def kicks(problem: Problem, number: int) -> Callable[[float], tuple[Array, Array]]:
+    """Step -> (times, mid-span deflection) by exact linear flow with so many kicks a step."""
+    from verify.chain.splitting import modal_basis, simulate_modal
+
+    system, start, times = chain_in_time(problem)
+
+    def run(step: float) -> tuple[Array, Array]:
+        motion = simulate_modal(modal_basis(system), start, times, step=step, kicks=number)
+        return times, motion.deflection([0.5 * problem.beam.length])[:, 0]
+
+    return run
+
+
+def converged(problem: Problem) -> tuple[Callable[[tuple[Array, Array]], float], float]:
+    """(error of times and mid-span deflections against adaptive steps at 1e-10, what 1e-9 changes)."""
+    from scipy.interpolate import CubicSpline
+
+    from verify.chain.stepping import simulate
+
+    system, start, _ = chain_in_time(problem)
+    times = np.linspace(0.0, problem.duration, 4001)[1:]
+
+    def solve(tolerance: float) -> Array:
+        motion = simulate(system, start, times, tolerance=tolerance, ledger=False)
+        return np.asarray(motion.deflection([0.5 * problem.beam.length])[:, 0])
+
+    exact = solve(1e-10)
+    spline = CubicSpline(np.append(0.0, times), np.append(0.0, exact))
+    return lambda found: rms(found[1], spline(found[0])), max(rms(solve(1e-9), exact), 1e-10)
+
+
+def chain(problem: Problem) -> Iterator[Question]:
+    """The nonlinear chain over the step or the tolerance."""
+    from verify.chain.stepping import simulate, step_limit
+
+    system, start, times = chain_in_time(problem)
+    limit, first = step_limit(system, start), 1.0 / (3.0 * problem.frequency_hz)
+
+    def solver(method: str) -> Callable[[float], tuple[Array, Array]]:
+        def run(size: float) -> tuple[Array, Array]:
+            how = {"step": size, "limit": limit} if method == "rk4" else {"tolerance": size}
+            motion = simulate(system, start, times, method=method, ledger=False, **how)  # type: ignore[arg-type]
+            return times, motion.deflection([0.5 * problem.beam.length])[:, 0]
+
+        return run
+
+    error, uncertainty = converged(problem)
+    methods = [
+        Method("2 kicks", kicks(problem, 2), [first / 2**k for k in range(6)], "dt", "segment"),
+        Method("1 kick", kicks(problem, 1), [first / 2**k for k in range(6)], "dt"),
+        Method("RK4", solver("rk4"), [0.97 * limit / 2**k for k in range(4)], "dt"),
+        Method("adaptive", solver("adaptive"), (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), "tolerance"),
+    ]
+    title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}"
+    yield Question("chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
+
+
+def engines(problem: Problem) -> Iterator[Question]:
+    """Modes, the nonlinear chain, and the slider in other engines beside segments."""
+    from verify.engines import ENGINES, chain_of, missing, references, rider_of
+    from verify.exact.modes import exact_frequency_hz
+
+    adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
+    if not adapters:
+        raise InputError("engines: none is installed: pip install exudyn mujoco pin, or leave this set out")
+    beam, mode, hertz, end = problem.beam, problem.mode, problem.frequency_hz, problem.duration
+    exact = exact_frequency_hz(beam, mode)
+
+    def frequency(adapter: Any) -> Callable[[int], float]:
+        return lambda n: float(adapter.frequencies(chain_of(beam, n, (), hertz))[mode - 1])
+
+    ours = Method(
+        "segments", lambda n: float(MODELS["segment"].solve_modes(beam, mode, n).frequencies_hz[mode - 1]), SIZES[:4]
+    )
+    theirs = [Method(name, frequency(adapter), SIZES[:4]) for name, adapter in adapters.items()]
+    title, error = f"frequency of mode {mode}", lambda hertz: hertz / exact - 1.0
+    yield Question("engines-modes", title, "exact frequency", 1e-14, error, [ours, *theirs])
+
+    links = chain_of(beam, LINKS, problem.forces, hertz)
+    limit = references.stability_limit(links)
+
+    def steps(name: str) -> list[int]:
+        longest = 0.01 / hertz if ENGINES[name].implicit else min(1.0 / (12.0 * hertz), 0.99 * limit)
+        return [ceil(end / longest) * 2**k for k in range(6)]
+
+    def motion(adapter: Any, rider: Any = None) -> Callable[[int], Any]:
+        def run(count: int) -> Any:
+            found = adapter.run(links, count, end, rider)
+            if found.failure:
+                raise InputError(f"engines: {found.failure}")
+            return (found.times, found.deflection) if rider is None else (found.times, found.distance)
+
+        return run
+
+    error, uncertainty = converged(problem)
+    own = kicks(problem, 2)
+    methods = [
+        Method(
+            "segments, 2 kicks",
+            lambda count: own(end / count),
+            [ceil(end * hertz * 3) * 2**k for k in range(6)],
+            "steps",
+            "segment",
+        )
+    ]
+    methods += [Method(name, motion(adapter), steps(name), "steps") for name, adapter in adapters.items()]
+    title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}"
+    yield Question("engines-chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
+
+    one = replace(problem.slider, coupling="one-way")
+    rider = rider_of(beam, one)
+    times, distance, _ = references.ride(links, rider, end)
+    departure = error((times[1::20], references.deflection(links, times[1::20])))
+
+    def displaced(count: int) -> float:
+        from verify.motion.simulate import simulate
+
+        given = (beam, problem.forces, hertz, end)
+        run = simulate(*given, count=LINKS, slider=one, step=end / count * (1.0 + 1e-9), samples=2, ledger=False)
+        return float(run.travelled[-1])
+
+    finest = displaced(2**16)
+    methods = [
+        Method("segments", displaced, [2**k for k in range(7, 13)], "steps", "segment", lambda d: d / finest - 1.0),
+        *(Method(name, motion(adapter, rider), steps(name), "steps") for name, adapter in adapters.items()),
+    ]
+    title = f"displacement, rms over time, {LINKS} links, step load, {problem.name}"
+    yield Question(
+        "engines-slider",
+        title,
+        "engines: slider on the exact linear chain; segments: 65536 steps",
+        departure,
+        lambda found: rms(found[1], np.interp(found[0], times, distance)),
+        methods,
+    )
+
+
+SETS: dict[str, Callable[[Problem], Iterator[Question]]] = {
+    "modes": modes,
+    "field": field,
+    "transient": transient,
+    "slider": slider,
+    "ride": ride,
+    "chain": chain,
+    "engines": engines,
+}
+
+
+def questions(names: Sequence[str], problem: Problem) -> Iterator[Question]:
+    """Of the sets, all if none is named. Raises InputError for an unknown set or one that the problem cannot have."""
+    for name in names:
+        if name not in SETS:
+            raise InputError(f"set = {name!r} is unknown: {near_name(name, tuple(SETS))}")
+    for name in names or SETS:
+        yield from SETS[name](problem)

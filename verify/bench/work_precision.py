@@ -1,0 +1,267 @@
+"""Run time over error: methods at their sizes against one reference, timed in interleaved rounds.
+
+Times are processor seconds of one thread, medians over the rounds, from the beam to the answer.
+"""
+
+import platform
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from math import exp, isfinite, log
+from statistics import median
+from time import process_time
+from typing import TYPE_CHECKING, Any
+
+from verify.errors import InputError
+from verify.report.result import Column, Figure, Result, Table
+from verify.timing import forget, spread
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+ROUNDS, TURN_S = 9, 2e-3
+"""Most rounds; seconds for which short runs are repeated within a round."""
+ERRORS = (1e-2, 1e-3, 1e-4, 1e-5)
+"""At which methods are compared."""
+ABOVE_REFERENCE = 3.0
+"""Errors below so many uncertainties of the reference have no order and take no part in comparisons."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to an answer, refined over its sizes."""
+
+    name: str
+    run: Callable[[Any], Any]
+    """Size -> answer."""
+    sizes: Sequence[Any]
+    """From coarse to fine."""
+    size_name: str = "N"
+    """What is refined: N, dt, tolerance; empty where nothing is."""
+    model: str = ""
+    """Name of the model, for its colour."""
+    error: Callable[[Any], float] | None = None
+    """Of an answer, where the question's own does not apply."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What all methods compute, and the reference of their errors."""
+
+    id: str
+    title: str
+    """Quantity and conditions."""
+    reference: str
+    uncertainty: float
+    """Of the reference, relative."""
+    error: Callable[[Any], float]
+    """Relative error of an answer."""
+    methods: Sequence[Method]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One method at one size."""
+
+    method: str
+    size_name: str
+    size: float
+    error: float
+    order: float | None
+    """Observed from the coarser size."""
+    seconds: float
+    spread: float
+    """Between the quartiles of the rounds, relative."""
+    model: str = ""
+
+
+def measure(question: Question, limit: float = 5.0) -> list[Row]:
+    """Rows of all methods.
+
+    A method whose runs have taken `limit` seconds is not refined further; the rounds end after as long. Sizes that a
+    method refuses (InputError) have no row.
+    """
+    jobs: list[tuple[Method, Any, float, int]] = []
+    for method in question.methods:
+        spent = 0.0
+        for size in method.sizes:
+            try:
+                error = (method.error or question.error)(method.run(size))  # the first run compiles and imports
+            except InputError:
+                continue
+            seconds = _timed(method, size, 1)
+            jobs.append((method, size, abs(error), min(max(round(TURN_S / max(seconds, 1e-9)), 1), 200)))
+            spent += seconds
+            if spent > limit:
+                break
+    times: list[list[float]] = [[] for _ in jobs]
+    start = process_time()
+    for turn in range(ROUNDS):
+        if turn >= 3 and process_time() - start > limit:
+            break
+        for (method, size, _, repeats), own in zip(jobs, times, strict=True):
+            own.append(_timed(method, size, repeats))
+    rows = [
+        Row(m.name, m.size_name, float(size), error, None, median(own), spread(own) / median(own), m.model)
+        for (m, size, error, _), own in zip(jobs, times, strict=True)
+    ]
+    return list(_with_orders(rows, ABOVE_REFERENCE * question.uncertainty))
+
+
+def _timed(method: Method, size: Any, repeats: int) -> float:
+    """Mean processor seconds of a run for which nothing is cached."""
+    total = 0.0
+    for _ in range(repeats):
+        forget()
+        start = process_time()
+        method.run(size)
+        total += process_time() - start
+    return total / repeats
+
+
+def _with_orders(rows: Sequence[Row], floor: float) -> Iterator[Row]:
+    for before, row in pairwise([None, *rows]):
+        assert row is not None
+        order = None
+        if before and before.method == row.method and min(row.error, before.error) > floor and before.size != row.size:
+            order = log(before.error / row.error) / abs(log(before.size / row.size))
+        yield Row(**{**asdict(row), "order": order})
+
+
+def time_at(rows: Sequence[Row], error: float) -> float | None:
+    """Seconds that a method takes for an error, by interpolation of log time over log error.
+
+    From the size on from which all finer ones are within it; the coarsest where that is; None where none is.
+    """
+    if not rows or not rows[-1].error <= error:
+        return None
+    for coarse, fine in reversed(list(pairwise(rows))):
+        if coarse.error > error:
+            part = log(coarse.error / error) / log(coarse.error / max(fine.error, 1e-17))
+            return exp(log(coarse.seconds) + part * log(fine.seconds / coarse.seconds))
+    return rows[0].seconds
+
+
+def by_method(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """Rows of each method, coarse to fine."""
+    return {name: [row for row in rows if row.method == name] for name in dict.fromkeys(row.method for row in rows)}
+
+
+def ratios(question: Question, rows: Sequence[Row]) -> dict[str, list[float | None]]:
+    """Time of each method over that of the first at each of `ERRORS`."""
+    lines = by_method(rows)
+    first = next(iter(lines.values()), [])
+    floor = ABOVE_REFERENCE * question.uncertainty
+
+    def ratio(line: Sequence[Row], error: float) -> float | None:
+        times = time_at(line, error), time_at(first, error)
+        return times[0] / times[1] if error > floor and times[0] and times[1] else None
+
+    return {name: [ratio(line, error) for error in ERRORS] for name, line in lines.items()}
+
+
+COLUMNS = (
+    Column("set"),
+    Column("method"),
+    Column("size"),
+    Column("error", format=".2g"),
+    Column("order", format=".2f"),
+    Column("time", "s", format=".3g", prefix=True),
+    Column("spread", percent=True, format=".0f"),
+)
+RATIO_COLUMNS = (Column("set"), Column("method"), *(Column(f"at {error:g}", format=".3g") for error in ERRORS))
+RATIO_NOTE = (
+    "Time of a method over that of the first of its set at the same error, interpolated in log time over log error."
+)
+
+
+def result(measured: Sequence[tuple[Question, Sequence[Row]]], against: Mapping[str, Any] | None = None) -> Result:
+    """Tables, one log-log chart for each question, and data that `against` of a later run takes."""
+    rows = [(q.id, *_cells(row)) for q, found in measured for row in found]
+    compared = {q.id: ratios(q, found) for q, found in measured}
+    tables = [
+        Table("Time over error", COLUMNS, rows),
+        Table(
+            "Time ratio", RATIO_COLUMNS, [(t, m, *r) for t, c in compared.items() for m, r in c.items()], [RATIO_NOTE]
+        ),
+    ]
+    if against is not None:
+        tables.append(_changes(compared, against))
+    references = Table(
+        "References",
+        (Column("set"), Column("quantity"), Column("reference"), Column("uncertainty", format=".1g")),
+        [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured],
+    )
+    data = {
+        "machine": machine(),
+        "questions": [
+            {"id": q.id, "title": q.title, "reference": q.reference, "uncertainty": q.uncertainty}
+            | {"rows": [asdict(row) for row in found], "ratios": compared[q.id]}
+            for q, found in measured
+        ],
+    }
+    figures = [_figure(q, found) for q, found in measured]
+    return Result(tables=[*tables, references], figures=figures, data=data)
+
+
+def _cells(row: Row) -> tuple[Any, ...]:
+    size = f"{row.size_name} = {row.size:.3g}" if row.size_name else ""
+    return row.method, size, row.error, row.order, row.seconds, row.spread
+
+
+def _changes(compared: Mapping[str, Any], against: Mapping[str, Any]) -> Table:
+    """Ratios then and now at the first error that both runs have."""
+    rows = []
+    for name, earlier in ((one["id"], one["ratios"]) for one in against["questions"]):
+        for method, now in compared.get(name, {}).items():
+            pairs = [
+                (error, then, new)
+                for error, then, new in zip(ERRORS, earlier.get(method, ()), now, strict=False)
+                if then and new
+            ]
+            rows += [(name, method, *pairs[0], pairs[0][2] / pairs[0][1])] if pairs else []
+    columns = (
+        Column("set"),
+        Column("method"),
+        Column("at error"),
+        Column("ratio then", format=".3g"),
+        Column("ratio now", format=".3g"),
+        Column("now / then", format=".3g"),
+    )
+    return Table("Change of the time ratios", columns, rows)
+
+
+def _figure(question: Question, rows: Sequence[Row]) -> Figure:
+    def draw(ax: "Axes") -> None:
+        from verify.report.plotting import MODEL_COLORS
+
+        used: set[str] = set()
+        for name, line in by_method(rows).items():
+            color = MODEL_COLORS.get(line[0].model) if line[0].model not in used else None
+            used.add(line[0].model)
+            points = [(row.seconds, row.error) for row in line if isfinite(row.error) and row.error > 0.0]
+            ax.loglog([x for x, _ in points], [y for _, y in points], "o-", label=name, color=color)
+        ax.set(xlabel="processor time, s", ylabel="relative error")
+        ax.legend()
+
+    caption = "Relative error over processor seconds, every mark one size; medians of interleaved rounds."
+    return Figure(f"bench-{question.id}", question.title, caption, draw)
+
+
+def machine() -> dict[str, str]:
+    """Processor, system and versions."""
+    from datetime import date
+    from importlib.metadata import PackageNotFoundError, version
+    from pathlib import Path
+
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text("utf-8").splitlines() if info.exists() else []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    found = {"date": str(date.today()), "processor": names[0] if names else platform.processor()}
+    found |= {"system": f"{platform.system()} {platform.machine()}", "python": platform.python_version()}
+    for package in ("numpy", "scipy", "scikit-fem", "numba", "exudyn", "mujoco", "pin"):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found

@@ -1,0 +1,225 @@
+"""The chain and the slider that every engine gets, what it returns, and which engines there are."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from math import cos, isfinite, pi, radians, tanh
+from typing import Protocol
+
+import numpy as np
+
+from verify.beam import Beam, PointForce, check_frequency
+from verify.checks import check_whole
+from verify.errors import InputError
+from verify.models.arrays import Array
+from verify.registry import Registry
+from verify.slider import Slider
+
+SAMPLES = 200
+"""Kept of a run, or every step of a shorter one."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """n equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest. SI units."""
+
+    n: int
+    link: float
+    """Length of a link."""
+    mass: float
+    """Of a link."""
+    inertia: float
+    """Of a link about its middle."""
+    spring: float
+    """Rotational, at each inner joint."""
+    frequency_hz: float
+    forces: tuple[PointForce, ...]
+    """Transverse, amplitude cos(omega t + phase), switched on at t = 0."""
+
+    @property
+    def length(self) -> float:
+        """Of the chain."""
+        return self.n * self.link
+
+    def force_values(self, t: float) -> list[float]:
+        """Of all forces at a time, N."""
+        omega = 2.0 * pi * self.frequency_hz
+        return [force.amplitude * cos(omega * t + radians(force.phase_deg)) for force in self.forces]
+
+    def locate(self, x: float) -> tuple[int, float]:
+        """(link, counted from 0, distance from its near end) of a position."""
+        i = min(int(x / self.link + 1e-12), self.n - 1)
+        return i, x - i * self.link
+
+
+def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: float) -> Chain:
+    """The chain of a uniform pinned undamped beam. Raises InputError for any other."""
+    if beam.supports != ("pinned", "pinned"):
+        raise InputError(f"beam.supports = {beam.supports!r}: the engines' chain is pinned, give ('pinned', 'pinned')")
+    beam.check_added("the engines' chain")
+    if beam.loss_factor:
+        raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: the engines' chain is undamped, give 0")
+    check_whole("count", n, 6)  # the surface under a slider is read from six links
+    check_frequency("frequency_hz", frequency_hz, beam)
+    for i, force in enumerate(forces):
+        if force.position > beam.length:
+            raise InputError(f"force[{i}].position = {force.position!r}: give one between 0 and {beam.length!r} m")
+    link, mass = beam.length / n, beam.mass_per_length * beam.length / n
+    return Chain(n, link, mass, mass * link**2 / 12.0, beam.bending_stiffness / link, frequency_hz, tuple(forces))
+
+
+@dataclass(frozen=True)
+class Rider:
+    """A point mass on the surface, moved by tanh friction and without effect on the chain. SI units."""
+
+    mass: float
+    friction: float
+    """Mu N."""
+    slope: float
+    half_thickness: float
+    """From the neutral line to the surface."""
+    start: float
+    """Position from the left end."""
+    speed: float = 0.0
+
+    def force(self, relative_speed: float) -> float:
+        """Friction by the speed relative to the surface."""
+        return -self.friction * tanh(self.slope * relative_speed)
+
+    def surface_speed(self, chain: Chain, spins: Sequence[float] | Array, x: float, first: int = 0) -> float:
+        """Of the surface at x, from the angular velocities of links `first` on, two on either side of x at least.
+
+        Means of two links at the joints, a cubic through four joints between (Catmull and Rom, 1974).
+        """
+        i = near(chain, x)
+        s, k = x / chain.link - i, i - first
+        e, f, g, h, m = spins[k - 2], spins[k - 1], spins[k], spins[k + 1], spins[k + 2]
+        a, b, c, d = 0.5 * (e + f), 0.5 * (f + g), 0.5 * (g + h), 0.5 * (h + m)
+        cubic = 2.0 * b + s * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)))
+        return float(-0.5 * self.half_thickness * cubic)
+
+
+def near(chain: Chain, x: float) -> int:
+    """The link whose cubic holds at x; any where x is not a number."""
+    return min(max(int(x / chain.link), 2), chain.n - 3) if isfinite(x) else 2
+
+
+def rider_of(beam: Beam, slider: Slider) -> Rider:
+    """The slider as engines take it. Raises InputError for another law, kinematics or coupling."""
+    for name, value in (("law", "tanh"), ("kinematics", "tangential"), ("coupling", "one-way")):
+        if (given := getattr(slider, name)) != value:
+            raise InputError(f"slider.{name} = {given!r}: the engines' slider has {value!r} only, give that")
+    assert slider.steepness is not None
+    friction = slider.mu * slider.normal_force
+    return Rider(slider.mass, friction, slider.steepness, beam.surface_distance, slider.start_on(beam), slider.speed)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What an engine returned, up to where it failed."""
+
+    times: Array
+    """(m,), s."""
+    deflection: Array
+    """(m,), of mid-span, m."""
+    distance: Array
+    """(m,), of the slider from its start, m; zeros without one."""
+    speed: Array
+    """(m,), m/s."""
+    steps: int
+    """Completed."""
+    failure: str = ""
+    """What the engine did where it failed, and when."""
+
+
+class Adapter(Protocol):
+    """An engine behind one interface."""
+
+    def frequencies(self, chain: Chain) -> Array | None:
+        """(n - 1,), Hz, ascending; None where the engine has none."""
+
+    def run(self, chain: Chain, steps: int, end: float, rider: Rider | None = None) -> Run:
+        """The motion from rest to `end` seconds in so many steps."""
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An engine and where its adapter is."""
+
+    name: str
+    package: str
+    """As pip names it."""
+    module: str
+    home: str
+    """'module:class' of the adapter."""
+    implicit: bool = False
+    """Whether its steps have no stability limit."""
+
+    def adapter(self) -> Adapter:
+        """The adapter, which imports the engine. Raises InputError where it is not installed."""
+        if why := missing(self):
+            raise InputError(f"engine = {self.name!r}: {why}")
+        module, _, attribute = self.home.partition(":")
+        made: Adapter = getattr(import_module(module), attribute)()
+        return made
+
+
+ENGINES: Registry[Engine] = Registry(
+    "engine",
+    "verify.engines",
+    own=(
+        Engine("Exudyn", "exudyn", "exudyn", "verify.engines.exudyn:Exudyn", implicit=True),
+        Engine("MuJoCo", "mujoco", "mujoco", "verify.engines.mujoco:Mujoco"),
+        Engine("Pinocchio", "pin", "pinocchio", "verify.engines.pinocchio:Pinocchio"),
+    ),
+    refuses=lambda one: "" if isinstance(one, Engine) else "is not a verify.engines.Engine: make it one",
+)
+
+
+def missing(engine: Engine) -> str:
+    """Why an engine takes no part; empty where it is installed. Imports nothing."""
+    from importlib.util import find_spec
+
+    if find_spec(engine.module) is not None:
+        return ""
+    return f"{engine.name} is not installed: pip install {engine.package}, or leave it out"
+
+
+def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
+    """(n - 1,), Hz, of a tree over joint angles whose far end is constrained, ascending.
+
+    `mass` (n, n), `closure` (n,) the far end's height by the angles, `stiffness` (n,). The largest eigenvalues of the
+    inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
+    """
+    from scipy.linalg import eigh
+
+    basis = np.vstack([-closure[1:] / closure[0], np.eye(len(closure) - 1)])
+    root = 1.0 / np.sqrt(stiffness[1:])
+    values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
+    return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
+
+
+@dataclass
+class Recorder:
+    """Samples of a run in relative joint angles, the slider's coordinate after them."""
+
+    chain: Chain
+    steps: int
+    step: float
+    samples: list[tuple[float, float, float, float]] = field(default_factory=list)
+
+    def keep(self, k: int, q: Array, v: Array) -> None:
+        """State after k steps, of every so manieth."""
+        if k % max(self.steps // SAMPLES, 1):
+            return
+        n = self.chain.n
+        middle, at = self.chain.locate(0.5 * self.chain.length)
+        reach = np.append(np.full(middle, self.chain.link), at)
+        height = float(np.sin(np.cumsum(q[: middle + 1])) @ reach)
+        slid = (float(q[n]), float(v[n])) if len(q) > n else (0.0, 0.0)
+        self.samples.append((k * self.step, height, *slid))
+
+    def run(self, steps: int, failure: str) -> Run:
+        """All of it."""
+        times, deflection, distance, speed = np.array(self.samples).reshape(-1, 4).T
+        return Run(times, deflection, distance, speed, steps, failure)

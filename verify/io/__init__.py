@@ -1,0 +1,1 @@
+"""Files for other programs: meshes, arrays, tables, pictures and movies of a scene."""

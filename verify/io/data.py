@@ -1,0 +1,160 @@
+"""What is exported of a scene as arrays: its modes, its driven wave over a period, its motion in time."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+
+from verify.errors import InputError
+from verify.judge.cache import SolutionCache
+from verify.models.arrays import Array
+from verify.models.catalogue import MODELS
+
+if TYPE_CHECKING:
+    from verify.beam import Beam
+    from verify.scene.model import Scene
+
+COUNT, MODES, EXACT = 49, 10, 201
+"""Default number of segments or elements, of modes, and points of the exact beam."""
+PHASES, INSTANTS = 36, 101
+"""Default number of steps of a period and of a motion."""
+
+
+class Request(msgspec.Struct, frozen=True, kw_only=True):
+    """What to export."""
+
+    what: str | None = None
+    """modes, wave, motion or tables; by default what the scene has and the file type holds."""
+    model: str = "segment"
+    count: int | None = None
+    """Segments or elements; by default the count of the scene's study of the same subject, else 49."""
+    mode: int | None = None
+    """Number of modes of data, the mode of a picture."""
+    samples: int | None = None
+    """Steps of a period or of a motion."""
+    solid: bool = False
+    """Picture by pyvista."""
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """Values at points along a beam, and deflections over steps. SI units."""
+
+    what: str
+    title: str
+    beam: "Beam"
+    links: bool
+    """Whether the beam is straight between its points."""
+    x: Array
+    """(n,), m, ascending."""
+    points: dict[str, Array]
+    """(n,) each."""
+    steps: Array
+    """(k,): time, s, or the frequencies of modes, Hz."""
+    step_name: str
+    deflection: Array
+    """(k, n), m; of modes mass-normalised, 1/sqrt(kg)."""
+    histories: dict[str, Array] = field(default_factory=dict)
+    """(k,) each, of the slider."""
+
+    @property
+    def cells(self) -> dict[str, Array]:
+        """EI (N m^2), rho A (kg/m) and section number, (n - 1,) each, of the beam between two points."""
+        pieces = self.beam.pieces
+        ends = np.cumsum([piece.length for piece in pieces])
+        index = np.minimum(np.searchsorted(ends, 0.5 * (self.x[1:] + self.x[:-1])), len(pieces) - 1)
+        return {
+            "section": index.astype(float),
+            "bending_stiffness": np.array([piece.bending_stiffness for piece in pieces])[index],
+            "mass_per_length": np.array([piece.mass_per_length for piece in pieces])[index],
+        }
+
+
+def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
+    """Modes, wave or motion of a scene by one model. Raises InputError where the scene lacks what is needed."""
+    model = MODELS.named(request.model)
+    study = scene.studies.get({"modes": "spectrum"}.get(what, what))
+    count = (request.count or getattr(study, "count", COUNT)) if model.sized else None
+    if request.count is not None and not model.sized:
+        raise InputError(f"count = {request.count}: the {model.name} model has no segments or elements, leave it out")
+    cache = SolutionCache(scene.beam)
+    length = scene.beam.length
+    x = np.linspace(0.0, length, EXACT) if count is None else np.asarray(cache.modes(model.name, count, 1).nodes)
+    name = f"{count} {model.title}" if count else model.title
+    reader = {"modes": _modes, "wave": _wave, "motion": _motion}[what]
+    values = reader(scene, cache, request, count, x)
+    values["title"] = f"{values['title']}, {name}"
+    return Dataset(what=what, beam=scene.beam, links=model.name == "segment", x=x, **values)
+
+
+def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
+    n = request.mode or MODES
+    if count is not None:
+        available = MODELS[request.model].n_elastic(scene.beam, count)
+        if request.mode is None:
+            n = min(n, available)
+        modes = cache.modes(request.model, count, n)
+    else:
+        modes = MODELS[request.model].solve_modes(scene.beam, n, None)  # type: ignore[arg-type]
+    shapes, frequencies = np.asarray(modes.deflection(x))[:n], np.asarray(modes.frequencies_hz)[:n]
+    digits = len(str(n))
+    names = [f"mode_{i:0{digits}d} at {hertz:.9g} Hz" for i, hertz in enumerate(frequencies, 1)]
+    return {
+        "title": f"modes 1 to {n}",
+        "points": dict(zip(names, shapes, strict=True)),
+        "steps": frequencies,
+        "step_name": "frequency_hz",
+        "deflection": shapes,
+    }
+
+
+def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
+    from verify.waves.case import DrivenCase
+    from verify.waves.driven import driven
+
+    if scene.drive is None or not scene.forces:
+        raise InputError("what = 'wave': the scene has no drive with forces, add [drive] or export modes")
+    case = DrivenCase(
+        beam=scene.beam,
+        model=request.model,
+        count=count,
+        forces=scene.forces,
+        frequency_hz=scene.drive.frequency_hz,
+        kind=scene.drive.kind,
+        devices=scene.devices,
+    )
+    field_ = driven(case, cache)
+    w, slope, n = field_.deflection(x), field_.slope(x), request.samples or PHASES
+    turns = np.exp(2j * np.pi * np.arange(n) / n)
+    points = {"real": w.real, "imaginary": w.imag, "amplitude": np.abs(w), "phase_deg": np.rad2deg(np.angle(w))}
+    return {
+        "title": f"steady wave at {scene.drive.frequency_hz:g} Hz",
+        "points": points | {"slope_real": np.asarray(slope.real), "slope_imaginary": np.asarray(slope.imag)},
+        "steps": np.arange(n) / n / scene.drive.frequency_hz,
+        "step_name": "time_s",
+        "deflection": (w[None, :] * turns[:, None]).real,
+    }
+
+
+def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
+    from verify.motion.simulate import simulate
+    from verify.quantities.slider import TimeOptions, motion_arguments
+
+    if scene.motion is None:
+        raise InputError("what = 'motion': the scene has no [motion], add it or --set motion.duration=1e-3")
+    if scene.devices:
+        raise InputError("what = 'motion': motion in time does not model drive.device, leave drive.device out")
+    arguments = motion_arguments(scene, TimeOptions(model=request.model, count=count))
+    if scene.slider is not None:
+        arguments |= {"slider": scene.slider, "steps_per_period": scene.motion.steps_per_period}
+    run = simulate(**arguments, at=x.tolist(), samples=request.samples or INSTANTS)
+    names = ("position", "speed", "friction", "surface_speed", "normal_force") if scene.slider else ()
+    return {
+        "title": f"motion, 0 to {run.times[-1]:g} s",
+        "points": {},
+        "steps": np.asarray(run.times),
+        "step_name": "time_s",
+        "deflection": np.asarray(run.deflection),
+        "histories": {f"slider_{name}": np.asarray(getattr(run, name)) for name in names},
+    }

@@ -1,0 +1,194 @@
+"""Datasets, tables and pictures of a scene written to files whose suffix is the file type."""
+
+import csv
+import io
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from verify.errors import InputError, near_name, shown
+from verify.files import check_no_scene, whole, whole_folder, writable_folder, write_whole
+from verify.io.data import Dataset, Request, dataset
+from verify.report.result import Table, to_json
+
+if TYPE_CHECKING:
+    from verify.models.arrays import Array
+    from verify.scene.model import Scene
+
+DATA = ("modes", "wave", "motion")
+TYPES = {
+    "vtu": ("modes", "wave"),
+    **dict.fromkeys(("pvd", "xdmf", "csv", "npz"), DATA),
+    "json": (*DATA, "tables"),
+    "tex": ("tables",),
+    **dict.fromkeys(("png", "gif", "webp", "mp4"), DATA),
+}
+"""What a file type holds."""
+
+
+def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:
+    """Write modes, wave, motion or tables of a scene to a file; returns what was written.
+
+    The file is whole or absent. A pvd has its meshes in a folder NAME-steps beside it. Raises InputError for an unknown
+    file type, for content that it does not hold, and where the file cannot be written.
+    """
+    kind = path.suffix.lower().removeprefix(".")
+    check_no_scene(path, "to")
+    if kind not in TYPES:
+        raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give one of .{', .'.join(TYPES)}")
+    what = request.what or _default(scene, kind)
+    if what not in (*DATA, "tables"):
+        raise InputError(f"what = {what!r} is not known: {near_name(what, (*DATA, 'tables'))}")
+    if what not in TYPES[kind]:
+        holding = ", ".join(f".{name}" for name, held in TYPES.items() if what in held)
+        raise InputError(f"what = {what!r}: a .{kind} file does not hold it, give one of {holding}")
+    writable_folder(path.parent, "to")
+    if what == "tables":
+        from verify.scene.run import run_scene
+
+        tables = tables_of(run_scene(scene, progress))
+        data = [{"title": table.title, "rows": table.records()} for table in tables]
+        write_whole(path, latex(tables) if kind == "tex" else to_json(data), "to")
+        return f"{len(tables)} tables"
+    progress(what)
+    data_ = dataset(scene, what, request)
+    if kind in ("png", "gif", "webp", "mp4"):
+        from verify.io.animate import write_picture
+
+        write_picture(scene, data_, path, request)
+    else:
+        writers = {"vtu": _vtu, "pvd": _pvd, "xdmf": _xdmf, "csv": _csv, "json": _json, "npz": _npz}
+        writers[kind](data_, path)
+    return data_.title
+
+
+def _default(scene: "Scene", kind: str) -> str:
+    there = [*(["motion"] if scene.motion is not None else []), *(["wave"] if scene.forces else []), "modes", "tables"]
+    return next(what for what in there if what in TYPES[kind])
+
+
+def tables_of(run: Any) -> list[Table]:
+    """The gates of a run and the tables of its studies."""
+    from verify.report.summary import gates_table
+
+    return [gates_table(run), *(table for result in run.results.values() for table in result.tables)]
+
+
+def _vectors(values: "Array", axis: int = 1) -> "Array":
+    """(n,) as vectors (n, 3) along one axis: x along the beam, y across its thickness."""
+    vectors = np.zeros((len(values), 3))
+    vectors[:, axis] = values
+    return vectors
+
+
+def _mesh(data: Dataset, points: "dict[str, Array]") -> Any:
+    import meshio
+
+    lines = np.stack([np.arange(len(data.x) - 1), np.arange(1, len(data.x))], axis=1)
+    cells = {name: [values] for name, values in data.cells.items()}
+    return meshio.Mesh(_vectors(data.x, 0), [("line", lines)], point_data=points, cell_data=cells)
+
+
+def _at_points(data: Dataset) -> "dict[str, Array]":
+    """Values at points; deflections as vectors, so that programs can warp the beam by them."""
+    scalars = ("amplitude", "phase_deg", "slope_real", "slope_imaginary")
+    return {name: values if name in scalars else _vectors(values) for name, values in data.points.items()}
+
+
+def _vtu(data: Dataset, path: Path) -> None:
+    import meshio
+
+    with whole(path, "to") as part:
+        meshio.write(part, _mesh(data, _at_points(data)), file_format="vtu")
+
+
+def _pvd(data: Dataset, path: Path) -> None:
+    import meshio
+
+    folder = path.with_name(f"{path.stem}-steps")
+    names = [f"{path.stem}_{i:05d}.vtu" for i in range(len(data.steps))]
+    rows = "".join(
+        f'<DataSet timestep="{float(step)!r}" part="0" file="{folder.name}/{name}"/>\n'
+        for step, name in zip(data.steps, names, strict=True)
+    )
+    collection = (
+        f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n{rows}</Collection>\n'
+    )
+    with whole(path, "to") as index, whole_folder(folder, ".vtu", "to") as fresh:
+        index.write_text(f"{collection}</VTKFile>\n", "utf-8")
+        for i, name in enumerate(names):
+            mesh = _mesh(data, {"deflection": _vectors(data.deflection[i])})
+            mesh.point_data |= {key: np.full(len(data.x), values[i]) for key, values in data.histories.items()}
+            meshio.write(fresh / name, mesh, file_format="vtu")
+
+
+def _xdmf(data: Dataset, path: Path) -> None:
+    """A series in one file, its numbers as text: HDF5 is not needed."""
+    import meshio
+
+    with whole(path, "to") as part, meshio.xdmf.TimeSeriesWriter(part, data_format="XML") as writer:
+        mesh = _mesh(data, {})
+        writer.write_points_cells(mesh.points, mesh.cells)
+        for i, step in enumerate(data.steps):
+            points = {"deflection": _vectors(data.deflection[i])}
+            points |= {name: np.full(len(data.x), values[i]) for name, values in data.histories.items()}
+            writer.write_data(float(step), point_data=points)
+
+
+def _csv(data: Dataset, path: Path) -> None:
+    """A row for each point; of a motion a row for each instant."""
+    if data.what == "motion":
+        head = [data.step_name, *data.histories, *(f"deflection at {float(x)!r} m" for x in data.x)]
+        rows = np.column_stack([data.steps, *data.histories.values(), data.deflection])
+    else:
+        head, rows = ["x_m", *data.points], np.column_stack([data.x, *data.points.values()])
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows([float(value) for value in row] for row in rows)
+    write_whole(path, out.getvalue(), "to")
+
+
+def _arrays(data: Dataset) -> "dict[str, Array]":
+    series = {data.step_name: data.steps, "deflection": data.deflection}
+    return {"x": data.x, **data.cells, **data.points, **series, **data.histories}
+
+
+def _json(data: Dataset, path: Path) -> None:
+    write_whole(path, to_json({"what": data.what, "title": data.title, **_arrays(data)}), "to")
+
+
+def _npz(data: Dataset, path: Path) -> None:
+    with whole(path, "to") as part, part.open("wb") as stream:
+        np.savez_compressed(stream, title=np.array(data.title), **_arrays(data))  # type: ignore[arg-type]
+
+
+_TEX = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "–": "--", "µ": r"$\mu$"}
+_TEX |= {character: f"\\{character}" for character in "{}$&#_%"} | {"±": r"$\pm$", "²": "$^2$", "°": r"$^\circ$"}
+_TEX |= {"<": "$<$", ">": "$>$", "|": "$|$", "×": r"$\times$", "μ": r"$\mu$", "√": r"$\surd$", "³": "$^3$"}
+
+
+def latex(tables: Sequence[Table]) -> str:
+    r"""Tables for \input: plain tabular, no package needed."""
+
+    def row(cells: Sequence[str]) -> str:
+        texts = ("".join(_TEX.get(character, character) for character in cell) for cell in cells)
+        return " & ".join(f"{{{text}}}" for text in texts) + r" \\"
+
+    parts = []
+    for table in tables:
+        words = [any(isinstance(line[i], str) for line in table.rows) for i in range(len(table.columns))]
+        sides = "".join("l" if word else "r" for word in words)
+        lines = [rf"\par\medskip\noindent {row([table.title])[:-3]}\par\smallskip", rf"\begin{{tabular}}{{{sides}}}"]
+        lines += [
+            r"\hline",
+            row(table.headings()),
+            r"\hline",
+            *map(row, table.text_rows()),
+            r"\hline",
+            r"\end{tabular}",
+        ]
+        parts.append("\n".join([*lines, *(rf"\par {row([note])[:-3]}" for note in table.notes)]) + "\n")
+    return "\n".join(parts)

@@ -1,0 +1,187 @@
+"""A check: an error measured along one parameter, its tolerance, and the value from which the tolerance is exceeded."""
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import localcontext
+from functools import partial
+from importlib import import_module
+from math import exp, inf, isfinite, log
+from time import perf_counter
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from verify.errors import InputError, near_name
+
+MODULES = ("modes", "waves", "motion_chain", "scaling")
+DIGITS = 60
+HALVINGS = 8
+Error: TypeAlias = Callable[..., float]
+Points: TypeAlias = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Check:
+    """`error(value)` is at most `tolerance` for all `values` of the parameter, in their order from easy to hard."""
+
+    id: str
+    title: str
+    parameter: str
+    values: Sequence[float]
+    tolerance: float
+    error: Error
+    """Raises InputError where the value is refused."""
+    beyond: Sequence[float] = ()
+    """Values past the guaranteed range, to find where the tolerance is exceeded or the value refused."""
+    refused: bool = False
+    """Whether the range may end only with a refusal."""
+    baseline: tuple[Any, ...] = ()
+    """(name, error, values if others) of the standard method, measured alike; it may fail in any way."""
+    rounds: int = 0
+    """From 1 on `error` is a cost, the least of so many rounds, and `tolerance` bounds its exponent."""
+    slow: bool = False
+
+    def run(self) -> "Outcome":
+        """Measure the check. Raises nothing for what is measured."""
+        start = perf_counter()
+        baseline: Points = ()
+        with localcontext() as context, warnings.catch_warnings():
+            context.prec = DIGITS
+            points = self._costs() if self.rounds else tuple((v, _error(self.error, v)[0]) for v in self.values)
+            worst = exponent(points) if self.rounds else max(error for _, error in points)
+            breaks_at, how = self._limit() if worst <= self.tolerance else (None, "")
+            warnings.simplefilter("ignore")
+            if self.baseline:
+                _, error, *values = self.baseline
+                baseline = tuple((v, _error(error, v)[0]) for v in (values[0] if values else self.values))
+        passed = worst <= self.tolerance and (how == "refused" or not self.refused)
+        return Outcome(self.id, worst, passed, points, breaks_at, how, baseline, perf_counter() - start)
+
+    def _costs(self) -> Points:
+        """Least cost of each size over rounds in which the sizes take turns."""
+        table = [[_error(self.error, size)[0] for size in self.values] for _ in range(self.rounds)]
+        return tuple((size, min(column)) for size, column in zip(self.values, zip(*table, strict=True), strict=True))
+
+    def _limit(self) -> tuple[float | None, str]:
+        """(the first value beyond that exceeds the tolerance, how), by bisection in the logarithm."""
+        good = self.values[-1]
+        for bad in self.beyond:
+            error, how = _error(self.error, bad)
+            if error > self.tolerance:
+                break
+            good = bad
+        else:
+            return None, ""
+        for _ in range(HALVINGS):
+            middle = exp(0.5 * (log(good) + log(bad)))
+            error, why = _error(self.error, middle)
+            good, bad, how = (good, middle, why) if error > self.tolerance else (middle, bad, how)
+        return bad, how
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a check measured."""
+
+    id: str
+    worst: float
+    """Largest error over the guaranteed range, or the exponent of a cost."""
+    passed: bool
+    points: Points
+    """(value, error or cost)."""
+    breaks_at: float | None
+    """Value from which the tolerance is exceeded or the input refused; None where neither was reached."""
+    breaks_by: str
+    """'error', 'refused', or empty."""
+    baseline: Points
+    """(value, error) of the standard method, infinite where it fails."""
+    seconds: float
+
+
+CHECKS: dict[str, Check] = {}
+
+
+def check(
+    id: str,
+    parameter: str,
+    values: Sequence[float],
+    tolerance: float,
+    *,
+    models: Mapping[str, str] | None = None,
+    **more: Any,
+) -> Callable[[Error], Error]:
+    """Register an error function, whose docstring is the title unless given; `more` are fields of `Check`.
+
+    With `models` (name: word of the id) one check for each, of `error(model, value)` and a baseline likewise.
+    """
+
+    def register(error: Error) -> Error:
+        title = more.pop("title", (error.__doc__ or "").partition("\n")[0].rstrip("."))
+        for model, word in (models or {"": ""}).items():
+            name, of, own = f"{id}-{word}".rstrip("-"), error, dict(more)
+            if model:
+                of = partial(error, model)
+                if "baseline" in more:
+                    own["baseline"] = (more["baseline"][0], partial(more["baseline"][1], model), *more["baseline"][2:])
+            CHECKS[name] = Check(name, title, parameter, tuple(values), tolerance, of, **own)
+        return error
+
+    return register
+
+
+def registry() -> dict[str, Check]:
+    """All checks by id."""
+    for name in MODULES:
+        import_module(f"verify.stress.{name}")
+    return CHECKS
+
+
+def select(ids: Sequence[str] = (), *, slow: bool = False) -> list[Check]:
+    """Checks by id, or all; slow ones only by id or with `slow`. Raises InputError for an unknown id."""
+    checks = registry()
+    for name in ids:
+        if name not in checks:
+            raise InputError(f"check = {name!r} is unknown: {near_name(name, tuple(checks))}")
+    return [checks[name] for name in ids] or [one for one in checks.values() if slow or not one.slow]
+
+
+def run(
+    checks: Sequence[Check], jobs: int | None = None, progress: Callable[[str], None] = lambda id: None
+) -> list[Outcome]:
+    """Outcomes in the order of the checks: errors in `jobs` processes, then costs, each alone on the machine."""
+    from verify.parallel import map_processes
+
+    ids = [one.id for one in checks if not one.rounds]
+    found = dict(zip(ids, map_processes(_run_by_id, ids, lambda n: progress(ids[n - 1]), jobs), strict=True))
+    for one in checks:
+        if one.rounds:
+            found[one.id] = one.run()
+            progress(one.id)
+    return [found[one.id] for one in checks]
+
+
+def _run_by_id(name: str) -> Outcome:
+    return registry()[name].run()
+
+
+def _error(error: Error, value: float) -> tuple[float, str]:
+    """(the error, infinite where there is none, how it is exceeded)."""
+    try:
+        found = float(error(value))
+    except InputError:
+        return inf, "refused"
+    except (ArithmeticError, ValueError, RuntimeError):  # a baseline overflows, is singular, or does not converge
+        return inf, "error"
+    return (found, "error") if isfinite(found) else (inf, "error")
+
+
+def exponent(points: Points) -> float:
+    """Slope of ln cost over ln size by least squares."""
+    sizes, costs = np.log(np.array(points)).T
+    return float(np.polyfit(sizes, costs, 1)[0])
+
+
+def worst(*errors: Any) -> float:
+    """The largest size of numbers and arrays; NaN where one is."""
+    return float(np.max([np.max(np.abs(one)) for one in errors]))

@@ -1,1 +1,0 @@
-"""Rows of what is said of models: sizes, brackets, error laws, words."""

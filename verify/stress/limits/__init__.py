@@ -1,1 +1,0 @@
-"""Rows of where answers end, where another way is taken, and what size costs."""

@@ -1,1 +1,0 @@
-"""Rows of `compare`: lists of frequencies and shapes of somebody else's."""

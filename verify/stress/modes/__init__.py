@@ -1,1 +1,0 @@
-"""Rows of natural frequencies and shapes: sizes, scales, bodies, stacks, what stands between a beam and its modes."""

@@ -1,1 +1,0 @@
-"""Rows of linear beams in time, friction and sliders."""

@@ -1,1 +1,0 @@
-"""Rows of sliders that may leave their beam."""

@@ -1,1 +1,0 @@
-"""Rows of what is refused, each by its sentence."""

@@ -1,0 +1,89 @@
+"""Outcomes of stress checks as a result: one table, two charts, data."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from verify.report.result import Column, Figure, Result, Table
+from verify.stress.engine import Outcome, registry
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLUMNS = (
+    Column("check"),
+    Column("parameter"),
+    Column("range"),
+    Column("tolerance", format=".3g"),
+    Column("worst", format=".2g"),
+    Column("breaks at"),
+    Column("standard", format=".1g"),
+)
+NOTE = "worst: largest error over the range, or exponent of a cost; standard: that of the standard method."
+RATIOS = ("tip-mass", "tip-mass-mode-2", "tip-spring", "foundation", "tension", "material-scale")
+"""Checks over a dimensionless ratio, which share a chart."""
+
+
+def record(outcome: Outcome) -> dict[str, Any]:
+    """An outcome as data; `worst` of a cost is its exponent."""
+    check = registry()[outcome.id]
+    return {
+        "id": check.id,
+        "title": check.title,
+        "parameter": check.parameter,
+        "from": check.values[0],
+        "to": check.values[-1],
+        "tolerance": check.tolerance,
+        "worst": outcome.worst,
+        "passed": outcome.passed,
+        "breaks_at": outcome.breaks_at,
+        "breaks_by": outcome.breaks_by,
+        "baseline": max((error for _, error in outcome.baseline), default=None),
+        "baseline_name": check.baseline[0] if check.baseline else "",
+        "seconds": outcome.seconds,
+        "points": outcome.points,
+    }
+
+
+def row(one: dict[str, Any]) -> list[Any]:
+    """Cells of `COLUMNS`."""
+    span = f"{one['from']:.3g} .. {one['to']:.3g}"
+    breaks = None if one["breaks_at"] is None else f"{one['breaks_at']:.3g} {one['breaks_by']}"
+    return [one["id"], one["parameter"], span, one["tolerance"], one["worst"], breaks, one["baseline"]]
+
+
+def result(outcomes: Sequence[Outcome]) -> Result:
+    """Table, charts and data of what was measured."""
+    records = [record(one) for one in outcomes]
+    failed = [one["id"] for one in records if not one["passed"]]
+    caption = "Largest error over the guaranteed range, or the exponent of a cost, over its tolerance."
+    title, size = "Worst error as a fraction of the tolerance", (6.4, 0.6 + 0.17 * len(records))
+    figures = [Figure("stress-fraction", title, caption, lambda ax: _fractions(ax, records), size)]
+    if ratios := [one for one in outcomes if one.id in RATIOS]:
+        caption = "Relative error of a frequency over a property as a ratio to the beam's own; dashed: LAPACK."
+        figures.append(Figure("stress-ratio", "Error over a ratio", caption, lambda ax: _ratios(ax, ratios)))
+    return Result(
+        summary=f"{len(records) - len(failed)} of {len(records)} checks are within their tolerance.",
+        tables=[Table("Stress checks", COLUMNS, [row(one) for one in records], [NOTE])],
+        figures=figures,
+        warnings=[f"{name} fails" for name in failed],
+        data={"checks": records},
+    )
+
+
+def _fractions(ax: "Axes", records: Sequence[dict[str, Any]]) -> None:
+    fractions = [max(one["worst"] / one["tolerance"], 1e-6) for one in records]
+    ax.barh([one["id"] for one in records], fractions)
+    ax.axvline(1.0, linestyle="--", gid="guide")
+    ax.set(xscale="log", xlabel="worst / tolerance", xlim=(1e-6, 10.0))
+    ax.invert_yaxis()
+    ax.tick_params(axis="y", labelsize=7)
+
+
+def _ratios(ax: "Axes", outcomes: Sequence[Outcome]) -> None:
+    for one in outcomes:
+        (line,) = ax.loglog([x for x, _ in one.points], [y for _, y in one.points], "o-", label=one.id)
+        if one.baseline:
+            values, errors = [x for x, _ in one.baseline], [y for _, y in one.baseline]
+            ax.loglog(values, errors, "--", color=line.get_color(), label=f"{one.id}, LAPACK")
+    ax.set(xlabel="ratio", ylabel="relative error")
+    ax.legend()

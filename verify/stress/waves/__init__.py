@@ -1,1 +1,0 @@
-"""Rows of driven fields and of what is measured in them."""

@@ -1,0 +1,95 @@
+"""What the tables and charts of several studies share: columns, lines in suitable units, errors over N."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from verify.judge.variants import Variant
+    from verify.report.result import Column, Movie
+
+THIN, BROAD = 1.4, 4.0
+"""Widths of lines of discrete models, and of the exact beam below them."""
+MOST_POINTS = 2000
+
+
+def si(name: str, unit: str, form: str = ".4g") -> "Column":
+    """A column of values that are shown with the SI prefix that suits the largest."""
+    from verify.report.result import Column
+
+    return Column(name, unit, form, prefix=True)
+
+
+def percent(name: str, form: str = "+.4g") -> "Column":
+    """A column of ratios that are shown in per cent."""
+    from verify.report.result import Column
+
+    return Column(name, format=form, percent=True)
+
+
+def model_style(model: str) -> dict[str, Any]:
+    """Colour and line width of a model in every chart."""
+    from verify.models.catalogue import MODELS
+    from verify.report.plotting import MODEL_COLORS
+
+    color = MODEL_COLORS.get(model, MODELS[model].colour)
+    return {"color": color, "linewidth": THIN if MODELS[model].sized else BROAD}
+
+
+def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":
+    """The colour of a model for its first variant, others from the colour cycle."""
+    from verify.report.plotting import CYCLE
+
+    colors: dict[Variant, str] = {}
+    for one in variants:
+        first = all(other.model != one.model for other in colors)
+        colors[one] = model_style(one.model)["color"] if first else CYCLE[len(colors) % len(CYCLE)]
+    return colors
+
+
+def plot_lines(
+    ax: "Axes", lines: Iterable[tuple[str, Any, Any, dict[str, Any]]], x: tuple[str, str], y: tuple[str, str]
+) -> None:
+    """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
+    from verify.units import unit_over
+
+    drawn = [line for line in lines if len(line[1])]
+    x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])
+    y_unit = unit_over((float(abs(ys).max()) for _, _, ys, _ in drawn), y[1])
+    for label, xs, ys, style in drawn:
+        every = slice(None, None, max(len(xs) // MOST_POINTS, 1))
+        ax.plot(x_unit.factor * xs[every], y_unit.factor * ys[every], label=label, **style)
+    ax.set(xlabel=f"{x[0]}, {x_unit.name}", ylabel=f"{y[0]}, {y_unit.name}")
+    if any(label for label, *_ in drawn):
+        ax.legend()
+
+
+def plot_errors(ax: "Axes", lines: Iterable[tuple[str, str, str, Sequence[int], Sequence[Any]]], ylabel: str) -> None:
+    """Absolute values over N on logarithmic axes: (label, colour, line style, N, values); zero and None are gaps."""
+    from matplotlib.ticker import NullLocator
+
+    sizes: set[int] = set()
+    for label, color, style, counts, values in lines:
+        known = [(count, abs(value)) for count, value in zip(counts, values, strict=True) if value]
+        ax.loglog([n for n, _ in known], [value for _, value in known], style, color=color, label=label)
+        sizes |= {n for n, _ in known}
+    ax.set_xticks(sorted(sizes), [str(n) for n in sorted(sizes)])
+    ax.xaxis.set_minor_locator(NullLocator())
+    ax.set(xlabel="number of segments or elements N", ylabel=ylabel)
+    ax.legend()
+
+
+def movie(key: str, title: str, caption: str, set_up: "Callable[[Axes], Any]") -> "Movie":
+    """A movie. `set_up` draws on axes and returns (function of a frame that returns its artists, frames)."""
+    from verify.report.result import Movie
+
+    def animate(figure: "Figure") -> "FuncAnimation":
+        from matplotlib.animation import FuncAnimation
+
+        update, frames = set_up(figure.subplots())
+        return FuncAnimation(figure, update, frames=frames, interval=60)
+
+    return Movie(key, title, caption, animate)

@@ -1,0 +1,254 @@
+"""Quantities over the Cartesian product of scene keys and quantity arguments, on all cores."""
+
+import os
+from collections.abc import Mapping, Sequence
+from functools import partial
+from itertools import product
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import msgspec
+from msgspec import Meta
+from msgspec.structs import replace
+
+from verify.errors import InputError, near_name, shown
+from verify.studies.base import Progress, Study
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from verify.judge.cache import SolutionCache
+    from verify.report.result import Result
+    from verify.scene.model import Scene
+
+MOST = 100_000
+AGREE = "claims that agree"
+WIDE = 30.0
+"""Ratio of largest to smallest value from which an axis is logarithmic."""
+
+
+class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Quantities over every combination of the lists in `over`.
+
+    A key of `over` with a dot is a key of the scene ("beam.youngs_modulus", "drive.force.0.phase_deg", with * for all
+    entries), one without is an argument of the quantities. Several keys joined by commas vary together, through a list
+    of lists.
+    """
+
+    name: ClassVar[str] = "sweep"
+    title: ClassVar[str] = "Sweep"
+    devices: ClassVar[bool] = True
+
+    quantities: Annotated[tuple[str, ...], Meta(min_length=1, description="Names, see `verify quantities`.")]
+    over: Annotated[dict[str, list[Any]], Meta(min_length=1, description="Values by scene key or argument.")]
+    arguments: Annotated[dict[str, Any], Meta(description="Fixed arguments, where a quantity has them.")] = (
+        msgspec.field(default_factory=dict)
+    )
+    claims: Annotated[bool, Meta(description="Count the scene's claims that agree in each combination.")] = False
+
+    def check(self, scene: "Scene") -> None:
+        """Raise InputError for an unknown quantity, scene key or argument, and for an empty list."""
+        _combinations(self.over)
+        wanted = _quantities(self.quantities)
+        others = {name: one for name, one in scene.studies.items() if name != "sweep"}
+        bare = replace(scene, studies=others, gate=())  # a copy with this sweep would check itself
+        for key in _keys(self.over):
+            if "." in key:
+                _with_value(bare, key.split("."), key)
+        known = {argument.name for one in wanted for argument in one.arguments}
+        for name in [*self.arguments, *(key for key in _keys(self.over) if "." not in key)]:
+            if name not in known:
+                remedy = near_name(name, tuple(known))
+                raise InputError(f"sweep: {name} is no argument of {', '.join(self.quantities)}: {remedy}")
+        if self.claims and not scene.claim:
+            raise InputError("sweep.claims = true, and the scene has no [[claim]]: add one, or leave it out")
+
+    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+        """Evaluate every combination; one without a value is a row with the reason. Raises InputError."""
+        return run_sweep(
+            scene, self.quantities, self.over, arguments=self.arguments, claims=self.claims, progress=progress
+        )
+
+
+def run_sweep(
+    scene: "Scene",
+    quantities: Sequence[str],
+    over: Mapping[str, Sequence[Any]],
+    *,
+    arguments: Mapping[str, Any] | None = None,
+    claims: bool = False,
+    progress: Progress = lambda step: None,
+) -> "Result":
+    """Evaluate quantities over every combination of the lists in `over`, the first key slowest.
+
+    `over`, `arguments` and `claims` are those of `Sweep`. Runs on as many processes as VERIFY_JOBS says, else as there
+    are cores. Returns one table with a row for each combination, and a chart of each quantity over one or two lists.
+    Raises InputError for an unknown quantity, key or argument; a combination that raises it is a row with the reason.
+    """
+    from verify.parallel import VARIABLE, map_processes
+    from verify.report.result import Column, Figure, Result, Table
+
+    study = Sweep(
+        quantities=tuple(quantities),
+        over={key: list(values) for key, values in over.items()},
+        arguments=dict(arguments or {}),
+        claims=claims,
+    )
+    bare = replace(scene, studies={name: one for name, one in scene.studies.items() if name != "sweep"}, gate=())
+    study.check(bare)
+    combinations = _combinations(study.over)
+    values = map_processes(
+        _evaluate,
+        [(bare, study, one) for one in combinations],
+        lambda done: progress(f"combination {done} of {len(combinations)}"),
+        max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
+    )
+    rows = [one | found for one, found in zip(combinations, values, strict=True)]
+    wanted, failed = _quantities(quantities), sum(row["reason"] is not None for row in rows)
+    columns = [Column(key, format=".6g") for key in combinations[0]]
+    columns += [Column(one.name, "" if one.unit == "1" else one.unit, ".7g") for one in wanted]
+    columns += [Column(AGREE)] * claims + [Column("reason")] * bool(failed)
+    where = " and ".join(over)
+    return Result(
+        summary=f"{len(rows)} combinations, {failed} without a value.",
+        tables=[
+            Table(
+                f"Sweep over {where}",
+                columns,
+                [tuple(_cell(row[column.name]) for column in columns) for row in rows],
+                [f"Claims of the scene: {len(scene.claim)}."] * claims,
+            )
+        ],
+        figures=[
+            Figure(f"sweep-{one.name}", f"{one.name} over {where}", one.summary, partial(_draw, study, rows, one))
+            for one in wanted
+            if len(over) <= 2 and any(_number(row[one.name]) for row in rows)
+        ],
+        data={"rows": rows},
+    )
+
+
+def _evaluate(task: "tuple[Scene, Sweep, dict[str, Any]]") -> dict[str, Any]:
+    """Values by quantity, number of claims that agree, reason for a missing value, of one combination."""
+    from verify.judge.cache import SolutionCache
+    from verify.quantities.base import evaluate
+    from verify.studies.claims import computed
+
+    scene, study, combination = task
+    row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None}
+    try:
+        for key, value in combination.items():
+            scene = _with_value(scene, key.split("."), key, value) if "." in key else scene
+        cache = SolutionCache(scene.beam)
+        arguments = study.arguments | {key: value for key, value in combination.items() if "." not in key}
+        for one in _quantities(study.quantities):
+            own = {argument.name for argument in one.arguments}
+            row[one.name] = evaluate(one.name, {k: v for k, v in arguments.items() if k in own}, scene, cache)
+        for claim in scene.claim if study.claims else ():
+            row[AGREE] += claim.agrees(computed(claim, scene, cache))
+    except InputError as error:
+        row["reason"] = str(error)
+    return row
+
+
+def _quantities(names: Sequence[str]) -> list[Any]:
+    from verify.quantities.base import QUANTITIES
+
+    return [QUANTITIES.named(name) for name in names]
+
+
+def _keys(over: Mapping[str, Sequence[Any]]) -> list[str]:
+    return [key.strip() for keys in over for key in keys.split(",")]
+
+
+def _combinations(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    """Values by key of every combination, the first key slowest. Raises InputError."""
+    axes, size = [], 1
+    for joined, values in over.items():
+        keys = [key.strip() for key in joined.split(",")]
+        together = [value if len(keys) > 1 else [value] for value in values]
+        if not values or any(not isinstance(row, list) or len(row) != len(keys) for row in together):
+            each = f"lists of {len(keys)} values" if len(keys) > 1 else "values"
+            raise InputError(f"sweep.over.{joined} = {shown(list(values))}: give {each}, one at least")
+        axes.append([dict(zip(keys, row, strict=True)) for row in together])
+        size *= len(values)
+    if size > MOST:
+        raise InputError(f"sweep.over has {size} combinations: give at most {MOST}")
+    return [{key: value for part in parts for key, value in part.items()} for parts in product(*axes)]
+
+
+_SAME = object()
+
+
+def _with_value(node: Any, path: list[str], key: str, value: Any = _SAME) -> Any:
+    """A copy of a scene, or of a part of it, with another value at a path; without a value only the path is checked.
+
+    Raises InputError for a path that does not exist and for a value that does not fit.
+    """
+    head, *rest = path
+    if isinstance(node, tuple):
+        known = [str(i) for i in range(len(node))]
+        if head not in ("*", *known) or not node:
+            raise InputError(f"sweep.over.{key}: {head!r} is no entry, give one of {', '.join([*known, '*'])}")
+        changed = [
+            (_with_value(one, rest, key, value) if rest else value) if head in ("*", i) else one
+            for i, one in zip(known, node, strict=True)
+        ]
+        return tuple(changed)
+    studies = getattr(node, "studies", {})
+    if head in studies:
+        return replace(node, studies=studies | {head: _with_value(studies[head], rest, key, value)})
+    names = getattr(node, "__struct_fields__", ())
+    if head not in names:
+        raise InputError(f"sweep.over.{key}: {head} is not known: {near_name(head, (*names, *studies))}")
+    if rest:
+        return replace(node, **{head: _with_value(getattr(node, head), rest, key, value)})
+    if value is _SAME:
+        return node
+    try:
+        return msgspec.convert(msgspec.to_builtins(node) | {head: value}, type(node))
+    except msgspec.ValidationError as error:
+        if isinstance(error.__cause__, InputError):
+            raise error.__cause__ from None
+        raise InputError(f"{key} = {shown(value)}: {error}") from None
+
+
+def _cell(value: Any) -> Any:
+    """A value of a table: numbers, words; anything else as text."""
+    from verify.quantities.base import as_text
+
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value) if isinstance(value, list | tuple | dict) else as_text(value)
+
+
+def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: "Axes") -> None:
+    """A line over one list, a colour map over two; gaps where there is no value."""
+    import numpy as np
+
+    unit = "" if quantity.unit == "1" else f", {quantity.unit}"
+    values = np.array([row[quantity.name] if _number(row[quantity.name]) else np.nan for row in rows], dtype=float)
+    places = []
+    for axis, (key, given) in zip("xy", study.over.items(), strict=False):
+        getattr(ax, f"set_{axis}label")(key)
+        if all(map(_number, given)) and sorted(set(given)) == given:
+            places.append(given)
+            if given[0] > 0.0 and given[-1] / given[0] > WIDE:
+                getattr(ax, f"set_{axis}scale")("log")
+        else:
+            places.append(list(range(len(given))))
+            getattr(ax, f"set_{axis}ticks")(range(len(given)), [_label(value) for value in given])
+    if len(places) == 1:
+        ax.plot(places[0], values, "-o")
+        ax.set_ylabel(f"{quantity.name}{unit}")
+        return
+    mesh = ax.pcolormesh(*places, values.reshape(len(places[0]), -1).T, shading="nearest", cmap="viridis")
+    ax.figure.colorbar(mesh, ax=ax, label=f"{quantity.name}{unit}")
+    ax.grid(False)
+
+
+def _label(value: Any) -> str:
+    return f"{value:g}" if _number(value) else ", ".join(map(_label, value)) if isinstance(value, list) else str(value)
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, float | int) and not isinstance(value, bool)
