@@ -32,7 +32,7 @@ COMPARED: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
 DROPPED_CALLS = ("abs", "max", "min", "sqrt", "np.abs", "np.clip", "np.conj", "np.maximum", "np.minimum", "np.sqrt")
 ORDERLESS = ("isinstance", "zip", "hasattr", "getattr", *DROPPED_CALLS)
 """Calls whose arguments are not exchanged."""
-COMPILED = re.compile(r"^(part|lean)\b")
+COMPILED = re.compile(r"^(part|lean|jit|inline)\b")
 """Decorators of kernels."""
 
 

@@ -32,7 +32,7 @@ from benchmarks.recorded_lines import Recorded, read_recorded, recorded, run_pyt
 from verify.files import write_whole
 
 ROOMS = ("models", "segments", "elements", "exact", "judge", "contact", "waves", "chain", "motion")
-GATES = "verify/scenes"
+GATES = "verify/scene/data"
 ROOT = Path(__file__).resolve().parents[1]
 LEFT = shutil.ignore_patterns(".git", ".*_cache", ".hypothesis", "__pycache__", "*.egg-info")
 """What a copy of a checkout does without."""

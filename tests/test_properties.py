@@ -14,7 +14,6 @@ from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts
 from verify.options import SUPPORTS
-from verify.quantities.catalogue import QUANTITIES
 from verify.section import Section
 from verify.segments import linear as segment_model
 from verify.segments import links as chain_of_links

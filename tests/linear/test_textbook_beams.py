@@ -12,7 +12,8 @@ from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.exact import closed_forms
 from verify.exact.buckling import buckling_load
-from verify.exact.modes import exact_frequency_hz, mode_shape, modes_below
+from verify.exact.modes import exact_frequency_hz, mode_shape
+from verify.exact.roots import modes_below
 from verify.options import SUPPORTS
 from verify.section import Section
 

@@ -64,8 +64,7 @@ def compare(
     options = Options(count=count, kind=kind, mode=mode, within=_ratio(within), theory=theory)
     numbers = [_number(word) for word in given]
     if model is not None:
-        frequencies, forms = solve_model(model, loaded.beam, count, mode)
-        result = compare_list(loaded, frequencies, forms, options)
+        result = compare_list(loaded, solve_model(model, loaded.beam, count, mode), None, options)
     elif all(number is not None for number in numbers):
         typed = listed("frequencies", [n for n in numbers if n is not None], given, unit=unit or "Hz")
         result = compare_list(loaded, typed, None, options)

@@ -9,7 +9,6 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.compare.discrete import DiscreteBeam
-from verify.errors import InputError
 from verify.judge.variants import has_wall, told_by_lever
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
@@ -78,11 +77,16 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         return not self.sized or self.mass == "consistent" or (self.mass == "links" and self.wall in (None, *WALLS))
 
     @property
+    def springs(self) -> bool:
+        """Whether it may stand on a rotational spring in place of a wall."""
+        return self.packaged and self.attachment == "reciprocal" and self.wall != "welded"
+
+    @property
     def settings(self) -> dict[str, str]:
         """Keywords of the `verify` model."""
         given = {"wall": self.wall, "joints": self.joints, "attachment": self.attachment, "theory": self.theory}
-        usual = ("series", "reciprocal", EULER, None)
-        return {name: value for name, value in given.items() if value not in usual}  # type: ignore[misc]
+        usual = ("series", "reciprocal", EULER)
+        return {name: value for name, value in given.items() if value is not None and value not in usual}
 
     def order(self, beam: Beam) -> int | None:
         """Order of convergence of its frequencies on a beam; None where it is not known."""
@@ -134,19 +138,16 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
 @lru_cache(maxsize=20_000)
 def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes: int) -> Array:
     """Its first elastic frequencies, (n_modes or fewer,), Hz; cached, not to be written to. Raises InputError."""
-    if not candidate.sized or count is None:
-        return np.asarray(MODELS[EXACT].solve_modes(beam, n_modes, None, **candidate.settings).frequencies_hz)
+    settings = candidate.settings
     if candidate.packaged:
         model = MODELS[candidate.model]
-        if count < model.fewest:
+        if count is not None:
+            full = min(model.n_elastic(beam, count), model.n_elastic(beam, count, **settings))
+            n_modes = min(n_modes, full if count >= model.fewest else 0)
+        if n_modes < 1:
             return np.empty(0)
-        available = min(n_modes, model.n_elastic(beam, count), model.n_elastic(beam, count, **candidate.settings))
-        if available < 1:
-            return np.empty(0)
-        return np.asarray(model.solve_modes(beam, available, count, **candidate.settings).frequencies_hz)
-    line = DiscreteBeam(beam, count, candidate.theory)
+        return np.asarray(model.solve_modes(beam, n_modes, count, **settings).frequencies_hz)  # type: ignore[arg-type]
+    line, wall = DiscreteBeam(beam, count or 0, candidate.theory), candidate.wall or "half"
     if candidate.model == ELEMENTS:
         return line.elements_hz(n_modes, candidate.mass)
-    if candidate.mass == "rod":
-        return line.rod_hz(n_modes, candidate.wall or "half")
-    return line.chain_hz(n_modes, candidate.mass, candidate.wall or "half")
+    return line.rod_hz(n_modes, wall) if candidate.mass == "rod" else line.chain_hz(n_modes, candidate.mass, wall)

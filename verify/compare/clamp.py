@@ -8,7 +8,7 @@ import numpy as np
 from verify.attached import PointSpring
 from verify.beam import Beam
 from verify.compare.candidates import EXACT, Candidate, frequencies_hz
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Indices
 
 SOFTEST, STIFFEST = 0.3, 1e4
 """Range of k_r L/EI: softer is a hinge, stiffer changes nothing that a list shows."""
@@ -46,7 +46,13 @@ def clamp_effect(beam: Beam, ends: tuple[str, ...], n_modes: int) -> tuple[Array
 
 
 def fit_clamp(
-    beam: Beam, ends: tuple[str, ...], start: float, candidate: Candidate, count: int | None, logs: Array, modes: Array
+    beam: Beam,
+    ends: tuple[str, ...],
+    start: float,
+    candidate: Candidate,
+    count: int | None,
+    logs: Array,
+    modes: Indices,
 ) -> tuple[float, Array]:
     """(k_r L/EI of least squares, log of a list over the softened candidate, (k,)). Raises InputError.
 
@@ -59,5 +65,5 @@ def fit_clamp(
         return np.asarray(logs - np.log(hertz[modes])) if len(hertz) > modes.max() else np.full(len(logs), np.inf)
 
     around = np.log(start) + np.array([-0.5, 0.5])
-    found = minimize_scalar(lambda k: float(np.sum(left(k) ** 2)), bounds=around, options={"xatol": 1e-9})
+    found = minimize_scalar(lambda k: float(np.sum(left(k) ** 2)), bounds=around, options={"xatol": 1e-7})
     return float(np.exp(found.x)), left(found.x)

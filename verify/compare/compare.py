@@ -8,10 +8,10 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.checks import check_whole
-from verify.compare.candidates import CHAIN, ELEMENTS, EXACT, EULER, Candidate, candidates, frequencies_hz
+from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.fit import TOLERANCE, Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
-from verify.compare.report import Entry, Required, result_of
+from verify.compare.report import Entry, result_of, tables_of
 from verify.errors import InputError
 from verify.judge.compare import LIKENESS, mac, node_weights, pair_modes
 from verify.models.arrays import Array, Indices
@@ -41,7 +41,9 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """Of the exact beam."""
 
 
-def compare(scene: Any, given: FrequencyList, shapes: ModeShapes | None = None, options: Options | None = None) -> Result:
+def compare(
+    scene: Any, given: FrequencyList, shapes: ModeShapes | None = None, options: Options | None = None
+) -> Result:
     """Identify the discretisation behind frequencies of the scene's beam and their errors. Raises InputError.
 
     `shapes`, one for each frequency, say which modes they are. `data["passed"]` of the result is the acceptance.
@@ -72,22 +74,30 @@ def compare(scene: Any, given: FrequencyList, shapes: ModeShapes | None = None, 
     )
     found = identify(data)
     rows = [
-        Entry(entry=int(kept[e]) + 1, mode=int(m) + 1, given_hz=float(given.hertz[kept[e]]), exact_hz=float(exact_hz[m]),
-              mac=None if likeness is None else float(likeness[i]))
+        Entry(
+            int(kept[e]) + 1,
+            int(m) + 1,
+            float(given.hertz[kept[e]]),
+            float(exact_hz[m]),
+            None if likeness is None else float(likeness[i]),
+        )
         for i, (e, m) in enumerate(zip(entries, modes, strict=True))
-    ]  # fmt: skip
+    ]
     warnings = []
     if rigid != beam.rigid_motions and rigid:
         warnings.append(f"The list starts with {rigid} rigid motions, the beam of the scene has {beam.rigid_motions}.")
     if (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any():
         warnings.append("Frequencies are not in the order of the modes: see the column entry.")
     if len(entries) < len(kept):
-        warnings.append(f"{len(kept) - len(entries)} of the shapes are like no mode of the beam (MAC below {LIKENESS}).")
+        warnings.append(f"{len(kept) - len(entries)} of the shapes are of no mode of the beam (MAC below {LIKENESS}).")
     if found.status == "unknown" and (supports := _other_supports(beam, data.logs[entries], modes)):
         warnings.append(f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.")
     mode = options.mode or max(row.mode for row in rows)
-    sizes = [_required(beam, one, mode, max(mode, data.n_modes)) for one in _worth_sizing(beam, found.best.candidate) if found.status != "unknown"]
-    return result_of(scene, given, options, data, found, rows, sizes, warnings)
+    sized = [] if found.status == "unknown" else _worth_sizing(beam, found.best.candidate)
+    required = [(one, mode, _required(beam, one, mode, max(mode, data.n_modes))) for one in sized]
+    tables, passed = tables_of(data, found, rows, required, options.within)
+    about = {"scene": scene.name, "source": given.source, "unit": given.unit, "passed": passed}
+    return result_of(beam, found, rows, tables, warnings, **about)
 
 
 def _rigid(given: FrequencyList, exact_hz: Array) -> int:
@@ -106,7 +116,7 @@ def _rigid(given: FrequencyList, exact_hz: Array) -> int:
 def _paired(
     beam: Beam, given: FrequencyList, shapes: ModeShapes | None, kept: Indices
 ) -> tuple[Indices, Indices, Array | None, bool]:
-    """(entries (k,) of those kept, their modes (k,) from 0, MAC (k,), whether more than the order says which they are)."""
+    """(entries (k,) of those kept, their modes (k,) from 0, MAC (k,), whether by more than the order)."""
     order = np.arange(len(kept))
     if shapes is not None:
         modes, likeness = pair_shapes(beam, shapes.x, shapes.values[kept])
@@ -120,7 +130,7 @@ def _paired(
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
-    """(modes from 0 (k,), MAC (k,)) of shapes (k, len(x)) of the largest sum of MAC. Raises InputError for no likeness."""
+    """(modes from 0 (k,), MAC (k,)) of shapes (k, len(x)) of largest sum of MAC. Raises InputError for none."""
     scaled, weights = values / abs(values).max(axis=1, keepdims=True), np.sqrt(node_weights(x))
     n = max(len(values), min(len(values) + SPARE, len(x) - 2))
     modes, likeness = pair_modes(mac(scaled * weights, exact_shapes(beam, n, x) * weights))
@@ -134,7 +144,7 @@ def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
     from verify.models.catalogue import MODELS
 
     try:
-        return np.asarray(MODELS[EXACT].solve_modes(beam, n_modes, None).deflection(x))
+        return np.asarray(MODELS[EXACT].solve_modes(beam, n_modes, None).deflection(x))  # type: ignore[arg-type]
     except InputError:
         fine = max(10 * n_modes, 8 * len(beam.pieces))
         return np.asarray(MODELS[ELEMENTS].solve_modes(beam, n_modes, fine).deflection(x))
@@ -169,8 +179,8 @@ def _worth_sizing(beam: Beam, best: Candidate) -> list[Candidate]:
     return [best, *[accurate] * (accurate != best)]
 
 
-def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> Required:
-    """N from which on larger ones satisfy each tolerance at a mode, by interpolation, corrected by solves."""
+def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tuple[int | None, ...]:
+    """N from which on larger ones keep each of ERRORS at a mode, by interpolation and solves; None beyond LARGEST."""
     exact = float(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1])
     sizes, logs = spectrum(beam, candidate, n_modes, (None,))
     counts: list[int | None] = []
@@ -194,4 +204,4 @@ def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> Requ
         while size > 1 and within(size - 1):
             size -= 1
         counts.append(size)
-    return Required(candidate=candidate, mode=mode, counts=tuple(counts))
+    return tuple(counts)

@@ -16,16 +16,15 @@ from verify.models.division import divide
 from verify.models.eigen import lowest
 from verify.models.inverse import first_bending
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.options import WALLS
 
-WALL_COMPLIANCE = {"half": 0.5, "full": 1.0, "rigid": 0.0, "stiff": 0.25}
-"""Of the joint at a clamped end, l/EI: 2EI/l, EI/l, first link fixed to the wall, 4EI/l."""
-NODE_INERTIA = {"lumped": 0.0, "lumped-rotary": 1 / 24, "hrz": 1 / 78}
-"""Rotary inertia of half an element at its node over rho A l^3: none, a rigid half element, HRZ (Hinton, Rock and
+WALL_COMPLIANCE = {"full": 1.0, "rigid": 0.0, "stiff": 0.25}
+"""Of the joint at a clamped end, l/EI: EI/l, first link fixed to the wall, 4EI/l."""
+MASSLESS = 1e-12
+"""Rotary inertia over m l^2 where there is none: of no effect, and the mass matrix stays regular."""
+NODE_INERTIA = {"lumped": MASSLESS, "lumped-rotary": 1 / 24, "hrz": 1 / 78}
+"""Rotary inertia of half an element at its node over m l^2: none, a rigid half element, HRZ (Hinton, Rock and
 Zienkiewicz, Earthquake Eng. Struct. Dyn. 4, 1976)."""
-LARGEST = 1500
-"""Parts: dense triangles of this size are factorised."""
-POINT = 1e-5
-"""Of m l^2/12, on links of point masses between free ends: without it one motion has no mass."""
 
 
 class DiscreteBeam:
@@ -33,8 +32,6 @@ class DiscreteBeam:
 
     def __init__(self, beam: Beam, count: int, theory: str) -> None:
         beam.check_added("this candidate", ("section",))
-        if count > LARGEST:
-            raise InputError(f"count = {count} exceeds {LARGEST}, the most of this candidate: give fewer parts")
         parts = divide(beam, count)
         self.beam, self.n, self.unit, self.lengths = beam, count, parts.unit, parts.lengths
         self.stiffnesses, self.masses = parts.stiffnesses, parts.lengths * parts.masses_per_length
@@ -63,16 +60,17 @@ class DiscreteBeam:
         if mass == "joints":
             own, coupled = 0.5 * self.masses + turn, -turn
         else:
-            spin = {"links": 1.0, "points": POINT if free.all() else 0.0}[mass] * self.masses / 12.0
+            points = 1e-6 if free.all() else 0.0  # between free ends one motion would have no mass
+            spin = {"links": 1.0 / 12.0, "points": points}[mass] * self.masses
             own, coupled = 0.25 * self.masses + spin + turn, 0.25 * self.masses - spin - turn
         jointed = np.isfinite(compliances) & (compliances > 0.0)
         strain = (self.jumps @ self.slopes)[jointed][:, free]
-        return self._lowest_hz(n_modes, strain, 1.0 / compliances[jointed], _assembled(own, coupled, free), free, 0)
+        return self._lowest_hz(n_modes, strain, 1.0 / compliances[jointed], _assembled(own, coupled, free), free)
 
     def rod_hz(self, n_modes: int, wall: str) -> Array:
         """Cosserat rod, Hz: masses at the nodes, rotation and shear of each part.
 
-        Gazzola and others, "Forward and inverse problems in the mechanics of soft filaments", R. Soc. open sci. 5 (2018).
+        Gazzola and others, "Forward and inverse problems in the mechanics of soft filaments", R. Soc. Open Sci. 2018.
         """
         from scipy.sparse import block_array, diags_array, eye_array
 
@@ -84,7 +82,7 @@ class DiscreteBeam:
         strain = block_array([[None, self.jumps[jointed][:, turning]], chord]).tocsr()
         stiffness = np.append(1.0 / compliances[jointed], self.shear * self.lengths)
         mass = diags_array(np.append(_at_ends(0.5 * self.masses)[self.free], self.rotary[turning]))
-        return self._lowest_hz(n_modes, strain, stiffness, mass, self.free, int(turning.sum()))
+        return self._lowest_hz(n_modes, strain, stiffness, mass, self.free)
 
     def elements_hz(self, n_modes: int, mass: str) -> Array:
         """Elements of two nodes, Hz: Hermite with `mass` of NODE_INERTIA, or 'linear', 'linear-lumped' Timoshenko.
@@ -94,12 +92,10 @@ class DiscreteBeam:
         """
         from scipy.sparse import block_array, block_diag, diags_array
 
-        if mass == "lumped" and np.isinf(self.shear).all() and not self.rotary.any():
-            return self._condensed_hz(n_modes)
         free, turning, ones = self.free, self.turning, np.ones(self.n)
         chord = [self.slopes[:, free], -_bands(0.5 * ones, 0.5 * ones)[:, turning]]
         strain = block_array([[None, _bands(-ones, ones)[:, turning]], chord]).tocsr()
-        cubic = 0.0 if mass in ("linear", "linear-lumped") else self.lengths / (12.0 * self.stiffnesses)
+        cubic = 0.0 if mass not in NODE_INERTIA else self.lengths / (12.0 * self.stiffnesses)
         stiffness = np.append(self.stiffnesses / self.lengths, 1.0 / (cubic + 1.0 / (self.shear * self.lengths)))
         if mass == "linear":
             pairs = ((self.masses, free), (self.rotary, turning))
@@ -107,23 +103,7 @@ class DiscreteBeam:
         else:
             inertias = NODE_INERTIA.get(mass, 0.0) * self.masses * self.lengths**2 + 0.5 * self.rotary
             matrix = diags_array(np.append(_at_ends(0.5 * self.masses)[free], _at_ends(inertias)[turning]))
-        return self._lowest_hz(n_modes, strain, stiffness, matrix, free, int(turning.sum()))
-
-    def _condensed_hz(self, n_modes: int) -> Array:
-        """Hermite elements without rotary inertia at the nodes, rotations eliminated: K = D^T S^-1 D.
-
-        D: deflections to jumps of slope; S: the three-moment matrix, moments to the same jumps.
-        """
-        from scipy.linalg import cholesky, solve_triangular
-        from scipy.sparse import csc_array, diags_array
-
-        flexibility, held = self.lengths / self.stiffnesses, ~self.turning
-        held[1:-1] = True
-        lower = cholesky(_assembled(flexibility / 3.0, flexibility / 6.0, held).toarray(), lower=True)
-        jump = (self.jumps @ self.slopes)[held][:, self.free]
-        strain = csc_array(solve_triangular(lower, jump.toarray(), lower=True))
-        mass = diags_array(_at_ends(0.5 * self.masses)[self.free])
-        return self._lowest_hz(n_modes, strain, np.ones(int(held.sum())), mass, self.free, 0)
+        return self._lowest_hz(n_modes, strain, stiffness, matrix, free)
 
     def _compliances(self, wall: str) -> Array:
         """1/k of joints 0..N: two half links in series, at clamped ends by the wall rule; infinite without a joint."""
@@ -131,17 +111,16 @@ class DiscreteBeam:
 
         whole = _at_ends(0.5 * self.lengths / self.stiffnesses)
         whole[[0, -1]] *= 2.0
-        if wall not in WALL_COMPLIANCE:
-            return np.asarray(whole * wall_factors(self.beam.supports, self.n, wall))
-        ends = {"clamped": WALL_COMPLIANCE[wall], "guided": 0.5}
-        whole[[0, -1]] *= [ends.get(support, np.inf) for support in self.beam.supports]
+        rule = wall if wall in WALLS else "welded"  # a whole joint
+        whole *= wall_factors(self.beam.supports, self.n, rule)
+        clamped = [support == "clamped" for support in self.beam.supports]
+        whole[[0, -1]] *= np.where(clamped, WALL_COMPLIANCE.get(wall, 1.0), 1.0)
         return whole
 
-    def _lowest_hz(self, n_modes: int, strain: Any, stiffness: Array, mass: Any, free: Any, n_turns: int) -> Array:
-        """Elastic frequencies of B^T diag(stiffness) B against M: `free` deflections, then `n_turns` rotations."""
-        x = np.concatenate([[0.0], np.cumsum(self.lengths)])[free] * self.unit
-        rigid = [np.append(a + b * x, np.full(n_turns, b * self.unit)) for a, b in self.beam.rigid_lines]
-        size = mass.shape[0]
+    def _lowest_hz(self, n_modes: int, strain: Any, stiffness: Array, mass: Any, free: Any) -> Array:
+        """Elastic frequencies of B^T diag(stiffness) B against M: `free` deflections, then rotations."""
+        size, x = mass.shape[0], np.concatenate([[0.0], np.cumsum(self.lengths)])[free] * self.unit
+        rigid = [np.append(a + b * x, np.full(size - len(x), b * self.unit)) for a, b in self.beam.rigid_lines]
         held = np.asarray(mass.toarray()) if size <= DENSE_UNKNOWNS else mass.tocsc()
         pencil = FactoredPencil(
             n=size,

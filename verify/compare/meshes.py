@@ -39,8 +39,8 @@ class MeshShapes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def read_mesh(path: Path, length: float) -> MeshShapes:
     """Deflections across the thickness of a beam of this length, m, from vectors or numbers at the points of a mesh.
 
-    The axis is the longest direction, the thickness the thinnest. Field data named after Hz or rad/s, or the times of an
-    xdmf series, are frequencies. Raises InputError.
+    The axis is the longest direction, the thickness the shortest. Field data named after Hz or rad/s, and the times of
+    an xdmf series, are frequencies. Raises InputError.
     """
     source = f"file = {str(path)!r}"
     if not exists(path, "file"):
@@ -60,7 +60,9 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
         raise InputError(f"{source} is {sizes[along]:.4g} long and {sizes[wide]:.4g} wide: give the mesh of a beam")
     unit = next((u for u, factor in UNITS.items() if abs(sizes[along] / (factor * length) - 1.0) < LENGTH), None)
     if unit is None:
-        raise InputError(f"{source} is {sizes[along]:.6g} long, the beam {length!r} m: set beam.length to that of the mesh")
+        raise InputError(
+            f"{source} is {sizes[along]:.6g} long, the beam {length!r} m: set beam.length to that of the mesh"
+        )
     x = points[:, along] - points[:, along].min()
     order = np.argsort(x, kind="stable")
     station = np.empty(len(x), dtype=int)
@@ -68,7 +70,11 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     counts = np.bincount(station)
     places = np.bincount(station, weights=x) / counts
     places[[0, -1]] = 0.0, x.max()
-    names, values, notes = [], [], [f"{len(points)} points in {unit}, {len(places)} cross-sections along {'xyz'[along]}."]
+    names, values, notes = (
+        [],
+        [],
+        [f"{len(points)} points in {unit}, {len(places)} cross-sections along {'xyz'[along]}."],
+    )
     for name, vector in vectors.items():
         means = np.array([np.bincount(station, weights=part) / counts for part in vector.T])
         column = min(across, len(means) - 1)

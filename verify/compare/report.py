@@ -6,9 +6,8 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.compare.candidates import EXACT, Candidate, frequencies_hz
+from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import TOLERANCE, Data, Fit, Identification
-from verify.compare.reading import FrequencyList
 from verify.report.result import Column, Figure, Result, Table
 
 if TYPE_CHECKING:
@@ -25,24 +24,22 @@ STATUS = {
 }
 FAULTS = {
     "none": "none",
-    "unit": "wrong unit",
+    "unit": "wrong unit, factor",
     "count": "another N",
     "factor": "common factor",
     "missing": "missing mode",
     "extra": "extra entry",
-    "clamp": "compliant clamp, k_r in EI/L",
+    "clamp": "compliant clamp, k_r L/EI",
 }
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """What alone changes all frequencies by a factor, and in which power of it."""
-TIP_MASS = (
-    "A clamp of k_r = c EI/L at one end of a cantilever and a mass of rho A L / c at the other have the same frequencies."
-)
-TIP_LINK = (
-    "EI/l at the wall, or a fixed first link, has the frequencies of 2EI/l with twice the mass, or none, at the free end."
-)
+TIP_MASS = "A clamp of k_r = c EI/L on a cantilever has the frequencies of a mass rho A L / c at the other end."
+TIP_LINK = "EI/l at the wall, or a fixed first link, equals 2EI/l with twice the mass, or none, at the free end."
+ENTRY = (Column("entry"), Column("mode"), Column("given", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
+RMS = (Column("rms difference", format=".3g", percent=True), Column("largest", format=".3g", percent=True))
 
 
-class Entry(msgspec.Struct, frozen=True, kw_only=True):
+class Entry(msgspec.Struct, frozen=True):
     """A frequency of the list."""
 
     entry: int
@@ -53,159 +50,118 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True):
     exact_hz: float
     mac: float | None
 
-
-class Required(msgspec.Struct, frozen=True, kw_only=True):
-    """N that tolerances require."""
-
-    candidate: Candidate
-    mode: int
-    counts: tuple[int | None, ...]
-    """For 1 % and 0.1 %; None: none found."""
+    @property
+    def error(self) -> float:
+        """Relative to exact."""
+        return self.given_hz / self.exact_hz - 1.0
 
 
-def result_of(
-    scene: Any,
-    given: FrequencyList,
-    options: Any,
+def tables_of(
     data: Data,
     found: Identification,
     rows: list[Entry],
-    sizes: list[Required],
-    warnings: list[str],
-) -> Result:
-    """Everything that a comparison computed."""
+    required: list[tuple[Candidate, int, tuple[int | None, ...]]],
+    within: float | None,
+) -> tuple[list[Table], bool]:
+    """(all tables, whether the list is accepted); `required` are candidates, modes, and N for 1 % and 0.1 %."""
     best, beam = found.best, data.beam
-    faulty = best.fault.kind != "none"
-    known = found.status in ("identified", "ambiguous", "exact")
-    errors = [row.given_hz / row.exact_hz - 1.0 for row in rows]
-    checks = [
-        ("faults of the list", float(faulty), 0.0, not faulty),
-        ("largest difference from the best candidate", best.largest, TOLERANCE, known),
+    faulty, known = best.fault.kind != "none", found.status not in ("few", "unknown")
+    checks = [("faults of the list", float(faulty), 0.0, not faulty)]
+    checks.append(("largest difference from the best candidate", best.largest, TOLERANCE, known))
+    if within is not None:
+        worst = max(abs(row.error) for row in rows)
+        checks.append(("largest error against the exact beam", worst, within, worst <= within))
+    tables = [_modes(best, rows)]
+    words = {id(one): "equivalent" for one in found.equivalent} | {id(one): "alternative" for one in found.alternatives}
+    words[id(best)] = "best"
+    shown = [
+        (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
+        for one in found.ranking[:SHOWN]
     ]
-    if options.within is not None:
-        worst = max(map(abs, errors))
-        checks.append(("largest error against the exact beam", worst, options.within, worst <= options.within))
-    passed = all(check[-1] for check in checks)
-    size = f", N = {best.count}" if best.count else ""
-    summary = f"{STATUS[found.status]}: {best.candidate.label}{size}, rms difference {best.rms:.2g}."
-    summary += f" Fault of the list: {FAULTS[best.fault.kind]}, {_value(best)}." if faulty else ""
-    tables = [_modes(beam, best, rows, errors), _candidates(beam, found), _faults(found), *_alone(beam, best)]
-    if sizes:
+    columns = [Column("candidate"), Column("N"), Column("order"), *RMS, Column("status")]
+    notes = ["Equivalent: the same frequencies. Alternative: within a factor of two of the best rms difference."]
+    tables.append(Table("Candidates", columns, shown, notes))
+    if len(found.tested) > 1:
+        columns = [Column("fault"), Column("value"), Column("candidate"), Column("N"), *RMS]
+        tested = [(FAULTS[f.fault.kind], value(f), f.candidate.label, f.count, f.rms, f.largest) for f in found.tested]
+        tables.append(Table("Faults tested, the likeliest first", columns, tested))
+    if best.fault.kind == "factor":
+        held, bare = bool(beam.spring or beam.foundation or beam.tension), best.candidate.theory == EULER
+        bare &= not (held or beam.mass)
+        kept = {"E": not held, "rho": not beam.mass}
+        alone = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if kept.get(name, bare)]
+        columns = [Column("parameter"), Column("change", format="+.3g", percent=True)]
+        tables.append(Table("Parameters that alone explain the factor", columns, alone))
+    if required:
         columns = [Column("model"), Column("mode"), Column("N for 1 %"), Column("N for 0.1 %")]
-        needed = [(one.candidate.label, one.mode, *one.counts) for one in sizes]
-        tables.append(Table("Required N", columns, needed, ["The error of all larger N that were solved is smaller."]))
+        tables.append(Table("Required N", columns, [(one.label, mode, *counts) for one, mode, counts in required]))
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables.append(Table("Acceptance", columns, [(*check[:3], "yes" if check[3] else "no") for check in checks]))
+    return tables, all(check[3] for check in checks)
+
+
+def _modes(best: Fit, rows: list[Entry]) -> Table:
+    """Every frequency beside the exact one and that of the best candidate, with the fault and without."""
+    fault, shaped = best.fault, any(row.mac is not None for row in rows)
+    faulty, factor = fault.kind != "none", best.parameter if fault.kind in ("unit", "factor") else 1.0
+    columns = [*ENTRY, Column("error", format=".4g", percent=True)]
+    columns += [Column("read as mode"), Column("corrected", "Hz", ".7g")] * faulty
+    columns += [Column("candidate", "Hz", ".7g"), Column("difference", format=".3g", percent=True)]
+    columns += [Column("MAC", format=".4f")] * shaped
+    place, lines = {int(entry): i for i, entry in enumerate(fault.entries)}, []
+    for i, row in enumerate(rows):
+        at, corrected = place.get(i), row.given_hz / factor
+        off = None if at is None else float(best.differences[at])
+        line: list[Any] = [row.entry, row.mode, row.given_hz, row.exact_hz, row.error]
+        line += [None if at is None else int(fault.modes[at]) + 1, corrected] * faulty
+        lines.append([*line, None if off is None else corrected / (1.0 + off), off, *[row.mac] * shaped])
+    return Table("Modes", columns, sorted(lines, key=lambda line: line[1]))
+
+
+def result_of(
+    beam: Beam, found: Identification, rows: list[Entry], tables: list[Table], warnings: list[str], **data: Any
+) -> Result:
+    """The result of a comparison with summary, figure and data."""
+    best = found.best
+    size = f", N = {best.count}" if best.count else ""
+    summary = f"{STATUS[found.status]}: {best.candidate.label}{size}, rms difference {best.rms:.2g}."
+    if best.fault.kind != "none":
+        summary += f" Fault of the list: {FAULTS[best.fault.kind]} {value(best)}."
     if set(beam.supports) == {"clamped", "free"} and beam.uniform:
         clamp = any(one.fault.kind == "clamp" for one in (best, *found.alternatives))
         lumped = best.candidate.mass == "joints" and best.candidate.wall in ("full", "rigid")
-        warnings += [TIP_MASS] * clamp + [TIP_LINK] * lumped
-    return Result(
-        summary=summary,
-        tables=tables,
-        figures=[_figure(beam, found, rows, errors)],
-        warnings=warnings,
-        data={
-            "scene": scene.name,
-            "source": given.source,
-            "unit": given.unit,
-            "status": found.status,
-            "passed": passed,
-            "best": _plain(best, beam),
-            "equivalent": [_plain(one, beam) for one in found.equivalent],
-            "alternatives": [_plain(one, beam) for one in found.alternatives],
-            "candidates": [_plain(one, beam) for one in found.ranking],
-            "required": sizes,
-        },
-    )
+        warnings = [*warnings, *[TIP_MASS] * clamp, *[TIP_LINK] * lumped]
+    data |= {"status": found.status, "best": _plain(best, beam)}
+    groups = {"equivalent": found.equivalent, "alternatives": found.alternatives, "candidates": found.ranking}
+    data |= {name: [_plain(one, beam) for one in fits] for name, fits in groups.items()}
+    following = next((one for one in found.ranking[1:] if one not in found.equivalent), None)
+    n = max(row.mode for row in rows)
+
+    def draw(ax: "Axes") -> None:
+        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
+        ax.plot([row.mode for row in rows], [100.0 * row.error for row in rows], "o", label="list")
+        for fit, style in ((best, "-"), (following, "--")):
+            if fit is not None:
+                hertz = frequencies_hz(fit.candidate, beam, fit.count, n)
+                errors = 100.0 * (hertz / exact[: len(hertz)] - 1.0)
+                ax.plot(np.arange(1, len(hertz) + 1), errors, style, label=fit.candidate.label)
+        ax.set(xlabel="mode", ylabel="frequency error, %")
+        ax.legend()
+
+    caption = "Points: the list as given, against the exact beam (Euler-Bernoulli). Lines: the best and next candidate."
+    figure = Figure("compare", "Frequencies beside the best candidates", caption, draw)
+    return Result(summary, tables, [figure], warnings=warnings, data=data)
 
 
-def _value(fit: Fit) -> str:
+def value(fit: Fit) -> str:
     """The parameter of a fault as text."""
     parameter = f"{fit.parameter:.6g}" if fit.fault.kind in ("unit", "factor", "clamp") else ""
-    return " ".join(word for word in (parameter, fit.fault.label) if word) or f"N = {fit.count}"
+    words = " ".join(word for word in (parameter, fit.fault.label) if word)
+    return f"N = {fit.count}" if fit.fault.kind == "count" else words
 
 
 def _plain(fit: Fit, beam: Beam) -> dict[str, Any]:
     one = fit.candidate
-    fault = {"kind": fit.fault.kind, "label": fit.fault.label, "parameter": fit.parameter}
     plain = msgspec.structs.asdict(one) | {"label": one.label, "order": one.order(beam), "count": fit.count}
+    fault = {"kind": fit.fault.kind, "label": fit.fault.label, "parameter": fit.parameter}
     return plain | {"rms": fit.rms, "largest": fit.largest, "fault": fault}
-
-
-def _modes(beam: Beam, best: Fit, rows: list[Entry], errors: list[float]) -> Table:
-    """Every frequency beside the exact one and that of the best candidate, with the fault and without."""
-    faulty, factor = best.fault.kind != "none", best.parameter if best.fault.kind in ("unit", "factor") else 1.0
-    place = {int(entry): i for i, entry in enumerate(best.fault.entries)}
-    columns = [Column("entry"), Column("mode"), Column("given", "Hz", ".7g"), Column("exact", "Hz", ".7g")]
-    columns += [Column("error", format=".4g", percent=True)]
-    columns += [Column("read as mode"), Column("corrected", "Hz", ".7g")] * faulty
-    columns += [Column("candidate", "Hz", ".7g"), Column("difference", format=".3g", percent=True)]
-    shaped = any(row.mac is not None for row in rows)
-    lines = []
-    for i, (row, error) in enumerate(zip(rows, errors, strict=True)):
-        line: list[Any] = [row.entry, row.mode, row.given_hz, row.exact_hz, error]
-        at = place.get(i)
-        corrected, off = row.given_hz / factor, None if at is None else float(best.differences[at])
-        line += [None if at is None else int(best.fault.modes[at]) + 1, corrected] * faulty
-        line += [None if off is None else corrected / (1.0 + off), off, *[row.mac] * shaped]
-        lines.append(line)
-    return Table("Modes", [*columns, *[Column("MAC", format=".4f")] * shaped], sorted(lines, key=lambda one: one[1]))
-
-
-def _candidates(beam: Beam, found: Identification) -> Table:
-    """The best candidates."""
-    columns = [Column("candidate"), Column("N"), Column("order"), Column("rms difference", format=".3g", percent=True)]
-    columns += [Column("largest", format=".3g", percent=True), Column("status")]
-    words = {id(one): "equivalent" for one in found.equivalent} | {id(one): "alternative" for one in found.alternatives}
-    words[id(found.best)] = "best"
-    rows = [
-        (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
-        for one in found.ranking[:SHOWN]
-    ]
-    notes = ["Equivalent: the same frequencies. Alternative: within a factor of two of the best rms difference."]
-    return Table("Candidates", columns, rows, notes)
-
-
-def _faults(found: Identification) -> Table:
-    """Every kind of fault that was tested, by its best candidate."""
-    columns = [Column("fault of the list"), Column("value"), Column("candidate"), Column("N")]
-    columns += [Column("rms difference", format=".3g", percent=True), Column("status")]
-    rows = []
-    for one in found.tested:
-        word = "diagnosis" if one.fault.kind == found.best.fault.kind else ""
-        word = "alternative" if any(one.fault is other.fault for other in found.alternatives) and not word else word
-        value = "" if one.fault.kind == "none" else _value(one)
-        rows.append((FAULTS[one.fault.kind], value, one.candidate.label, one.count, one.rms, word))
-    return Table("Faults tested", columns, rows)
-
-
-def _alone(beam: Beam, best: Fit) -> list[Table]:
-    """What alone explains a common factor on this beam, and by how much it would be off."""
-    if best.fault.kind != "factor":
-        return []
-    held = bool(beam.spring or beam.foundation or beam.tension)
-    bare = not held and not beam.mass and best.candidate.theory == "euler-bernoulli"
-    kept = {"E": not held, "rho": not beam.mass, "thickness or diameter": bare, "length": bare}
-    rows = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if kept[name]]
-    columns = [Column("parameter"), Column("change", format="+.3g", percent=True)]
-    return [Table("Parameters that alone explain the factor", columns, rows)] if rows else []
-
-
-def _figure(beam: Beam, found: Identification, rows: list[Entry], errors: list[float]) -> Figure:
-    """Frequency errors over the mode: of the list, the best candidate and the next."""
-    n = max(row.mode for row in rows)
-    following = next((one for one in found.ranking[1:] if one not in found.equivalent), None)
-
-    def draw(ax: "Axes") -> None:
-        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
-        ax.plot([row.mode for row in rows], 100.0 * np.array(errors), "o", label="list")
-        for fit, style in ((found.best, "-"), (following, "--")):
-            if fit is not None:
-                hertz = frequencies_hz(fit.candidate, beam, fit.count, n)
-                ax.plot(np.arange(1, len(hertz) + 1), 100.0 * (hertz / exact[: len(hertz)] - 1.0), style, label=fit.candidate.label)
-        ax.set(xlabel="mode", ylabel="frequency error, %")
-        ax.legend()
-
-    caption = "Points: the list as given, against the exact beam (Euler-Bernoulli). Lines: candidates on a rigid clamp."
-    return Figure("compare", "Frequencies beside the best candidates", caption, draw)

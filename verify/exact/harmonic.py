@@ -116,33 +116,35 @@ def spliced_shapes(
     inner = sorted({f.position for f in forces if 0.0 < f.position < beam.length})
     ends = np.array([0.0, *inner, beam.length])
     n_spans, stiffness = len(ends) - 1, beam.bending_stiffness * (1.0 + 1j * beam.loss_factor)
-    jumps = [sum(phasor(f) for f in forces if f.position == at) / stiffness / k[:, 0] ** 3 for at in ends]
+    # by force, as without losses the response to each is real
+    jumps = (ends[:, None] == [force.position for force in forces]) / stiffness / k[:, :, None] ** 3
     # exponentials at both ends of every span, (n, spans, 1, 4), and their derivatives over k^d, (n, spans, 4, 4)
     decay, turns = np.exp(-k[:, :, None] * np.diff(ends)[:, None] * [1j, 1.0]), np.array([_turns(d) for d in range(4)])
     at_left = np.concatenate([np.ones_like(decay), decay], axis=2)[:, :, None] * turns
     at_right = np.concatenate([decay, np.ones_like(decay)], axis=2)[:, :, None] * turns
     left, right = (list(HELD[support]) for support in beam.supports)
     matrix = np.zeros((len(k), 4 * n_spans, 4 * n_spans), dtype=complex)
-    load = np.zeros((len(k), 4 * n_spans, 1), dtype=complex)
+    load = np.zeros((len(k), 4 * n_spans, len(forces)), dtype=complex)
     matrix[:, :2, :4], matrix[:, 2:4, -4:] = at_left[:, 0, left], at_right[:, -1, right]
     if 3 in left:  # a force at a free or guided end is its shear
-        load[:, left.index(3), 0] = jumps[0]
+        load[:, left.index(3)] = jumps[:, 0]
     if 3 in right:
-        load[:, 2 + right.index(3), 0] = -jumps[-1]
+        load[:, 2 + right.index(3)] = -jumps[:, -1]
     for span in range(n_spans - 1):
         rows, columns = slice(4 * span + 4, 4 * span + 8), 4 * span
         matrix[:, rows, columns : columns + 4] = -at_right[:, span]
         matrix[:, rows, columns + 4 : columns + 8] = at_left[:, span + 1]
-        load[:, 4 * span + 7, 0] = jumps[span + 1]
-    amplitudes = np.linalg.solve(matrix, load).reshape(len(k), n_spans, 4)
+        load[:, 4 * span + 7] = jumps[:, span + 1]
+    amplitudes = np.linalg.solve(matrix, load).reshape(len(k), n_spans, 4, len(forces))
+    newtons = np.array([phasor(force) for force in forces])
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
         span = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, n_spans - 1)
         distances = (x - ends[span], x - ends[span], ends[span + 1] - x, ends[span + 1] - x)
-        field = np.zeros((len(k), len(x)), dtype=complex)
+        units = np.zeros((len(k), len(x), len(forces)), dtype=complex)
         for wave, (q, turn) in enumerate(zip((1j, 1.0, 1j, 1.0), _turns(derivative), strict=True)):
-            field += turn * amplitudes[:, span, wave] * np.exp(-q * k * distances[wave])
-        return np.asarray(field * k**derivative)
+            units += turn * amplitudes[:, span, wave] * np.exp(-q * k * distances[wave])[:, :, None]
+        return np.asarray((units if beam.loss_factor else units.real) @ newtons * k**derivative)
 
     return shapes
 

@@ -24,8 +24,8 @@ _UNLIKE = 1e4
 of random steps were off by 2e-12 at most, at ten times as much by 4e-10."""
 _WHOLE = 32
 """Rows up to which a triangle is inverted at once."""
-MOST_UNKNOWNS, MOST_DENSE = 5_000_000, 20_000
-"""Largest sparse system (about 10 GB) and largest dense one (about 10 GB)."""
+MOST_VALUES = 1_250_000_000
+"""Numbers that a solve holds at most, 10 GB: eight dense matrices, or sparse factors and the Lanczos basis."""
 
 
 class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -49,10 +49,11 @@ def check_size(n_unknowns: int, n_modes: int, available: int, field: str, count:
             f"n_modes = {n_modes!r} is more than the {available} elastic modes that {field} = {count} gives: "
             f"ask for fewer modes or raise {field}"
         )
-    if n_unknowns > (most := MOST_DENSE if uses_dense(n_unknowns, n_modes) else MOST_UNKNOWNS):
+    dense = uses_dense(n_unknowns, n_modes)
+    if (8 * n_unknowns**2 if dense else n_unknowns * (250 + 8 * n_modes)) > MOST_VALUES:
         raise InputError(
-            f"{field} = {count}: {n_unknowns} unknowns with {n_modes} modes are more than the {most} of the largest "
-            f"system, lower {field} or the number of modes"
+            f"{field} = {count}: {n_unknowns} unknowns with {n_modes} modes exceed the largest system of 10 GB, lower "
+            f"{field} or the number of modes"
         )
 
 

@@ -56,7 +56,7 @@ def plot_lines(
     """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
     from verify.units import unit_over
 
-    drawn = list(lines)
+    drawn = [line for line in lines if len(line[1])]
     x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])
     y_unit = unit_over((float(abs(ys).max()) for _, _, ys, _ in drawn), y[1])
     for label, xs, ys, style in drawn:

@@ -29,7 +29,6 @@ CAPTIONS = {
     "segments and Hermite elements cancel.",
     "bracket": "The exact frequency (zero) lies in the band for every N; no reference solution is needed for that.",
     "work-precision": "Warm solve from beam to modes, set-up included, median of interleaved repeats. Numbers: N.",
-    "joint-models": "Absolute values: a dip is a change of sign of the error.",
 }
 
 
@@ -51,7 +50,6 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         variants = self.variants(models)
         rows = self._rows(cache, variants, progress)
         bounds, no_bound = self._bounds(cache)
-        joints = self._joint_models(cache, variants)
         settled, warnings = self._summarise(cache, rows)
         mode = max(self.modes)
         error_columns = [
@@ -81,17 +79,11 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             title = "Two-sided bound: segments below, Hermite elements above"
             tables.append(Table(title, bound_columns, [tuple(row.values()) for row in bounds]))
             figures.insert(1, ("bracket", f"Two-sided bound on mode {mode}", self._draw_bound, (bounds,)))
-        if joints:
-            title = f"Joint models of the chain, mode {mode}"
-            columns = [Column("N"), *(percent(one.title) for one in joints)]
-            tables.append(Table(title, columns, list(zip(self.counts, *joints.values(), strict=True))))
-            figures.append(("joint-models", title, _draw_joints, (self.counts, joints)))
         return Result(
             summary=f"Mode {mode}, N = {self.counts[-1]}, error: {', '.join(settled)}." if settled else "",
             tables=tables,
             figures=[
-                Figure(key, title, CAPTIONS[key], partial(_on_axes, draw, cache, values))
-                for key, title, draw, values in figures
+                Figure(key, title, CAPTIONS[key], partial(draw, cache, *values)) for key, title, draw, values in figures
             ],
             warnings=[*warnings, *no_bound, *left_out.values()],
             data={"rows": rows, "bounds": bounds},
@@ -154,15 +146,6 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 rows.append(row | {"width": bound.relative_width, "mean_error": mean})
         return rows, list(reasons)
 
-    def _joint_models(self, cache: "SolutionCache", variants: tuple[Variant, ...]) -> dict[Variant, list[float | None]]:
-        """Errors of the highest mode over sizes by every joint model that differs on this beam, the default first."""
-        others = self.every_rule(cache.beam)
-        chosen = [one for one in variants if one.model in {other.model for other in others}]
-        return {
-            one: [cache.error_or_why(one.model, count, max(self.modes), one.settings)[0] for count in self.counts]
-            for one in dict.fromkeys([*chosen, *others] if others else [])
-        }
-
     def _summarise(self, cache: "SolutionCache", rows: list[Row]) -> tuple[list[str], list[str]]:
         """(errors of the highest mode whose orders are those of theory, warnings on the others)."""
         settled, warnings = [], dict.fromkeys(row["why"] for row in rows if row["why"])
@@ -182,7 +165,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 )
         return settled, list(warnings)
 
-    def _draw_errors(self, ax: "Axes", cache: "SolutionCache", rows: list[Row], bounds: list[Row]) -> None:
+    def _draw_errors(self, cache: "SolutionCache", rows: list[Row], bounds: list[Row], ax: "Axes") -> None:
         from verify.report.plotting import slope_guide
 
         mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
@@ -207,7 +190,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)
 
-    def _draw_work(self, ax: "Axes", cache: "SolutionCache", rows: list[Row]) -> None:
+    def _draw_work(self, cache: "SolutionCache", rows: list[Row], ax: "Axes") -> None:
         colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
         for mode, style in zip(self.modes, STYLES * len(self.modes), strict=False):
             for one, color in colors.items():
@@ -221,7 +204,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         ax.set(xlabel="solve time, ms", ylabel="|frequency error|, %")
         ax.legend(ncols=2)
 
-    def _draw_bound(self, ax: "Axes", cache: "SolutionCache", bounds: list[Row]) -> None:
+    def _draw_bound(self, cache: "SolutionCache", bounds: list[Row], ax: "Axes") -> None:
         from matplotlib.ticker import NullLocator
 
         from verify.report.plotting import MODEL_COLORS
@@ -238,15 +221,3 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         ax.xaxis.set_minor_locator(NullLocator())
         ax.set(xlabel="number of segments or elements N", ylabel="against the exact frequency, %")
         ax.legend()
-
-
-def _on_axes(draw: Any, cache: "SolutionCache", values: tuple[Any, ...], ax: "Axes") -> None:
-    draw(ax, cache, *values)
-
-
-def _draw_joints(
-    ax: "Axes", cache: "SolutionCache", counts: tuple[int, ...], joints: dict[Variant, list[float | None]]
-) -> None:
-    colors = variant_colors(tuple(joints))
-    lines = [(one.title, colors[one], "-o", counts, [100 * (e or 0.0) for e in own]) for one, own in joints.items()]
-    plot_errors(ax, lines, "|frequency error|, %")

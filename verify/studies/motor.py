@@ -1,5 +1,6 @@
 """The motor of a scene: force over speed, no load, starting and stopping on every model, and from rest on the chain."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from math import pi, sqrt
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed, Timed
     from verify.motor.result import MotorRun
-    from verify.motor.shooting import Periodic
     from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
@@ -85,8 +85,6 @@ class Field:
     """Drive switched off; None where the beam would ring on."""
     reversal: "Timed | None"
     """Drive phases reversed."""
-    periodic: "Periodic | None"
-    """Periodic motion at standstill; None where there is none."""
     period: "MotorRun"
     """One period without load at a fixed place, with the surface around the feet."""
     amplitude: float
@@ -135,9 +133,13 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"motor.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
                 "start, leave it out"
             )
-        for name, unit in (("chain", "seconds"), ("chain_force", "newton"), ("places", "positions")):
+        for name, unit, least in (
+            ("chain", "seconds", 0.0),
+            ("chain_force", "newton", 0.0),
+            ("places", "positions", 1),
+        ):
             if getattr(self, name) is not None:
-                check_number(f"motor.{name}", getattr(self, name), unit, above=name == "places")
+                check_number(f"motor.{name}", getattr(self, name), unit, above=least)
 
     @property
     def linear(self) -> tuple[str, ...]:
@@ -189,7 +191,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             data={
                 "curves": {field.name: field.curve for field in fields},
                 "margins": {field.name: field.free.motor_margins for field in fields},
-                "from_rest": [{key: row[key] for key in row if key not in ("times", "path")} for row in rest],
+                "from_rest": [{key: row[key] for key in row if key not in ("times", "path", "style")} for row in rest],
             },
         )
 
@@ -215,7 +217,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.motor import figures as motor
-        from verify.motor.shooting import periodic
+        from verify.motor.result import uninterrupted
 
         name = _name(case.model, case.count)
         progress(f"force over speed, {name}")
@@ -224,32 +226,26 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         way = -1.0 if still.force < 0.0 else 1.0
         speeds = speeds or [way * crests * k / (self.speeds - 1) for k in range(self.speeds)]
         curve = [still, *(motor.held(case, speed, settled, HELD_PERIODS)[0] for speed in speeds[1:])]
-        unloaded = _or_none(lambda: motor.no_load(case, None, settled, HELD_PERIODS))
+        unloaded = None
+        with suppress(InputError):  # no held speed is without force
+            unloaded = motor.no_load(case, None, settled, HELD_PERIODS)
         target = unloaded.speed if unloaded else 0.0
         progress(f"free run, {name}")
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
         run = motor.started(begun, target, self.periods).run
         if len(run.times) < 3:
-            raise InputError(
-                f"motor.start: the slider {run.statistics.stopped} within two periods, give smaller forces"
-            )
+            raise InputError(f"motor.start: the slider {run.statistics.stopped} at once, give smaller forces")
         last = max(int(LAST * (len(run.times) - 1)) // 2 * 2, 2)
         speed, spread = motor.mean_speed(run, last)
         goes_on = run.statistics.finished and self.start == "steady"
         two_way = run.coupling is not None and run.coupling.two_way
-        alone = case.on(replace(case.slider, coupling="one-way"))
         x = case.slider.start_on(case.beam)
         ends = [x + foot.offset + 0.75 * side * foot.length for foot in case.slider.feet for side in (-1.0, 1.0)]
         half = max(0.5 * (max(ends) - min(ends)), 0.0125 * case.beam.length)
         places = np.clip(0.5 * (max(ends) + min(ends)) + np.linspace(-half, half, PLACES), 0.0, case.beam.length)
-        period = case.run(
-            case.period,
-            held_speed=target,
-            frozen=True,
-            at=places.tolist(),
-            samples=FRAMES + 1,
-            continue_from=motor.held(case, target, periods=HELD_PERIODS)[1],
-        )
+        begin = motor.held(case, target, periods=HELD_PERIODS)[1]
+        settings = {"held_speed": target, "frozen": True, "at": places.tolist(), "samples": FRAMES + 1}
+        period = uninterrupted(case.run(case.period, continue_from=begin, **settings))
         return Field(
             case=case,
             name=name,
@@ -262,7 +258,6 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             converged=run.statistics.finished and motor.comes_to_speed(run, last, crests),
             stop=motor.stopped(case, run, self.periods) if goes_on and not two_way else None,
             reversal=motor.reversed_way(case, run, -speed, self.periods) if goes_on else None,
-            periodic=None if two_way else _or_none(lambda: periodic(alone, 0.0)),
             period=period,
             amplitude=float(abs(case.field().deflection([x])[0])),
         )
@@ -341,16 +336,6 @@ def _name(model: str, count: int | None) -> str:
     return f"{count} {MODELS[model].title}" if count else MODELS[model].title
 
 
-def _or_none(compute: "Callable[[], Any]") -> Any:
-    """The value, or None where there is none."""
-    import numpy as np
-
-    try:
-        return compute()
-    except (InputError, np.linalg.LinAlgError):
-        return None
-
-
 def _warnings(fields: list[Field]) -> tuple[list[str], bool]:
     """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
     from verify.motion.contact import FELT
@@ -408,13 +393,11 @@ def _tables(fields: list[Field]) -> "list[Table]":
             efficiency = at.efficiency if at.settled("force", "powers") else None
             shares = (at.contact_share, at.stuck_share)
             held.append((field.name, at.speed, at.force, at.spread, power, efficiency, *shares, at.settled()))
-        margins, coupling, repeated = run.motor_margins, run.coupling, field.periodic
+        margins, coupling = run.motor_margins, run.coupling
         assert coupling is not None
         sag = None if margins.sag is None else round(margins.sag, 12)  # of balanced loads rounding is left
         sizes = (coupling.normal_size, coupling.friction_size, margins.chain, margins.step, field.spread)
-        force = float(repeated.run.friction[1:].mean()) if repeated else None
-        multiplier = float(abs(repeated.multipliers).max()) if repeated else None
-        validity.append((field.name, margins.epsilon, sag, field.amplitude, *sizes, force, multiplier))
+        validity.append((field.name, margins.epsilon, sag, field.amplitude, *sizes))
     columns = [Column("model"), si("crest speed", "m/s", ".5g"), si("no-load speed", "m/s", "+.5g")]
     columns += [si("free speed", "m/s", "+.5g"), si("stall force", "N", "+.4g"), si("largest power", "W")]
     columns += [percent("best efficiency", ".3g"), percent("contact", ".3g"), percent("stick", ".3g")]
@@ -426,8 +409,7 @@ def _tables(fields: list[Field]) -> "list[Table]":
     limits = [Column("model"), Column("epsilon", format=".3g"), si("sag", "m", ".3g"), si("amplitude", "m")]
     limits += [Column("normal coupling", format=".1e"), Column("friction coupling", format=".1e")]
     limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), Column("contact phase per step", "rad", ".2g")]
-    limits += [Column("speed spread", "m/s", ".1e"), si("periodic stall force", "N", "+.5g")]
-    limits += [Column("largest multiplier", format=".5f")]
+    limits += [Column("speed spread", "m/s", ".1e")]
     notes = [
         "No-load speed: held, without mean friction. Free speed, contact, stick, friction power: last quarter of a "
         "free run. Start, stop, reversal: time constants (1 - 1/e) from the slider's own speed, with the drive "

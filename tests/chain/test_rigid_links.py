@@ -1,0 +1,197 @@
+"""The nonlinear chain of rigid links in time: against dense multiplier equations, conservation laws and closed forms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from reference.multibody import by_multipliers, rigid_motion, woinowsky_krieger
+
+from verify.beam import Beam, PointForce
+from verify.chain.dynamics import accelerations, at_rest, energies, held_rows, keep_pivots, positions, project
+from verify.chain.problems import energy_drift, large_amplitude_frequency, shaken_imbalance, transient
+from verify.chain.small_motion import choose_pivots
+from verify.chain.stepping import simulate, step_limit
+from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.errors import InputError
+
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0)
+
+
+def odd_chain(seed, n, **more):
+    """Links, springs, dashpots and loads without any symmetry."""
+    rng = np.random.default_rng(seed)
+    lengths, masses, link = rng.uniform(0.02, 0.07, n), rng.uniform(0.01, 0.04, n), 1 + n // 2
+    own = {
+        "lengths": lengths,
+        "masses": masses,
+        "inertias": masses * lengths**2 * rng.uniform(0.05, 0.2, n),
+        "stiffness": rng.uniform(0.5, 4.0, n),
+        "dashpots": rng.uniform(0.0, 2e-3, n),
+        "gravity": (0.7, -9.81),
+        "rotation": Rotation(offset=0.1, rate=0.3, amplitude=0.2, frequency_hz=7.0, phase_deg=20.0),
+        "loads": (
+            LinkLoad(link=n, at=0.3 * lengths[-1], force=(0.2, -0.4), moment=0.013),
+            LinkLoad(link=link, at=0.9 * lengths[link - 1], force=(-0.1, 0.5), frequency_hz=31.0, phase_deg=40.0),
+        ),
+    }
+    return ChainSystem(**{**own, **more})
+
+
+def some_state(n, seed):
+    rng = np.random.default_rng(100 + seed)
+    return ChainState(rng.normal(0, 0.4, n), rng.normal(0, 5.0, n), 0.0137)
+
+
+TIPS = {
+    "free": {},
+    "roller": {"tip": "roller"},
+    "sprung roller": {"tip": "roller", "axial_spring": 57.0},
+    "actuator": {"actuators": (Actuator(link=2, at=0.01, amplitude=1e-3, frequency_hz=40.0, phase_deg=10.0),)},
+    "roller and two actuators": {
+        "tip": "roller",
+        "actuators": (
+            Actuator(link=2, at=0.013, amplitude=1e-3, frequency_hz=40.0, phase_deg=10.0),
+            Actuator(link=5, at=0.005, amplitude=-2e-3, frequency_hz=23.0),
+        ),
+    },
+}
+
+
+@pytest.mark.parametrize("axial", [True, False])
+@pytest.mark.parametrize("tip", TIPS)
+def test_accelerations_equal_the_multiplier_equations(tip, axial):
+    system, state = odd_chain(5, 8, axial_inertia=axial, **TIPS[tip]), some_state(8, 5)
+    expected = by_multipliers(system, state.time, state.angles, state.rates)
+    assert accelerations(system, state) == pytest.approx(expected, rel=1e-10, abs=1e-11 * abs(expected).max())
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10_000), st.integers(1, 14), st.booleans(), st.booleans())
+def test_accelerations_of_any_chain_equal_the_multiplier_equations(seed, n, roller, axial):
+    system = odd_chain(seed, n, tip="roller" if roller else "free", axial_inertia=axial)
+    state = some_state(n, seed)
+    expected = by_multipliers(system, state.time, state.angles, state.rates)
+    assert abs(accelerations(system, state) - expected).max() <= 1e-9 * max(abs(expected).max(), 1e-3)
+
+
+@pytest.mark.parametrize("method", [{"tolerance": 1e-10}, {"method": "rk4", "step": 2e-6}])
+def test_motion_on_the_roller_equals_dense_integration(method):
+    system = odd_chain(3, 5, tip="roller", rotation=Rotation(), gravity=(0.0, 0.0), dashpots=np.zeros(5))
+    times = np.linspace(0.0, 0.02, 5)
+    motion, seen = simulate(system, at_rest(system), times, **method), rigid_motion(system, 0.02)
+    found = np.cumsum(system.lengths * np.sin(motion.directions()), axis=1)
+    expected = np.array([seen(t)[0][1:] for t in times])
+    assert found == pytest.approx(expected, abs=2e-7 * abs(expected).max())
+    assert abs(found[:, -1]).max() < 1e-12
+
+
+@pytest.mark.parametrize("force", [10.0, 3e3])
+def test_the_driven_strip_equals_dense_integration_however_far_links_turn(force):
+    forces = [PointForce(position=0.11, amplitude=force, phase_deg=30.0)]
+    motion = transient(STRIP, forces, 700.0, [3e-4, 6e-4], 7, tolerance=1e-10)
+    seen = rigid_motion(build_system(STRIP, 7, forces, 700.0), 6e-4)
+    nodes = np.linspace(0, STRIP.length, 8)
+    expected = [np.interp(0.2, nodes, seen(t)[0]) for t in motion.times]
+    assert motion.deflection([0.2])[:, 0] == pytest.approx(expected, rel=2e-7)
+
+
+@pytest.mark.parametrize("tip", ["free", "roller"])
+def test_work_energy_and_damping_balance_under_all_loads(tip):
+    assert shaken_imbalance(6, tip, 1e-9) < 2e-7
+    assert shaken_imbalance(6, tip, 1e-6) < 2e-4
+
+
+def test_energy_drift_falls_with_the_fourth_power_of_the_step_or_faster():
+    limit = step_limit(build_system(STRIP, 6), at_rest(build_system(STRIP, 6)))
+    drifts = [energy_drift(STRIP, 6, 0.03, 0.5, share * limit, 1e-8) for share in (0.4, 0.2)]
+    assert 3.7 < np.log2(drifts[0] / drifts[1]) < 6.0
+    assert energy_drift(STRIP, 6, 0.03, 0.5, None, 1e-9) < 1e-7
+
+
+def test_a_free_spinning_chain_keeps_its_angular_momentum():
+    system = odd_chain(4, 5, stiffness=np.append(0.0, np.full(4, 1.3)), dashpots=np.full(5, 0.0), loads=(),
+                       gravity=(0.0, 0.0), rotation=Rotation())  # fmt: skip
+    start = ChainState(np.array([0.1, 0.3, -0.2, 0.5, 0.1]), np.array([9.0, -3.0, 4.0, 1.0, 2.0]))
+    motion = simulate(system, start, np.linspace(0.0, 0.3, 7), tolerance=1e-11)
+
+    def momentum(state):
+        joints, speeds = positions(system, state)
+        middles, moving = 0.5 * (joints[1:] + joints[:-1]), 0.5 * (speeds[1:] + speeds[:-1])
+        spin = np.cumsum(state.rates)
+        return system.masses @ (middles[:, 0] * moving[:, 1] - middles[:, 1] * moving[:, 0]) + system.inertias @ spin
+
+    found = [momentum(motion.state(i)) for i in range(7)]
+    assert found == pytest.approx([found[0]] * 7, rel=1e-8)
+    assert sum(energies(system, motion.state(6))) == pytest.approx(sum(energies(system, start)), rel=1e-8)
+
+
+@pytest.mark.parametrize("amplitude", [0.8, 2.0])
+def test_immovable_ends_stiffen_as_woinowsky_and_krieger_state(amplitude):
+    found = large_amplitude_frequency(STRIP, amplitude, 10)
+    assert found == pytest.approx(woinowsky_krieger(amplitude), rel=2e-4)
+
+
+def test_projection_meets_the_roller_by_the_dependent_angle_alone():
+    system = odd_chain(9, 9, tip="roller", rotation=Rotation(offset=0.003))
+    state = some_state(9, 2)
+    state = replace(state, angles=0.04 * state.angles)
+    found, moved = project(system, state)
+    place, speed = positions(system, found)
+    assert abs(place[-1, 1]) < 1e-14
+    assert abs(speed[-1, 1]) < 1e-12
+    assert np.count_nonzero(found.angles != state.angles) == 1
+    assert moved > 1e-3
+    assert project(system, found)[1] < 1e-14
+
+
+def test_pivots_are_the_longest_lever_arms_and_kept_until_short():
+    system = build_system(STRIP, 12)
+    rows = held_rows(system, at_rest(system))
+    assert rows[0] == pytest.approx(0.43 * (1 - np.arange(12) / 12))
+    assert list(choose_pivots(rows)) == [0]
+    rows = np.array([[1.0, 0.7, 0.05], [0.4, 0.3, 0.0]])
+    assert list(keep_pivots(rows[:1], np.array([1]))) == [1]
+    assert list(keep_pivots(rows[:1], np.array([2]))) == [0]
+    assert list(keep_pivots(rows, np.array([2, 1]))) == [2, 1]
+
+
+def test_rk4_above_its_stability_limit_is_refused_and_below_it_stable():
+    system = build_system(STRIP, 15, joint_dashpot=2e-4)
+    limit = step_limit(system, at_rest(system))
+    bent = at_rest(system, 1e-3 * np.cos(np.arange(15.0)))
+    with pytest.raises(InputError, match="stability limit"):
+        simulate(system, bent, [0.01], method="rk4", step=1.02 * limit)
+    motion = simulate(system, bent, np.linspace(0, 1000 * limit, 3), method="rk4", step=0.98 * limit)
+    assert motion.finished
+    assert abs(motion.angles).max() < 3 * abs(bent.angles).max()
+
+
+def test_a_chaotic_motion_is_refused():
+    with pytest.raises(InputError, match="does not converge"):
+        transient(STRIP, [PointForce(position=0.11, amplitude=2e5)], 700.0, [4e-3, 8e-3], 6, tolerance=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"lengths": np.array([0.1, -0.1, 0.1])}, "lengths"),
+        ({"masses": np.ones(2)}, "masses"),
+        ({"tip": "pinned"}, "tip"),
+        ({"axial_spring": 3.0}, "axial_spring"),
+        ({"loads": (LinkLoad(link=4, at=0.0),)}, "load.link"),
+        ({"actuators": (Actuator(link=2, at=0.01), Actuator(link=2, at=0.01))}, "held at once"),
+    ],
+)
+def test_bad_chains_are_refused_by_name(change, field):
+    three = {"lengths": np.full(3, 0.1), "masses": np.ones(3), "inertias": np.ones(3), "stiffness": np.ones(3)}
+    with pytest.raises(InputError, match=field):
+        at_rest(ChainSystem(**{**three, "dashpots": np.zeros(3), **change}))
+
+
+def test_other_supports_and_losses_have_no_nonlinear_chain():
+    for more in ({"supports": ("pinned", "clamped")}, {"loss_factor": 0.01}):
+        beam = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0, **more)
+        with pytest.raises(InputError, match="nonlinear chain"):
+            build_system(beam, 6)

@@ -1,0 +1,299 @@
+"""A slider on a beam against the coupled equations by DOP853, closed forms of moving loads, and its energy balance."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+from reference.slider import hermite_modes, ridden
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from verify import simulate
+from verify.beam import Beam, PointForce
+from verify.errors import InputError
+from verify.motion.contact import FELT
+from verify.motion.pure_wave import terminal_speed
+from verify.motion.result import Motion
+from verify.section import Section
+from verify.slider import Slider, changed
+
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
+PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+HERTZ, DURATION, PARTS, ZETA = 1310.0, 2.5e-3, 4, 0.003
+FORCES = (
+    PointForce(position=0.037, amplitude=1.3, phase_deg=17.0),
+    PointForce(position=0.402, amplitude=0.8, phase_deg=101.0),
+)
+HEAVY = Slider(mass=0.04, mu=0.3, slope=300.0, position=0.19, coupling="two-way", preload=0.31)
+KINDS = {
+    "one-way": {"coupling": "one-way"},
+    "one-way following": {"coupling": "one-way", "kinematics": "following", "speed": 1.3},
+    "massless": {"normal": "massless"},
+    "massless following": {"normal": "massless", "kinematics": "following"},
+    "held": {},
+    "held, fast": {"speed": 3.0},
+    "held, following, fast": {"kinematics": "following", "speed": -2.1},
+}
+
+
+@cache
+def reference(kind):
+    slider = replace(HEAVY, **KINDS[kind])
+    two_way, half = slider.coupling == "two-way", 0.5 * STRIP.thickness
+    return ridden(
+        hermite_modes(STRIP, PARTS), FORCES, HERTZ, slider, DURATION, half=half, damping=ZETA, soft=2.0, two_way=two_way
+    )
+
+
+def run(slider, steps=240, **more) -> Motion:
+    model = {} if "model" in more else {"model": "fem", "count": PARTS}
+    return simulate(
+        STRIP, FORCES, HERTZ, DURATION, slider=slider, **model,
+        **{"step": 1 / (HERTZ * steps), "soft_start_periods": 2.0, "modal_damping": ZETA, "samples": 11, **more},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_beam_and_slider_move_as_one_system_of_equations(kind):
+    found, slider = reference(kind), replace(HEAVY, **KINDS[kind])
+    errors = []
+    for steps in (240, 480, 960):
+        motion = run(slider, steps, at=[0.123])
+        errors.append([motion.displacement / found.displacement - 1, motion.speed[-1] / found.speed - 1])
+    errors = abs(np.array(errors))
+    assert errors[-1].max() < 1e-5
+    assert np.all((np.log2(errors[:-1] / errors[1:]) > 1.6) | (errors[1:] < 5e-9))
+    expected = found.q @ hermite_modes(STRIP, PARTS).shape(0.123, 0)
+    assert motion.deflection[-1, 0] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_line_of_the_energy_balance_equals_its_integral(kind):
+    found, ledger = reference(kind).ledger, run(replace(HEAVY, **KINDS[kind]), 960).ledger
+    size = max(abs(one) for one in found.values())
+    for line, expected in found.items():
+        assert getattr(ledger, line) == pytest.approx(expected, rel=2e-4, abs=1e-6 * size), line
+    assert abs(ledger.residual) < 3e-6 * size
+
+
+@pytest.mark.parametrize("law", ["tanh", "coulomb"])
+@pytest.mark.parametrize(("kind", "order"), [("one-way", 3.4), ("massless", 1.7), ("held", 1.6)])
+def test_energy_balance_closes_with_the_order_of_the_coupling(kind, order, law):
+    """Two-way the beam's motion has a kink where friction reverses: order 2."""
+    slider = changed(replace(HEAVY, **KINDS[kind]), law=law, mu=0.05)
+    ledgers = [run(slider, steps).ledger for steps in (120, 240, 480)]
+    parts = [abs(one.residual) / one.work_in for one in ledgers]
+    assert parts[-1] < 4e-6
+    assert np.log2(parts[0] / parts[2]) / 2 > order or parts[-1] < 1e-12
+    for one in ledgers:
+        assert one.rubbed > 0.0
+        assert one.contact_on_beam + one.slider + one.rubbed == pytest.approx(0.0, abs=1e-11 * one.rubbed)
+
+
+@pytest.mark.parametrize("law", ["tanh", "coulomb"])
+def test_friction_opposes_slip_and_its_impulse_is_the_momentum(law):
+    slider = Slider(
+        mass=0.4, mu=0.05, law=law, position=0.19, coupling="one-way", slope=300.0 if law == "tanh" else None
+    )
+    motion, limit = run(slider, 2000, samples=4001), 0.05 * 0.4 * 9.81
+    assert np.all(motion.friction * (motion.speed - motion.surface_speed) <= 1e-14)
+    assert motion.largest_friction <= limit * (1 + 1e-12)
+    assert motion.mean_friction * motion.duration == pytest.approx(0.4 * motion.speed[-1], rel=1e-9)
+    assert motion.mean_surface_speed == pytest.approx(
+        np.trapezoid(motion.surface_speed, motion.times) / motion.duration, rel=1e-3, abs=1e-6
+    )
+
+
+def test_steep_tanh_friction_tends_to_coulombs_law():
+    tanh, coulomb = (
+        run(changed(replace(HEAVY, coupling="one-way", mass=0.4), **law), 2000)
+        for law in ({"slope": 1e7}, {"law": "coulomb"})
+    )
+    assert tanh.displacement == pytest.approx(coulomb.displacement, rel=2e-3)
+    assert len(coulomb.events) > 0
+
+
+def test_a_sticking_slider_moves_with_the_surface():
+    """Held by mu N far above m a it follows the surface from the first step to the last."""
+    for coupling in ("one-way", "two-way"):
+        slider = Slider(mass=0.01, mu=0.9, law="coulomb", preload=900.0, position=0.19, coupling=coupling)
+        motion = run(replace(slider, normal="massless"), 2000)
+        assert motion.speed[1:] == pytest.approx(motion.surface_speed[1:], abs=2e-3 * abs(motion.surface_speed).max())
+
+
+def test_two_way_coupling_vanishes_with_the_mass_and_auto_chooses_by_size():
+    lost = []
+    for mass in (0.004, 0.0004, 0.00004):
+        both = [run(replace(HEAVY, mass=mass, preload=0.0, normal="massless", coupling=one)).displacement
+                for one in ("two-way", "one-way")]  # fmt: skip
+        lost.append(both[0] / both[1] - 1)
+    assert np.array(lost[:-1]) / lost[1:] == pytest.approx(10.0, rel=0.1)
+    chosen = [run(replace(HEAVY, mass=mass, preload=0.0, coupling="auto")).coupling for mass in (0.04, 1e-8)]
+    assert [one.two_way for one in chosen] == [True, False]
+    assert chosen[0].relative_size > FELT > chosen[1].relative_size
+    assert chosen[0].normal_size == pytest.approx(4e6 * chosen[1].normal_size, rel=1e-9)
+
+
+def test_a_continued_run_of_a_held_slider_equals_one_run():
+    asked = {"model": "fem", "count": PARTS, "slider": HEAVY, "step": 1e-6, "modal_damping": ZETA, "at": [0.123]}
+    whole = simulate(STRIP, FORCES, HERTZ, 2e-3, samples=11, **asked)
+    begun = simulate(STRIP, FORCES, HERTZ, 0.8e-3, samples=5, **asked)
+    ended = simulate(STRIP, FORCES, HERTZ, 1.2e-3, samples=7, **asked, continue_from=begun)
+    assert ended.deflection[-1, 0] == pytest.approx(whole.deflection[-1, 0], rel=1e-7)
+    assert ended.position[-1] == pytest.approx(whole.position[-1], rel=1e-9)
+
+
+def moving(mass, preload, share, **more):
+    beam = Beam(length=0.83, width=0.024, thickness=0.0021, youngs_modulus=113e9, density=4430.0)
+    speed = 0.5 * np.pi / 0.83 * beam.wave_constant  # half the critical speed
+    slider = Slider(mass=mass, preload=preload, mu=1e-13, position=0.0, speed=speed, coupling="two-way")
+    still = (PointForce(position=0.31, amplitude=0.0),)
+    return (
+        beam,
+        speed,
+        simulate(
+            beam, still, 40.0, share * 0.83 / speed, slider=slider, model="analytic", at=[0.415], step=2e-5, **more
+        ),
+    )
+
+
+def test_a_moving_force_bends_the_beam_as_fryba_states():
+    """L. Fryba, Vibration of Solids and Structures under Moving Loads: 1.7054451 of the static deflection."""
+    beam, _, motion = moving(1e-9, 0.37, 0.95, modes=60, samples=1901)
+    deepest = int(motion.deflection[:, 0].argmin())
+    static = 0.37 * 0.83**3 / (48 * beam.bending_stiffness)
+    assert motion.deflection[deepest, 0] == pytest.approx(-1.7054451 * static, rel=6e-6)
+    assert motion.position[deepest] / 0.83 == pytest.approx(2 / 3, abs=1e-3)
+
+
+def test_a_moving_mass_bends_the_beam_by_all_convective_terms():
+    """Reaction m (g + w_tt + 2 v w_xt + v^2 w_xx) on six sines by DOP853, 0.3 of the beam's mass."""
+    line = 0.024 * 0.0021 * 4430
+    beam, v, motion = moving(0.3 * 0.83 * line, 0.0, 0.7, modes=6, samples=2)
+    mass, k = motion.slider.mass, np.arange(1, 7) * np.pi / 0.83
+    scale, own = np.sqrt(2 / (0.83 * line)), k**2 * beam.wave_constant
+
+    def rates(t, y):
+        q, qd, turn = y[:6], y[6:], k * v * t
+        phi, slope, bend = scale * np.sin(turn), scale * k * np.cos(turn), -scale * k**2 * np.sin(turn)
+        free = 9.81 + 2 * v * (slope @ qd) + v * v * (bend @ q) - phi @ (own**2 * q)
+        return np.concatenate([qd, -(own**2) * q - phi * mass * free / (1 + mass * phi @ phi)])
+
+    end = float(motion.times[-1])
+    q = solve_ivp(rates, (0, end), np.zeros(12), method="DOP853", rtol=1e-11, atol=1e-16).y[:6, -1]
+    assert motion.deflection[-1, 0] == pytest.approx(q @ (scale * np.sin(k * 0.415)), rel=2e-5)
+
+
+@pytest.mark.parametrize("model", [{"model": "segment", "count": 98}, {"model": "analytic"}])
+def test_a_mass_at_rest_is_part_of_the_steady_beam(model):
+    """W = W_0 / (1 - m omega^2 G) on the sag of its weight."""
+    slider = Slider(mass=1.3e-3, mu=1e-9, position=0.25, coupling="two-way")
+    forces = (PointForce(position=0.0116, amplitude=1.0), PointForce(position=0.4884, amplitude=1.0, phase_deg=90.0))
+    motion = simulate(
+        PAPER, forces, 4276.0, 1e-3, **model, start="steady", slider=slider, at=[0.31], samples=101, step=1e-6
+    )
+    turn = 2 * np.pi * 4276.0 * motion.times
+    rows = np.stack([np.cos(turn), -np.sin(turn), np.ones_like(turn)], axis=1)
+    (real, imaginary, _), rest, *_ = np.linalg.lstsq(rows, motion.deflection[:, 0], rcond=None)
+    assert np.sqrt(rest[0] / len(turn)) < 2e-4 * np.hypot(real, imaginary)
+    alone = simulate(PAPER, forces, 4276.0, 1e-3, **model, start="steady", at=[0.31], samples=101)
+    assert np.hypot(real, imaginary) / abs(alone.deflection).max() == pytest.approx(1.0, abs=0.9)
+    assert abs(np.hypot(real, imaginary) / abs(alone.deflection).max() - 1.0) > 0.02
+
+
+def test_default_steps_resolve_a_step_load_and_report_their_convergence():
+    forces = (PointForce(position=0.0116, amplitude=1.0), PointForce(position=0.4884, amplitude=1.0, phase_deg=90.0))
+    slider = Slider(mass=1.02e-3, mu=0.2, slope=100.0, normal="massless", coupling="one-way")
+    chosen, fine, coarse = (
+        simulate(PAPER, forces, 4276.0, 1e-3, count=392, slider=slider, samples=2, ledger=False, step=step)
+        for step in (None, 5e-8, 1 / (64 * 4276.0))
+    )
+    assert chosen.displacement == pytest.approx(fine.displacement, rel=2e-3)
+    assert abs(coarse.displacement / fine.displacement - 1) > 0.05
+    assert any(note.startswith("step:") for note in coarse.notes)
+    refined = run(HEAVY, step=None)
+    assert refined.statistics.moved is not None
+    assert refined.statistics.moved < 0.01
+    assert refined.displacement == pytest.approx(reference("held").displacement, rel=0.01)
+    assert len(refined.times) == 11
+
+
+@pytest.mark.parametrize("law", [{"slope": 3e4}, {"law": "coulomb"}])
+def test_a_run_in_which_the_contact_makes_energy_is_refused(law):
+    """Sticking in steps of more than half a turn of the fastest modes; a quarter of the step is sound."""
+    beam = Beam(length=0.37, width=0.02, thickness=0.0043, youngs_modulus=70e9, density=2700.0)
+    forces = (PointForce(position=0.05, amplitude=0.007), PointForce(position=0.31, amplitude=0.005, phase_deg=70.0))
+    slider = Slider(mass=0.44, mu=0.6, position=0.14, preload=0.3, coupling="two-way", **law)
+    asked = {"count": 40, "slider": slider, "samples": 5}
+    with pytest.raises(InputError, match="the contact gave the beam"):
+        simulate(beam, forces, 900.0, 5 / 900, step=1 / (64 * 900.0), **asked)
+    ledger = simulate(beam, forces, 900.0, 5 / 900, step=1 / (256 * 900.0), **asked).ledger
+    assert ledger.contact_on_beam + ledger.normal_on_beam < ledger.work_in
+
+
+def test_the_slider_stops_at_the_end_of_its_section_and_of_the_beam():
+    sections = (Section(length=0.22, thickness=0.001), Section(length=0.18, thickness=0.0016))
+    stepped = Beam(length=0.4, width=0.02, thickness=0.001, youngs_modulus=7e10, density=2700.0, section=sections)
+    slider = Slider(mass=0.01, mu=1e-6, speed=9.0, position=0.19, coupling="one-way")
+    at_step = simulate(stepped, FORCES[0], 400.0, 0.02, count=40, slider=slider)
+    off = simulate(STRIP, FORCES[0], 400.0, 0.1, count=12, slider=slider)
+    assert at_step.statistics.stopped.startswith("came to a step of beam.section at 0.22")
+    assert off.statistics.stopped == "left the beam"
+    assert at_step.end.time == pytest.approx(0.03 / 9.0, rel=0.02)
+    with pytest.raises(InputError, match="continue_from"):
+        simulate(STRIP, FORCES[0], 400.0, 0.1, count=12, slider=slider, continue_from=off)
+
+
+@pytest.mark.parametrize("kinematics", ["tangential", "following"])
+@pytest.mark.parametrize(("slope", "amplitude"), [(1e4, 1e-6), (100.0, 3e-7)])
+def test_terminal_speed_on_a_pure_wave_equals_its_ode(kinematics, slope, amplitude):
+    """One point on w = a cos(omega t - k x), integrated over periods until its speed repeats."""
+    slider = Slider(mass=1.0, mu=0.2, slope=slope, kinematics=kinematics)
+    omega, half = 2 * np.pi * 4276.0, 0.5 * PAPER.thickness
+    k, follows = np.sqrt(omega / PAPER.wave_constant), kinematics == "following"
+
+    def rates(t, y):
+        x, v = y
+
+        def wave(x):
+            turn = omega * t - k * x
+            return (amplitude * k * np.sin(turn), -amplitude * k**2 * np.cos(turn), -amplitude * omega * np.sin(turn),
+                    amplitude * omega * k * np.cos(turn))  # fmt: skip
+
+        slope_w, bend, rise, twist = wave(x + half * wave(x)[0])
+        surface = (rise * slope_w - half * twist) / np.hypot(1.0, slope_w)
+        friction = -0.2 * 9.81 * np.tanh(slope * (v - surface))
+        if not follows:
+            return [v, friction]
+        return [v - slope_w * rise, rise * (twist + bend * v) - 9.81 * slope_w + friction]
+
+    found = terminal_speed(PAPER, slider, amplitude, 4276.0)
+    period = 2 * np.pi / (omega - k * found)
+
+    def after(v):
+        ended = solve_ivp(
+            rates, (0.0, period), [0.25, v], method="DOP853", rtol=1e-11, atol=1e-17, max_step=period / 60
+        )
+        return ended.y[:, -1] - [0.25, v]
+
+    crest = 2 * half * k * omega * amplitude
+    start = brentq(lambda v: after(v)[1], -crest, crest, xtol=1e-14, rtol=1e-12)
+    assert after(start)[0] / period == pytest.approx(found, rel=1e-4)
+    assert found < 0.0  # against the wave
+
+
+@pytest.mark.parametrize(
+    ("more", "field"),
+    [
+        ({"step": 1e-3}, "step"),
+        ({"step": 1e-13}, "step"),
+        ({"steps_per_period": 0}, "steps_per_period"),
+        ({"slider": 3.0}, "slider"),
+        ({"slider": replace(HEAVY, position=0.5)}, "position"),
+        ({"slider": replace(HEAVY, line="raw"), "start": "steady", "soft_start_periods": 0.0}, "line"),
+    ],
+)
+def test_bad_sliders_and_steps_are_refused_by_name(more, field):
+    with pytest.raises(InputError, match=field):
+        run(**{"slider": HEAVY, **more})

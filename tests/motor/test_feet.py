@@ -1,0 +1,233 @@
+"""A foot of many points: its motion against DOP853, the layer that many points become, feet on both faces."""
+
+from functools import cache
+from math import cos, pi
+
+import numpy as np
+import pytest
+import reference.motor as by
+from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive, on_strip
+from msgspec.structs import replace
+
+from verify import Contact, Foot, PointForce, Slider, run_motor
+from verify.contact import foot as short
+from verify.contact import layer
+from verify.motor.outcome import layer_epsilon
+
+HEIGHT = 1e-8
+"""Of the wave, metres: w_t w' is 2e-5 of the speed of its crests."""
+WAVE = drive(HEIGHT)[1]
+LENGTH = 2.0 * pi / WAVE.k
+CRESTS = HALF * WAVE.k * OMEGA * HEIGHT
+KAPPA, MU, PERIODS = 2e9, 0.2, 2
+FEET = [(0.31, 5, 0.0, True), (1.0, 8, 0.0, True), (1.37, 9, 3.0, True), (0.31, 5, 0.0, False)]
+
+
+def put(**given):
+    own = {"mass": 1.0, "mu": MU, "law": "coulomb", "gravity": 0.0, "coupling": "one-way"}
+    return Slider(**{**own, **given})
+
+
+@cache
+def reference(spans, n, damping, pitches):
+    """(foot, rows at each period) of a foot held at a speed."""
+    wave, length, mass, load, stiffness = drive(1e-6, 0.1)[1], spans * LENGTH, 4e-3, 3.0, 6e6
+    arms = by.cells(length, n)
+    own = {"damping": damping, "mu": MU, "speed": -1e-4, "half": HALF, "pitches": pitches}
+    foot = by.Foot(mass, mass * length**2 / 12.0, load, stiffness, arms, **own)
+    level = by.lain_on(by.felt(wave.at, MIDDLE + arms, 0.0, HALF)[0], load / stiffness)
+    times = np.arange(1, PERIODS + 1) * PERIOD
+    rows = by.foot_ridden(foot, wave, MIDDLE, [level, 0.0, 0.0, 0.0], times, rtol=1e-8, max_step=0.05 * PERIOD)
+    return foot, rows
+
+
+def errors(case, steps):
+    """Of height and pitch (times length) over 1 um, and of impulses and contact time over all."""
+    (foot, rows), (spans, n, damping, pitches) = reference(*case), case
+    feet = (Foot(length=spans * LENGTH, points=n, pitches=pitches),)
+    contact = Contact(stiffness=foot.stiffness, damping=damping)
+    slider = put(mass=foot.mass, preload=foot.load, contact=contact, foot=feet)
+    run = on_strip(slider, 1e-6, 0.1, PERIODS, steps, held_speed=foot.speed, samples=PERIODS + 1)
+    motion = max(
+        np.abs(run.height[1:, 0] - rows[:, 0]).max() / 1e-6,
+        np.abs(run.pitch[1:, 0] - rows[:, 2]).max() * spans * LENGTH / 1e-6,
+    )
+    means = np.array([run.normal_force[1:].mean(), run.friction[1:].mean(), run.contact_share[1:].mean()])
+    return motion, *np.abs(means - rows[-1, 4:7] / (PERIODS * PERIOD)) / (foot.load, foot.load, 1.0)
+
+
+@pytest.mark.parametrize("case", FEET)
+def test_a_foot_rises_pitches_and_rubs_as_the_ode_says_with_second_order(case):
+    motion, pressed, dragged, touched = errors(case, 4000)
+    assert motion < 3e-5
+    assert pressed < 1e-6
+    assert dragged < 2e-4
+    assert touched < 2e-4
+    if not case[2]:  # a dashpot lets go before it is out
+        coarse, fine = (np.mean([errors(case, n)[0] for n in steps]) for steps in ((125, 133), (4000, 4256)))
+        assert 1.4 < np.log2(coarse / fine) / 5.0 < 2.6
+
+
+def slid(phi, r, epsilon=0.0, n=61, steps=127, periods=3, slider=None, **asked):
+    """(run, load) of an upright foot of one wavelength at r times the crests' speed, its place kept."""
+    load = 2.0 * KAPPA * HEIGHT * layer.pressed(phi, phi) / WAVE.k
+    give = 2.0 * MU * KAPPA / (epsilon * WAVE.k * 2.0 * HALF) if epsilon else None
+    contact = Contact(layer_stiffness=KAPPA, layer_tangential_stiffness=give)
+    feet = (Foot(length=LENGTH, points=n, pitches=False, mass=0.05),)
+    given = {"mass": 0.05, "speed": -r * CRESTS, **(slider or {})}
+    asked = {"held_speed": -r * CRESTS, "frozen": True, "samples": periods + 1, **asked}
+    return on_strip(
+        put(preload=load, foot=feet, contact=contact, **given), HEIGHT, periods=periods, steps=steps, **asked
+    ), load
+
+
+def dragged(phi, r, epsilon=0.0, **given):
+    """F/(mu N) over the last period; the wave runs to the right and its crests drive to the left."""
+    run, load = slid(phi, r, epsilon, **given)
+    return -run.friction[-1] / (MU * load)
+
+
+@pytest.mark.parametrize("phi", [0.5, 1.5, 2.2])
+@pytest.mark.parametrize(("r", "epsilon"), [(0.9, 0.0), (0.3, 0.5), (0.8, 3.0), (-0.4, 1.3)])
+def test_a_foot_of_many_points_is_a_driving_layer(phi, r, epsilon):
+    run, load = slid(phi, r, epsilon)
+    found = -run.friction[-1] / (MU * load)
+    assert found == pytest.approx(layer.force(phi, r, epsilon), abs=2e-3)
+    assert found == pytest.approx(by.row_of_springs(801, r, epsilon, 1024, height=cos(phi)), abs=3e-3)
+    assert run.contact_share[-1] == pytest.approx(phi / pi, abs=2e-3)
+    assert run.motor_margins.epsilon == pytest.approx(epsilon, rel=1e-12)
+    assert run.height[-1, 0] / HEIGHT == pytest.approx(cos(phi), abs=2e-3)
+
+
+@pytest.mark.parametrize(("phi", "r"), [(0.6, 0.9), (1.0, 0.6), (1.3, 0.8)])
+def test_power_and_efficiency_are_the_layers(phi, r):
+    run, load = slid(phi, r, steps=509)
+    unit = PERIOD * MU * load * CRESTS
+    given, force, share = run.carried[-1] / unit, layer.force(phi, r), layer.efficiency(phi, r)
+    assert given == pytest.approx(r * force / share, abs=1e-3)
+    assert -run.friction[-1] * r * CRESTS * PERIOD / run.carried[-1] == pytest.approx(share, abs=1e-3)
+    assert run.rubbed[-1] / unit == pytest.approx(given - r * force, abs=1e-3)
+
+
+def test_a_layer_that_gives_way_is_of_second_order_in_the_step():
+    cases = [(1.0, 0.87, 0.1), (1.0, 0.0, 3.0), (1.4, 0.5, 0.7), (0.7, 0.9, 1.0), (1.9, 0.3, 0.4), (1.3, 0.68, 0.4)]
+    best = np.array([dragged(*case, steps=4999) for case in cases])
+    off = [[np.subtract([dragged(*case, steps=n) for case in cases], best) for n in s] for s in ((31, 37), (251, 257))]
+    coarse, fine = np.sqrt(np.mean(np.square(off), axis=(1, 2)))
+    assert 1.5 < np.log2(coarse / fine) / 3.0 < 2.5
+    assert fine < 3e-4
+
+
+def test_points_become_a_layer_as_the_square_of_their_distance():
+    cases = [(phi, r) for phi in (0.7, 0.9, 1.1, 1.3, 1.6) for r in (0.2, 0.71, 0.83)]
+    off = []
+    for n in (4, 8, 16, 32):
+        off.append(np.sqrt(np.mean([(dragged(*one, n=n, steps=509) - layer.force(*one)) ** 2 for one in cases])))
+    assert off[-1] < 1.5e-3
+    assert 1.4 < np.log2(off[0] / off[-1]) / 3.0 < 3.2
+
+
+@pytest.mark.parametrize(("phi", "epsilon"), [(1.0, 0.0), (1.0, 0.1), (1.3, 18.0), (0.6, 0.03)])
+def test_a_free_slider_comes_to_the_no_load_speed_of_the_layer(phi, epsilon):
+    """From 3 % above and below, of 4 kg so that a period does not tell."""
+    wanted = layer.no_load_speed(phi, epsilon)
+    for start in (0.97, 1.03):
+        given = {"slider": {"mass": 4.0, "speed": -start * wanted * CRESTS}, "held_speed": None, "periods": 200}
+        assert -slid(phi, 0.0, epsilon, **given)[0].speed[-1] / CRESTS == pytest.approx(wanted, abs=2e-3)
+
+
+@pytest.mark.parametrize("waves", [0.0, 0.15, 0.42])
+def test_a_short_foot_drives_by_its_length(waves):
+    """Upright, so light and pressed so hard that it never leaves; a point gives way by a hundredth of the height."""
+    span, n = pi * waves, 41 if waves else 1
+    foot = Foot(length=waves * LENGTH * n / (n - 1.0), points=n, pitches=False, mass=2e-6) if waves else Foot(mass=2e-6)
+    slider = put(preload=0.01, contact=Contact(stiffness=3e9, damping=40.0), foot=(foot,))
+    for r in (0.0, 0.3) if waves else (0.0,):
+        run = on_strip(slider, HEIGHT, periods=2, steps=16000, held_speed=-r * CRESTS, frozen=True, samples=3)
+        wanted = short.short_foot_force(span, r) if waves else 0.0
+        assert -run.friction[-1] / (MU * 0.01) == pytest.approx(wanted, abs=0.02)
+
+
+def test_epsilon_is_that_of_the_foot_which_slips_least_before_it_gives_way():
+    """Each foot has all of one stiffness and a layer's along its length: the short one gives way three times as far."""
+    contact = Contact(stiffness=3.1e5, layer_tangential_stiffness=7.7e6)
+    feet = (Foot(length=0.021, points=3, offset=-0.03), Foot(length=0.007, points=3, offset=0.02))
+    slider = Slider(mass=0.01, mu=0.23, law="coulomb", preload=0.4, contact=contact, foot=feet)
+    expected = 2.0 * 0.23 * 3.1e5 / (7.7e6 * 0.007 * 91.0 * 0.0013)
+    assert layer_epsilon(slider, 91.0, 0.0013) == pytest.approx(expected, rel=1e-14)
+    assert layer_epsilon(replace(slider, foot=feet[::-1]), 91.0, 0.0013) == pytest.approx(expected, rel=1e-14)
+
+
+FORCES = [PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0)]
+STILL = [replace(one, amplitude=1e-9) for one in FORCES]
+SLIDER = Slider(
+    mass=0.21,
+    mu=0.17,
+    law="coulomb",
+    preload=23.0,
+    position=0.237,
+    coupling="one-way",
+    contact=Contact(stiffness=5e7, damping=900.0),
+    foot=(Foot(length=0.044, points=23),),
+)
+
+
+def moved(slider, seconds=4e-3, forces=FORCES, beam=STRIP, **given):
+    kept = {"model": "segment", "count": 49, "samples": 18, **given}
+    return run_motor(beam, forces, HERTZ, seconds, slider=slider, **kept)
+
+
+def test_feet_on_both_faces_are_driven_the_same_way_and_do_not_bend_the_beam():
+    """At a crest the upper surface runs back, and the lower one where the beam is lowest, half a wave on."""
+    foot = SLIDER.foot[0]
+    upper, clasp, lower = (
+        moved(replace(SLIDER, gravity=gravity, foot=feet))
+        for gravity, feet in (
+            (9.81, (foot,)),
+            (0.0, (foot, replace(foot, face="lower"))),
+            (0.0, (replace(foot, face="lower"),)),
+        )
+    )
+    assert np.sign(upper.speed[-1]) == np.sign(clasp.speed[-1]) == np.sign(lower.speed[-1]) != 0.0
+    assert clasp.motor_margins.sag < 1e-12
+    assert upper.motor_margins.sag > 0.1
+    assert clasp.normal_force[-9:].mean() == pytest.approx(23.0, rel=0.2)
+
+
+def pinned_sag(x, at, load):
+    """Deflection of a pinned beam at x under a load, metres: the closed form."""
+    length = STRIP.length
+    c, y = (length - at, x) if x <= at else (at, length - x)
+    return load * c * y * (length**2 - c**2 - y**2) / (6.0 * length * STRIP.bending_stiffness)
+
+
+def test_feet_of_a_clasp_that_are_not_above_each_other_bend_the_beam_by_their_couple():
+    feet = (Foot(length=0.03, points=5, offset=-0.031), Foot(length=0.02, points=3, offset=0.043, face="lower"))
+    slider = replace(SLIDER, gravity=0.0, preload=0.0031, foot=feet)
+    loads = [
+        (x, 0.5 * sign * slider.normal_force / foot.points)
+        for foot, sign in zip(feet, (-1.0, 1.0), strict=True)
+        for x in slider.start_on(STRIP) + foot.offset + by.cells(foot.length, foot.points)
+    ]
+    expected = max(abs(sum(pinned_sag(x, *one) for one in loads)) for x, _ in loads)
+    assert moved(slider, seconds=2e-4).motor_margins.sag == pytest.approx(expected, rel=1e-3)
+
+
+def test_weight_presses_an_upper_foot_on_a_lower_one_off_and_sinks_into_springs_on_both_sides():
+    stiff = replace(SLIDER, gravity=9.81, contact=Contact(stiffness=5e7))
+    for face, load in (("upper", 23.0 + 0.21 * 9.81), ("lower", 23.0 - 0.21 * 9.81)):
+        slider = replace(stiff, foot=(replace(SLIDER.foot[0], face=face),))
+        found = moved(slider, 1e-3, STILL, samples=5)
+        assert found.normal_force[1:] == pytest.approx(load, rel=1e-6)
+        assert found.height[0, 0] == pytest.approx((-load if face == "upper" else load) / 5e7, rel=1e-6)
+    between = replace(stiff, foot=(replace(SLIDER.foot[0], mirrored=True),))
+    assert moved(between, 1e-3, STILL, samples=5).height[:, 0] == pytest.approx(-0.21 * 9.81 / 1e8, rel=1e-6)
+
+
+def test_a_slider_between_two_beams_stays_in_the_middle_and_is_pressed_alike_from_both():
+    found = moved(replace(SLIDER, gravity=0.0, foot=(replace(SLIDER.foot[0], mirrored=True),)))
+    points = found.pressures.shape[1] // 2
+    assert np.abs(found.height).max() < 1e-12
+    assert found.pressures[:, :points] == pytest.approx(found.pressures[:, points:], rel=1e-9, abs=1e-9)
+    assert found.pressures[5:].sum(axis=1).min() > 0.0
+    assert np.sign(found.speed[-1]) == np.sign(moved(SLIDER).speed[-1])

@@ -1,0 +1,462 @@
+"""A motor on a beam that feels it, several on one beam, and on the nonlinear chain."""
+
+from functools import cache
+from math import pi
+
+import numpy as np
+import pytest
+import reference.motor as by
+from driven_strip import HERTZ as STRIP_HERTZ
+from driven_strip import MIDDLE, PERIOD, STRIP, drive, on_strip
+from msgspec.structs import replace
+from reference.slider import hermite_modes
+
+from verify import Beam, Contact, Foot, InputError, PointForce, PointSpring, Slider, run_motor, run_motors, simulate
+from verify.motion.surface import basis_of
+
+BEAM = Beam(length=0.31, width=0.017, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
+HERTZ, ZETA, START, LOAD, MASS, STIFFNESS, TURNS = 700.0, 0.02, 0.117, 4.0, 0.02, 1.5e6, 3
+TURN, OMEGA = 1.0 / HERTZ, 2.0 * pi * HERTZ
+FORCES = (PointForce(position=0.05, amplitude=9.0), PointForce(position=0.23, amplitude=6.0, phase_deg=77.0))
+CASES = {"coulomb": {}, "tanh": {"slope": 40.0}, "damped": {"damping": 8.0}, "gives way": {"give": 3e5}}
+
+
+def modes(beam, forces, zeta=ZETA, grow=TURN):
+    own, shape = hermite_modes(beam, 4)
+    loads = [(f.amplitude, np.deg2rad(f.phase_deg), f.position) for f in forces]
+    return by.Modes(own, shape, zeta, loads, OMEGA, 0.5 * beam.thickness, grow)
+
+
+@cache
+def reference(name):
+    """States of the body after each period."""
+    beam, point = modes(BEAM, FORCES), by.Point(MASS, MASS, LOAD, STIFFNESS, mu=0.3, half=0.00115, **CASES[name])
+    q, level = beam.lying(START, LOAD)
+    start = by.body(x=START, z=level - LOAD / STIFFNESS, beam=beam.beam)
+    start[: len(q)] = q
+    times = np.arange(1, TURNS + 1) * TURN
+    return by.Rider(point, beam).run(start, times[-1], times, TURN, rtol=1e-9, max_step=0.02).states[:, beam.beam :]
+
+
+def put(given, **own):
+    contact = Contact(stiffness=STIFFNESS, damping=given.get("damping", 0.0), tangential_stiffness=given.get("give"))
+    law = {"law": "tanh" if "slope" in given else "coulomb", "slope": given.get("slope")}
+    own = {"mass": MASS, "mu": 0.3, "gravity": 0.0, "preload": LOAD, "position": START, "contact": contact, **own}
+    return Slider(coupling="two-way", **law, **own)
+
+
+@cache
+def run(name, steps):
+    asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "soft_start_periods": 1.0, "start": "rest"}
+    asked |= {"samples": TURNS + 1, "step": TURN / steps}
+    return run_motor(BEAM, FORCES, HERTZ, TURNS * TURN, slider=put(CASES[name]), **asked)
+
+
+def errors(name, steps):
+    """Of place over 1 um, speed over 1 cm/s, height over 10 um, N over the load."""
+    states, found = reference(name), run(name, steps)
+    motion = np.stack([found.travelled[1:] + START, found.speed[1:], found.height[1:, 0]], axis=1)
+    motion = np.abs(motion - states[:, [by.X, by.V, by.Z]]).max(axis=0) / (1e-6, 1e-2, 1e-5)
+    return *motion, abs(found.normal_force[1:].mean() - states[-1, by.PRESSED] / (TURNS * TURN)) / LOAD
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_beam_and_motor_are_one_system_of_equations_of_second_order_in_the_step(name):
+    way, speed, height, pressed = errors(name, 8000)
+    assert way < 5e-4
+    assert speed < 5e-4
+    assert height < 1e-5
+    assert pressed < 3e-7
+    coarse, fine = (np.mean([errors(name, one)[2] for one in steps]) for steps in ((125, 133), (8000, 8512)))
+    assert 1.6 < np.log2(coarse / fine) / 6.0 < 2.4
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_energy_balance_of_motor_and_beam_closes(name):
+    found = [run(name, steps).ledger for steps in (250, 4000)]
+    coarse, fine = (abs(one.residual) / (abs(one.across) + abs(one.pressed) + one.rubbed) for one in found)
+    assert fine < 2e-5
+    assert fine < 0.1 * coarse
+
+
+@pytest.mark.parametrize(("share", "start"), [(0.7, "rest"), (3.0, "rest"), (3.0, "steady")])
+def test_a_motor_that_stays_on_is_an_added_mass_on_a_spring(share, start):
+    """m/(1 - m omega^2/k) at the place, in every mode of the same elements: by one linear solve.
+
+    `share` is the body's own frequency on its contact over that of the drive.
+    """
+    mass, stiffness = 0.011, 0.011 * (share * OMEGA) ** 2
+    own, shape = hermite_modes(BEAM, 4)
+    loads = sum(f.amplitude * 1e-3 * np.exp(1j * np.deg2rad(f.phase_deg)) * shape(f.position, 0) for f in FORCES)
+    here, felt = shape(START, 0), mass * OMEGA**2 / (1.0 - mass * OMEGA**2 / stiffness)
+    alone = np.diag(own**2 - OMEGA**2 + 2j * ZETA * own * OMEGA)
+    with_it, without = (np.linalg.solve(alone - one * np.outer(here, here), loads) @ here for one in (felt, 0.0))
+    assert abs(with_it / without - 1.0) > 0.2
+    slider = put({}, mass=mass, mu=1e-9, preload=2.0, contact=Contact(stiffness=stiffness))
+    small = [replace(one, amplitude=1e-3 * one.amplitude) for one in FORCES]
+    per, turns, grown = (400, 60, 20.0) if start == "rest" else (400, 700, 0.0)
+    asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "start": start, "soft_start_periods": grown}
+    found = run_motor(
+        BEAM, small, HERTZ, turns * TURN, slider=slider, samples=turns * per // 20 + 1, step=TURN / per, **asked
+    )
+    last = found.times > (turns - 20) * TURN + 1e-9
+    height = found.height[last, 0] - found.height[last, 0].mean()
+    height = 2.0 * np.mean(height * np.exp(-1j * OMEGA * found.times[last]))
+    wanted = with_it / (1.0 - mass * OMEGA**2 / stiffness)
+    assert height == pytest.approx(wanted, abs=5e-3 * abs(wanted))
+
+
+def test_a_stiff_contact_under_a_large_preload_tends_to_a_slider_that_never_leaves():
+    """N = P + m_f z'' in place of P: of first order in the foot's mass."""
+    given = {"mass": 2e-3, "mu": 0.2, "slope": 150.0, "gravity": 0.0, "coupling": "one-way", "preload": 15.0}
+    asked = {"model": "analytic", "start": "steady", "samples": 7, "step": PERIOD / 4000.0}
+    slider = Slider(**given, position=MIDDLE)
+    always = simulate(STRIP, drive(1e-6, 0.1)[0], STRIP_HERTZ, 6.0 * PERIOD, slider=slider, **asked)
+    off = []
+    for foot in (4e-4, 2e-4, 1e-4):
+        contact = Contact(stiffness=2e8, damping=2.0 * np.sqrt(2e8 * foot))
+        found = on_strip(Slider(**given, contact=contact, foot=(Foot(mass=foot),)), 1e-6, 0.1, 6, 4000, samples=7)
+        assert np.all(found.contact_share > 0.999)
+        off.append(np.abs(found.speed - always.speed).max() / np.abs(always.speed).max())
+    assert off[-1] < 1e-2
+    assert np.log2(np.array(off)[:-1] / np.array(off)[1:]) == pytest.approx(1.0, abs=0.4)
+
+
+def held_at(speed, steps):
+    """Mean friction over mu N on a point that rubs a little and stays on, from rest over twelve periods."""
+    slider = put({}, mu=0.004, preload=30.0, contact=Contact(stiffness=4e5, damping=30.0))
+    asked = {"model": "analytic", "modes": 4, "modal_damping": ZETA, "start": "rest", "samples": 13}
+    asked |= {"step": TURN / steps, "held_speed": speed, "frozen": True}
+    found = run_motor(BEAM, FORCES, HERTZ, 12 * TURN, slider=slider, **asked)
+    assert found.contact_share[1:].mean() == pytest.approx(1.0, rel=1e-9)
+    return found.friction[1:].mean() / (slider.mu * slider.preload)
+
+
+def test_friction_that_the_beam_feels_reverses_within_the_step():
+    """Of second order at every speed; a turn at the next step leaves up to 2/steps of mu N, at random."""
+    speeds = (0.0, 0.004, -0.0031, 0.0073, 0.0017)
+    coarse, fine, true = (np.array([held_at(speed, steps) for speed in speeds]) for steps in (101, 404, 4000))
+    assert np.ptp(true) > 1.5
+    assert np.abs(fine - true).max() < 1e-4
+    assert 8.0 < np.linalg.norm(coarse - true) / np.linalg.norm(fine - true) < 32.0
+
+
+def test_a_sticking_point_agrees_with_a_separate_time_stepping_code():
+    """Sticking 7.77e-3 of the time in 64 000 to 1 000 000 steps of a period there."""
+    strip = Beam(length=0.15, width=0.015, thickness=0.002, youngs_modulus=210e9, density=7850.0)
+    forces = [PointForce(position=0.04, amplitude=30.0), PointForce(position=0.12, amplitude=22.0, phase_deg=70.0)]
+    own = {"preload": 6.1962, "position": 0.07, "speed": 0.02, "pull": -0.15}
+    slider = put({}, contact=Contact(stiffness=3e5, damping=4.0), **own)
+    asked = {"model": "analytic", "modes": 24, "modal_damping": 0.004, "start": "rest", "samples": 9}
+    runs = [
+        run_motor(strip, forces, 3000.0, 8 / 3000.0, slider=slider, step=1.0 / 3000.0 / steps, **asked)
+        for steps in (976, 15616)
+    ]
+    assert [len(one.events) for one in runs] == [18, 18]
+    assert runs[1].stuck_share[1:].mean() == pytest.approx(7.77e-3, rel=5e-3)
+    assert runs[1].speed[-1] == pytest.approx(-9.6427e-3, rel=1e-4)
+
+
+# --- energy: a foot reads w(X) at X = x + (h/2) w'(x), and its force works on every mode by as much as that moves w(X)
+
+STOUT = Beam(length=0.31, width=0.017, thickness=0.0123, youngs_modulus=113e9, density=4470.0)
+PLACE, PRESS, SPRING = 0.1187, 1e4, 6e6
+FEET = {
+    "a point": Foot(mass=MASS),
+    "below": Foot(mass=MASS, face="lower"),
+    "three points that pitch": Foot(mass=MASS, length=0.023, points=3, inertia=1.7e-6),
+}
+
+
+def stout(name, size, turns, steps, before=None):
+    own = {"mass": 0.05, "mu": 1e-12, "preload": PRESS, "position": PLACE, "contact": Contact(stiffness=SPRING)}
+    forces = (
+        PointForce(position=0.05, amplitude=1e3 * size),
+        PointForce(position=0.23, amplitude=700.0 * size, phase_deg=77.0),
+    )
+    asked = {"model": "fem", "count": 4, "modal_damping": 0.0, "held_speed": 0.0, "frozen": True, "samples": 2}
+    asked |= {"start": "rest", "step": TURN / steps, "continue_from": before}
+    return run_motor(STOUT, forces, HERTZ, turns * TURN, slider=put({}, foot=(FEET[name],), **own), **asked)
+
+
+def energy(name, state):
+    """(of all, of the beam), joules."""
+    foot, q, (height, climb, pitch, turn) = FEET[name], state.q, state.feet[0]
+    basis = basis_of(STOUT, "fem", 4, 80, "spline")
+    face, places = -1.0 if foot.face == "lower" else 1.0, by.cells(foot.length, foot.points)
+    at = PLACE + places + face * 0.5 * STOUT.thickness * (q @ basis.shapes(PLACE + places, 1))
+    deep = face * (q @ basis.shapes(at, 0) - height - places * pitch)
+    assert np.all(deep > 0.0)
+    beam = 0.5 * state.rates @ state.rates + 0.5 * (basis.omegas * q) @ (basis.omegas * q)
+    moving = 0.5 * MASS * climb**2 + 0.5 * (foot.inertia or 0.0) * turn**2
+    return beam + moving + 0.5 * SPRING / foot.points * deep @ deep + face * PRESS * height, beam
+
+
+@pytest.mark.parametrize("name", FEET)
+def test_springy_feet_on_a_beam_that_feels_them_keep_the_energy_to_second_order(name):
+    """Over 12 periods without drive or loss, after two of driving."""
+
+    def gained(steps):
+        found = stout(name, 1.0, 2, steps)
+        (first, beam), most = energy(name, found.state), 0.0
+        for _ in range(4):
+            found = stout(name, 0.0, 3, steps, found)
+            assert found.contact_share[-1] == pytest.approx(1.0, rel=1e-9)
+            most = max(most, abs(energy(name, found.state)[0] - first))
+        return most / beam
+
+    coarse, fine = gained(1000), gained(4000)
+    assert fine < 3e-8
+    assert 13.0 < coarse / fine < 19.0
+
+
+def test_the_reference_lifts_by_virtual_work():
+    """How w(X) changes with every mode, by central differences."""
+    beam = modes(STOUT, (), 0.0)
+    q = 1e-3 * np.sin(1.0 + np.arange(len(beam.own))) / (1.0 + np.arange(len(beam.own)))
+    step = 1e-6 * np.eye(len(q))
+    found = [(beam.height(q + one, PLACE) - beam.height(q - one, PLACE)) / 2e-6 for one in step]
+    assert np.allclose(found, beam.lifted(q, PLACE), rtol=0.0, atol=1e-8 * abs(beam.lifted(q, PLACE)).max())
+
+
+# --- a cantilever that feet run along and off
+
+CANTILEVER = Beam(
+    length=0.1, width=0.008, thickness=0.002, youngs_modulus=200e9, density=7850.0, supports=("clamped", "free")
+)
+SPRUNG = Slider(
+    mass=0.02,
+    mu=1e-6,
+    position=0.015,
+    preload=30.0,
+    coupling="two-way",
+    contact=Contact(stiffness=1e6, damping=5.0),
+    foot=(Foot(length=0.009, points=2, offset=0.003),),
+)
+
+
+def crossing(slider=SPRUNG, duration=0.006, amplitude=0.0, **given):
+    asked = {"model": "fem", "count": 10, "start": "rest", "modal_damping": 0.0, "held_speed": 20.0, "samples": 37}
+    forces = [PointForce(position=0.05, amplitude=amplitude)]
+    return run_motor(CANTILEVER, forces, 5000.0, duration, slider=slider, **{**asked, **given})
+
+
+@pytest.mark.parametrize("face", ["upper", "lower"])
+def test_running_feet_work_on_the_beam_what_the_beam_gains(face):
+    """Nothing drives it or damps it. A slope of up to 0.06 gives the feet as much again as the rise of the material."""
+    slider = replace(SPRUNG, foot=(replace(SPRUNG.foot[0], face=face),), gravity=0.0)
+    before = crossing(slider, duration=4e-4, step=6e-7, samples=2)
+    found = crossing(slider, duration=2.9e-3, step=6e-7, samples=2, continue_from=before)
+    omegas = basis_of(CANTILEVER, "fem", 10, 80, "spline").omegas
+    first, last = (
+        0.5 * float(one.rates @ one.rates + (omegas * one.q) @ (omegas * one.q)) for one in (before.state, found.state)
+    )
+    books, gained = found.ledger, last - first
+    assert gained > 0.01
+    assert books.on_beam == pytest.approx(gained, rel=2e-5)
+    assert books.on_beam == pytest.approx(-books.across - books.along, rel=1e-9)
+    assert abs(books.uphill) > 0.5 * gained
+    assert abs(books.residual) < 1e-6 * gained
+
+
+HARD = replace(SPRUNG, coupling="one-way", contact=Contact(restitution=0.3), foot=())
+CHAIN = {"slider": replace(SPRUNG, coupling="one-way"), "model": "chain", "duration": 3e-4, "held_speed": 150.0}
+ENDS = {
+    "springs": ({}, 0.085 - 0.003 - 0.00225),
+    "hard": ({"slider": HARD, "model": "analytic", "count": None, "start": "steady", "modal_damping": 0.01}, 0.085),
+    "a chain": ({**CHAIN, "steps_per_period": 67}, None),
+}
+
+
+@pytest.mark.parametrize("name", ENDS)
+def test_a_slider_that_runs_off_the_beam_ends_there_with_state_and_books(name):
+    given, way = ENDS[name]
+    found = crossing(**{"amplitude": 3.0, **given})
+    assert found.statistics.stopped.startswith("left the")
+    assert found.times[-1] < found.state.time
+    assert found.state.travelled == pytest.approx(found.state.speed * found.state.time, rel=1e-9)
+    if way is not None:
+        assert way - 1.5 * 20.0 * found.statistics.step_s < found.state.travelled <= way
+    if name == "springs":
+        fine = crossing(steps_per_period=1600)
+        assert abs(fine.ledger.residual) < 2e-6 * fine.ledger.kinetic
+        there = crossing(step=fine.statistics.step_s, duration=fine.state.time, samples=2)
+        assert there.statistics.stopped == "end"
+        assert there.state.feet == pytest.approx(fine.state.feet, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
+def test_a_slider_kept_at_its_place_goes_up_no_slope_at_any_speed(coupling):
+    slider = replace(SPRUNG, coupling=coupling, mu=0.3)
+    given = {"frozen": True, "duration": 2e-3, "amplitude": 90.0, "step": 4e-7}
+    still, found = (crossing(slider, held_speed=speed, **given) for speed in (0.0, 7.0))
+    assert found.ledger.uphill == still.ledger.uphill == 0.0
+    assert abs(found.ledger.residual) < 2e-4 * found.ledger.damped
+    if coupling == "one-way":
+        assert found.ledger.damped == pytest.approx(still.ledger.damped, rel=1e-9)
+
+
+# --- several sliders, and sliders between two beams
+
+PAIR = [PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0)]
+LIGHT = Slider(
+    mass=0.01, mu=0.17, law="coulomb", preload=0.3, position=0.237, coupling="two-way", contact=Contact(stiffness=4e5)
+)
+KEPT = {"model": "segment", "count": 49, "samples": 18}
+
+
+def test_sliders_that_the_beam_does_not_feel_move_as_each_alone():
+    first = replace(LIGHT, coupling="one-way", foot=(Foot(length=0.044, points=23),))
+    other = replace(first, mass=0.034, mu=0.11, position=0.331, foot=(Foot(length=0.03, points=11),))
+    for slider, found in zip((first, other), run_motors(STRIP, PAIR, STRIP_HERTZ, 4e-3, sliders=[first, other], **KEPT)):
+        alone = run_motor(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=slider, **KEPT)
+        assert found.start == alone.start
+        assert found.travelled == pytest.approx(alone.travelled, rel=1e-6, abs=1e-12)
+        assert found.height == pytest.approx(alone.height, rel=1e-6, abs=1e-12)
+        assert found.point_offsets == pytest.approx(alone.point_offsets, abs=1e-15)
+        assert found.ledger.residual == pytest.approx(alone.ledger.residual, abs=1e-6)
+
+
+def test_sliders_feel_each_other_the_less_the_less_presses_the_other_on_and_all_books_close():
+    alone, apart = run_motor(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=LIGHT, **KEPT), []
+    for share in (1.0, 1e-2, 1e-4):
+        second = replace(LIGHT, preload=0.3 * share, mass=0.01 * share, contact=Contact(stiffness=4e5 * share))
+        sliders = [LIGHT, replace(second, position=0.331)]
+        runs = run_motors(STRIP, PAIR, STRIP_HERTZ, 4e-3, sliders=sliders, steps_per_period=509, **KEPT)
+        apart.append(float(np.abs(runs[0].height - alone.height).max()))
+        for books in (one.ledger for one in runs):
+            assert abs(books.residual) < 1e-3 * (abs(books.across) + abs(books.along))
+            assert books.on_beam == pytest.approx(-(books.across + books.along), rel=1e-9)
+    assert apart[0] > 10.0 * apart[1]
+
+
+def pinned_answers(x, at, hertz, ratio):
+    """Deflections of the plain pinned beam at places under 1 N at x, by its sines."""
+    n = np.arange(1, 2001)[:, None] * np.pi / STRIP.length
+    own, omega = n**2 * np.sqrt(STRIP.bending_stiffness / STRIP.mass_per_length), 2.0 * np.pi * hertz
+    share = 2.0 / (STRIP.mass_per_length * STRIP.length) / (own**2 - omega**2 + 2j * ratio * own * omega)
+    return (share * np.sin(n * x) * np.sin(n * at)).sum(axis=0)
+
+
+def test_sliders_that_the_beam_feels_only_together_are_coupled_two_way():
+    """Each moves the surface by under a thousandth of what the drive does, all of them by more."""
+    ratio, hertz = 0.011, 3911.0
+    first = replace(LIGHT, coupling="auto", gravity=0.0, preload=1.3e-3)
+    sliders = [first, replace(first, position=0.331, preload=0.9e-3), replace(first, position=0.268, mu=0.4)]
+    asked = {"model": "analytic", "modal_damping": ratio, "modes": 9, "samples": 2}
+    at = np.array([one.position for one in sliders])
+    driven = sum(
+        one.amplitude * np.exp(1j * np.radians(one.phase_deg)) * pinned_answers(one.position, at, hertz, ratio)
+        for one in PAIR
+    )
+    lifted = sum(one.preload * np.abs(pinned_answers(one.position, at, hertz, ratio)) for one in sliders)
+    assert not any(run_motor(STRIP, PAIR, hertz, 2e-5, slider=one, **asked).coupling.two_way for one in sliders)
+    for found in run_motors(STRIP, PAIR, hertz, 2e-5, sliders=sliders, **asked):
+        assert found.coupling.two_way
+        assert found.coupling.normal_size == pytest.approx((lifted / np.abs(driven)).max(), rel=1e-3)
+
+
+@pytest.mark.parametrize("law", ["coulomb", "tanh"])
+def test_two_beams_that_feel_the_slider_between_them_move_as_one_that_feels_half_of_it(law):
+    """By symmetry: half the mass along the beam, and a foot that stays where it is."""
+    stiff = replace(STRIP, thickness=0.004, loss_factor=0.02)
+    own = {"mu": 0.17, "law": law, "slope": 80.0 if law == "tanh" else None, "gravity": 0.0, "position": 0.237}
+    own |= {"coupling": "two-way", "preload": 3.0, "contact": Contact(stiffness=4e5, damping=8.0)}
+    between = Slider(mass=0.06, foot=(Foot(length=0.03, points=7, mirrored=True),), **own)
+    half = Slider(mass=0.03, foot=(Foot(length=0.03, points=7, mass=1e12, pitches=False),), **own)
+    kept = {"model": "fem", "count": 30, "samples": 30, "start": "rest", "soft_start_periods": 2.0}
+    forces = [replace(one, amplitude=60.0) for one in PAIR]
+    two, one, free = (
+        run_motor(stiff, forces, STRIP_HERTZ, 4e-3, slider=slider, **kept)
+        for slider in (between, half, replace(between, coupling="one-way"))
+    )
+    assert two.speed[-1] == pytest.approx(one.speed[-1], rel=2e-3)
+    assert two.normal_force[5:] == pytest.approx(2.0 * one.normal_force[5:], rel=2e-3, abs=2e-3)
+    assert abs(free.speed[-1] / two.speed[-1] - 1.0) > 0.05
+
+
+def test_a_preload_spring_eases_as_the_beam_gives_way():
+    """P/(1 + k_s (1/k + compliance))."""
+    own = {"mass": 1e-3, "law": "tanh", "slope": 30.0, "gravity": 0.0, "preload": 0.02, "preload_stiffness": 4e4}
+    slider = Slider(mu=0.2, coupling="two-way", position=0.237, contact=Contact(stiffness=1e5), **own)
+    still = [replace(one, amplitude=1e-9) for one in PAIR]
+    found = run_motor(STRIP, still, STRIP_HERTZ, 1e-3, slider=slider, model="fem", count=30, samples=5)
+    compliance = (0.237 * 0.263) ** 2 / (3.0 * STRIP.bending_stiffness * 0.5)
+    assert found.normal_force[1:] == pytest.approx(0.02 / (1.0 + 4e4 * (1e-5 + compliance)), rel=1e-3)
+
+
+@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
+def test_a_continued_run_equals_one_run(coupling):
+    contact = Contact(stiffness=3e6, damping=30.0)
+    slider = replace(LIGHT, coupling=coupling, preload=1.3, contact=contact, foot=(Foot(length=0.044, points=23),))
+    asked = {"slider": slider, **KEPT}
+    whole = run_motor(STRIP, PAIR, STRIP_HERTZ, 12 * PERIOD, **{**asked, "samples": 13})
+    first = run_motor(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7})
+    second = run_motor(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7}, continue_from=first)
+    assert second.times[0] == pytest.approx(first.times[-1])
+    assert second.travelled[-1] == pytest.approx(whole.travelled[-1], rel=1e-7)
+    assert second.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)
+
+
+# --- on the nonlinear chain, and on a beam that nothing holds
+
+
+def on_chain(model, size, links="rigid", place=0.23, foot=(Foot(length=0.02, points=3),), **more):
+    """Two periods of everything `size` times as large: forces, preload, what friction's slope asks of speeds."""
+    own = {"mass": 2e-3, "mu": 0.2, "slope": 100.0 / size, "gravity": 0.0, "preload": 0.3 * size, "position": place}
+    slider = Slider(coupling="one-way", contact=Contact(stiffness=3e5, damping=5.0), foot=foot, **own)
+    forces = [
+        PointForce(position=0.04, amplitude=size),
+        PointForce(position=0.45, amplitude=0.7 * size, phase_deg=80.0),
+    ]
+    asked = {"model": model, "count": 9, "start": "rest", "samples": 9, "steps_per_period": 400, "links": links, **more}
+    return run_motor(STRIP, forces, 900.0, 2.0 / 900.0, slider=slider, **asked)
+
+
+def test_on_a_small_motion_the_nonlinear_chain_carries_a_motor_as_the_linear_one():
+    """Heights part by less than a millionth; speeds by what the chain draws in, of first order beside themselves."""
+    apart = []
+    for size in (1.0, 0.25, 0.0625):
+        bent, straight = on_chain("chain", size), on_chain("segment", size)
+        pairs = [(bent.height, straight.height), (bent.speed, straight.speed)]
+        apart.append([np.abs(one - other).max() / np.abs(other).max() for one, other in pairs])
+    heights, speeds = np.array(apart).T
+    assert heights[-1] < 1e-6
+    assert np.all(np.diff(heights) < 0.0)
+    assert speeds[-1] < 1e-2
+    assert np.log2(speeds[:-1] / speeds[1:]) / 2.0 == pytest.approx(1.0, abs=0.1)
+    drawn = [on_chain("chain", size).motor_margins.drawn for size in (0.3, 0.6)]
+    assert drawn[1] / drawn[0] == pytest.approx(4.0, rel=1e-2)
+
+
+@pytest.mark.parametrize("links", ["rigid", "stretching"])
+def test_the_surface_of_a_chain_is_continuous_at_a_joint(links):
+    joint, asked = 3 * STRIP.length / 9, {"held_speed": 0.0, "frozen": True, "foot": (), "samples": 62}
+    left, right = (
+        on_chain("chain", 30.0, links, place, **asked).surface_speed[1:] for place in (joint - 1e-9, joint + 1e-9)
+    )
+    assert left == pytest.approx(right, abs=1e-6 * np.nanmax(abs(left)))
+
+
+def bar(**given):
+    own = {"length": 0.06, "width": 0.006, "thickness": 0.002, "youngs_modulus": 105e9, "density": 8500.0}
+    return Beam(supports=("free", "free"), loss_factor=0.01, **own, **given)
+
+
+def test_a_slider_runs_on_a_beam_that_nothing_holds_as_on_soft_springs():
+    forces = (PointForce(position=0.008, amplitude=2.0), PointForce(position=0.052, amplitude=1.5, phase_deg=70.0))
+    contact = Contact(stiffness=5e6, damping=30.0)
+    slider = Slider(mass=2e-3, mu=0.3, slope=60.0, preload=8.0, position=0.031, coupling="one-way", contact=contact)
+    lying = bar(spring=tuple(PointSpring(position=x, stiffness=10.0) for x in (0.0, 0.06)))
+    asked = {"slider": slider, "samples": 3}
+    exact = run_motor(bar(), forces, 31e3, 1e-3, model="analytic", **asked)
+    assert abs(exact.travelled[-1]) > 5e-8
+    for model, count in (("segment", 31), ("fem", 40)):
+        free, held = (
+            run_motor(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying)
+        )
+        assert free.motor_margins.sag is None
+        assert free.travelled == pytest.approx(held.travelled, rel=1e-5)
+        assert free.travelled == pytest.approx(exact.travelled, rel=5e-3)
+    with pytest.raises(InputError, match=r"beam\.supports"):
+        run_motor(bar(), forces, 31e3, 1e-4, slider=replace(slider, coupling="two-way"), model="fem", count=17)

@@ -1,0 +1,165 @@
+"""A slider on a vibrating beam as one system of equations, by scipy's DOP853.
+
+Hermite elements written out, friction by Eq. (3), the normal reaction of a held slider from the acceleration of the
+surface along its path, powers integrated with the motion. Of verify value types alone.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
+
+LINES = ("work_in", "damped", "contact_on_beam", "normal_on_beam", "rubbed", "turned")
+"""Of the energy balance, integrated with the motion."""
+
+
+class Modes(NamedTuple):
+    """Natural frequencies, rad/s, and shapes (x, derivative) -> (n,) of unit modal mass; matrices over all unknowns."""
+
+    own: np.ndarray
+    shape: object
+
+
+def hermite_modes(beam, parts):
+    """Modes of equal Hermite elements of a uniform beam, pinned or clamped at its left end, free or pinned right."""
+    length, line = beam.length / parts, beam.density * beam.width * beam.thickness
+    bending = beam.youngs_modulus * beam.width * beam.thickness**3 / 12
+    cubics = [[1, 0, -3, 2], [0, length, -2 * length, length], [0, 0, 3, -2], [0, 0, -length, length]]
+    table, powers = np.zeros((4, 4, 4)), np.arange(4)  # (derivative, cubic, power of the share of its length)
+    for derivative in range(4):
+        for one, coefficients in enumerate(cubics):
+            found = np.polynomial.polynomial.polyder(coefficients, derivative) / length**derivative
+            table[derivative, one, : len(found)] = found
+    points, weights = np.polynomial.legendre.leggauss(4)
+    size = 2 * parts + 2
+    mass, stiff = np.zeros((2, size, size))
+    for e in range(parts):
+        for point, weight in zip((points + 1) / 2, weights / 2, strict=True):
+            here = slice(2 * e, 2 * e + 4)
+            for matrix, factor, derivative in ((mass, line, 0), (stiff, bending, 2)):
+                row = table[derivative] @ point**powers
+                matrix[here, here] += weight * length * factor * np.outer(row, row)
+    fixed = {"pinned": [0], "clamped": [0, 1], "free": []}
+    fixed = fixed[beam.supports[0]] + [size - 2 + i for i in fixed[beam.supports[1]]]
+    free = np.setdiff1d(np.arange(size), fixed)
+    values, vectors = eigh(stiff[np.ix_(free, free)], mass[np.ix_(free, free)])
+    whole = np.zeros((size, len(free)))
+    whole[free] = vectors
+    pieces = [[whole[2 * e : 2 * e + 4].T @ table[d] for d in range(4)] for e in range(parts)]
+
+    def shape(x, derivative):
+        e = min(max(int(x / length), 0), parts - 1)
+        return pieces[e][derivative] @ (x / length - e) ** powers
+
+    return Modes(np.sqrt(np.maximum(values, 0.0)), shape)
+
+
+def smooth(p):
+    """3 p^2 - 2 p^3 up to p = 1, then 1."""
+    p = min(p, 1.0)
+    return p * p * (3.0 - 2.0 * p)
+
+
+def driven(modes, forces, hertz, times, *, damping=0.0, growth=lambda t: 1.0, breaks=(), start=None):
+    """(q, dq/dt) of all modes under forces growth(t) F cos(omega t + phase) at the times, (n, 2 m), by DOP853.
+
+    `breaks` are times at which the growth is not smooth.
+    """
+    own, n = modes.own, len(modes.own)
+    loads = [(f.amplitude, np.deg2rad(f.phase_deg), modes.shape(f.position, 0)) for f in forces]
+
+    def rates(t, y):
+        push = growth(t) * sum(f * np.cos(2 * np.pi * hertz * t + turn) * load for f, turn, load in loads)
+        return np.concatenate([y[n:], push - 2 * damping * own * y[n:] - own**2 * y[:n]])
+
+    y, began, rows = np.zeros(2 * n) if start is None else start, 0.0, {0.0: start}
+    for end in sorted({*breaks, *times}):
+        if end > began:
+            y = solve_ivp(rates, (began, end), y, method="DOP853", rtol=1e-12, atol=1e-18).y[:, -1]
+            began = end
+        rows[end] = y
+    return np.array([rows[t] for t in times])
+
+
+class Ridden(NamedTuple):
+    """A slider's run: displacement, speed, modal state and energy balance at its end."""
+
+    displacement: float
+    speed: float
+    q: np.ndarray
+    rates: np.ndarray
+    ledger: dict
+
+
+def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.0, two_way=True, at_rest=True):
+    """A tanh slider on the beam; `half` is half the thickness, `soft` the periods over which the forces grow.
+
+    One-way, or coupled two-way, held on the surface or massless, tangential or following. The material under it stands
+    at X = x + (h/2) w'(x); a held slider's reaction is square to the surface, so that it works on every mode by as much
+    as that mode moves w(X). Its acceleration across is a central difference of its speed across, linear in the reaction.
+    """
+    own, shape = modes
+    n, omega, start = len(own), 2 * np.pi * hertz, slider.position
+    held, follows = two_way and slider.normal == "held", slider.kinematics == "following"
+    load = slider.mass * slider.gravity + slider.preload
+    limit, slope_k = slider.mu * load, slider.slope
+    loads = [(f.amplitude, np.deg2rad(f.phase_deg), shape(f.position, 0)) for f in forces]
+
+    def lifted(q, x):
+        at = x + half * (q @ shape(x, 1))
+        return shape(at, 0) + (q @ shape(at, 1)) * half * shape(x, 1)
+
+    def drift(q, qd, at):
+        return -(q @ shape(at, 1)) * (qd @ shape(at, 0)) if follows else 0.0
+
+    def split(y):
+        q, qd, x = y[:n], y[n : 2 * n], start + y[2 * n]
+        return q, qd, x, x + half * (q @ shape(x, 1)), y[2 * n + 1]
+
+    def across(y):
+        q, qd, x, at, v = split(y)
+        moved = (v + drift(q, qd, at)) * (1 + half * (q @ shape(x, 2))) + half * (qd @ shape(x, 1))
+        return qd @ shape(at, 0) + (q @ shape(at, 1)) * moved
+
+    def rates(t, y, reaction):
+        q, qd, x, at, v = split(y)
+        slope, rise = q @ shape(at, 1), qd @ shape(at, 0)
+        along = (slope * shape(at, 0) - half * shape(at, 1)) / np.hypot(1.0, slope)
+        friction = -limit * np.tanh(slope_k * (v - qd @ along))
+        push = smooth(t * hertz / soft) if soft else 1.0
+        push = push * sum(f * np.cos(omega * t + turn) * one for f, turn, one in loads)
+        lift = lifted(q, x)
+        bent = push - 2 * damping * own * qd - own**2 * q - two_way * friction * along - reaction * lift
+        pull = rise * (qd @ shape(at, 1) + q @ shape(at, 2) * v) - slider.gravity * slope if follows else 0.0
+        powers = [
+            push @ qd,
+            2 * damping * own @ qd**2,
+            -friction * (along @ qd),
+            -reaction * (lift @ qd),
+            friction * (along @ qd - v),
+            slider.mass * pull * v,
+        ]
+        return np.concatenate([qd, bent, [v + drift(q, qd, at), pull + friction / slider.mass], powers])
+
+    def moved(t, y):
+        if not held:
+            return rates(t, y, 0.0)
+        lifts, tick = [], 1e-4 / own.max()
+        for reaction in (0.0, 1.0):
+            way = tick * rates(t, y, reaction)
+            lifts.append((across(y + way) - across(y - way)) / (2 * tick))
+        return rates(t, y, (load + slider.mass * lifts[0]) / (1 - slider.mass * (lifts[1] - lifts[0])))
+
+    y = np.zeros(2 * n + 2 + len(LINES))
+    y[2 * n + 1] = slider.speed
+    if held:  # it lies on the beam that its weight bends
+        for _ in range(60):
+            y[:n] = -load * lifted(y[:n], start) / own**2
+    grown = soft / hertz
+    for begin, end in ((0.0, min(grown, duration)), (min(grown, duration), duration)):
+        if end > begin:
+            step = 0.03 / hertz
+            y = solve_ivp(moved, (begin, end), y, method="DOP853", rtol=1e-10, atol=1e-17, max_step=step).y[:, -1]
+    ledger = dict(zip(LINES, (float(one) for one in y[2 * n + 2 :]), strict=True))
+    return Ridden(float(y[2 * n]), float(y[2 * n + 1]), y[:n], y[n : 2 * n], ledger)

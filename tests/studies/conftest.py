@@ -1,0 +1,65 @@
+"""What every study has in common: a run on a scene, and a result that renders in every form."""
+
+import json
+
+import pytest
+
+from verify.judge.cache import SolutionCache
+from verify.report.result import to_json
+from verify.scene.load import load_scene
+
+
+@pytest.fixture(scope="session")
+def run():
+    """Run a study on a packaged scene, or a scene; results of equal requests are shared."""
+    results = {}
+
+    def run_study(scene, study):
+        loaded = load_scene(scene) if isinstance(scene, str) else scene
+        key = (repr(loaded), repr(study))
+        if key not in results:
+            study.check(loaded)
+            steps = []
+            results[key] = study.run(loaded, SolutionCache(loaded.beam), steps.append)
+            assert steps
+        return results[key]
+
+    return run_study
+
+
+@pytest.fixture(scope="session")
+def renders():
+    """Draw every figure, a frame of every movie, and every table in all forms; returns the drawn axes by figure."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure as Canvas
+    from rich.console import Console
+
+    from verify.report.plotting import drawn, figure_csv, figure_svg, style
+
+    def render(result):
+        axes = {}
+        for figure in result.figures:
+            assert figure_svg(figure).endswith("</svg>\n")
+            assert figure_csv(figure).count("\n") > 2
+            with style():
+                axes[figure.id] = drawn(figure).axes[0]
+            assert axes[figure.id].get_xlabel() or axes[figure.id].get_yticklabels()
+            assert figure.title
+            assert figure.caption
+        for movie in result.movies:
+            with style():
+                animation = movie.animate(Canvas())
+                frames = list(animation.new_frame_seq())
+                assert animation._func(frames[len(frames) // 2])
+                animation._draw_was_started = True
+        console = Console(width=100, record=True, quiet=True)
+        result.print(console)
+        for table in result.tables:
+            assert len(table.csv().splitlines()) == len(table.rows) + 1
+            assert len({column.name for column in table.columns}) == len(table.columns)
+            assert all(len(row) == len(table.columns) for row in table.rows)
+            assert table.markdown()
+        json.loads(to_json(result.to_dict()))
+        return axes
+
+    return render
