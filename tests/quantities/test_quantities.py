@@ -143,7 +143,7 @@ def test_value_is_finite(name):
 
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_bad_value_is_refused(name):
-    bad = {"whole number": 0.5, "number": float("nan"), "true | false": "perhaps"}
+    bad = {"whole number": 0.5, "number": float("nan"), "true or false": "perhaps"}
     for argument in QUANTITIES[name].arguments:
         with pytest.raises(InputError, match=argument.name):
             figure(name, **{argument.name: bad.get(argument.type, "nonsense")})
