@@ -44,18 +44,8 @@ ROUNDING = 1e-12
 """Tolerance of a position at an end, relative to the length (as `models.places`)."""
 
 
-class Argument(msgspec.Struct, frozen=True, kw_only=True):
-    """One argument of a quantity."""
-
-    name: str
-    type: str
-    required: bool
-    default: Any = None
-    description: str = ""
-
-
 class Quantity:
-    """A named quantity of interest. `@quantity` makes and registers it; calling it calls the function."""
+    """A named quantity of interest. `@quantity` makes and registers it."""
 
     def __init__(
         self,
@@ -90,23 +80,19 @@ class Quantity:
         self._types = {field[0]: field[1] for field in fields}
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
-    def __call__(self, *values: Any, **arguments: Any) -> Value:
-        """The function itself, with option groups as values."""
-        return self.function(*values, **arguments)
-
     @property
-    def arguments(self) -> tuple[Argument, ...]:
-        """The arguments with their types, defaults and descriptions."""
-        return tuple(
-            Argument(
-                name=field.name,
-                type=" | ".join(among.names()) if (among := extra_of(field.type, AMONG)) else type_name(field.type),
-                required=field.required,
-                default=None if field.required else field.default,
-                description=description_of(field.type),
-            )
-            for field in msgspec.structs.fields(self.schema)
-        )
+    def arguments(self) -> list[dict[str, Any]]:
+        """The arguments as plain data: name, type, whether required, default, description."""
+        found = []
+        for field in msgspec.structs.fields(self.schema):
+            among = extra_of(field.type, AMONG)
+            one: dict[str, Any] = {
+                "name": field.name,
+                "type": " | ".join(among.names()) if among else type_name(field.type),
+            }
+            one |= {"required": field.required, "default": None if field.required else field.default}
+            found.append(one | {"description": description_of(field.type)})
+        return found
 
     def bind(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Keyword arguments of the function: checked, with defaults, option groups built. Raises InputError."""
@@ -195,11 +181,9 @@ def describe(*words: str) -> list[dict[str, Any]]:
     """
     found = []
     for one in QUANTITIES.values():
-        arguments = one.arguments
-        text = " ".join((one.name, one.summary, one.unit, *(argument.name for argument in arguments))).casefold()
+        text = " ".join((one.name, one.summary, one.unit, *one.schema.__struct_fields__)).casefold()
         if all(word.casefold() in text for word in words):
-            plain_arguments = [msgspec.to_builtins(argument) for argument in arguments]
-            found.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": plain_arguments})
+            found.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": one.arguments})
     if not found:
         raise InputError(f"words = {shown(' '.join(words))}: no quantity matches, leave a word out")
     return found

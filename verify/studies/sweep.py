@@ -54,7 +54,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for key in _keys(self.over):
             if "." in key:
                 _with_value(bare, key.split("."), key)
-        known = {argument.name for one in wanted for argument in one.arguments}
+        known = {name for one in wanted for name in one.schema.__struct_fields__}
         for name in [*self.arguments, *(key for key in _keys(self.over) if "." not in key)]:
             if name not in known:
                 remedy = near_name(name, tuple(known))
@@ -141,8 +141,8 @@ def _evaluate(task: "tuple[Scene, Sweep, dict[str, Any]]") -> dict[str, Any]:
         cache = SolutionCache(scene.beam)
         arguments = study.arguments | {key: value for key, value in combination.items() if "." not in key}
         for one in _quantities(study.quantities):
-            own = {argument.name for argument in one.arguments}
-            row[one.name] = evaluate(one.name, {k: v for k, v in arguments.items() if k in own}, scene, cache)
+            own = {k: v for k, v in arguments.items() if k in one.schema.__struct_fields__}
+            row[one.name] = evaluate(one.name, own, scene, cache)
         for claim in scene.claim if study.claims else ():
             row[AGREE] += claim.agrees(computed(claim, scene, cache))
     except InputError as error:
