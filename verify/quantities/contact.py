@@ -9,14 +9,15 @@ from msgspec import Meta
 from verify.checks import check_sizes
 from verify.errors import InputError
 from verify.quantities.base import Scene, quantity
-from verify.quantities.options import Frequency, Mass, Mu, Slope, drive_frequency
+from verify.quantities.options import Gravity, Mass, Mu, Slope, drive_frequency
 from verify.slider import GRAVITY
 
-Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
 HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
 SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]
 Compliance = Annotated[float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), tangential; 0 for Coulomb")]
 Stiffness = Annotated[float, Meta(gt=0, description="N/m")]
+MU = 0.2
+"""Of a foot on a wave; the ratio of its forces over mu does not depend on it."""
 
 
 @quantity("friction.creep_speed", unit="m/s", reads=())
@@ -111,25 +112,12 @@ def landing_phase(
 
 @quantity("contact.restitution", unit="1", reads=())
 def restitution(
-    *,
-    damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)); or mass, stiffness, damping")]
-    | None = None,
-    mass: Mass | None = None,
-    stiffness: Stiffness | None = None,
-    damping: Annotated[float, Meta(ge=0, description="of the dashpot, N s/m")] | None = None,
+    *, damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)) of mass, spring and dashpot")]
 ) -> float:
     """Coefficient of restitution of an impact on a spring and dashpot that only push."""
-    from verify.contact.landing import damping_ratio as ratio_of
     from verify.contact.landing import restitution
 
-    if damping_ratio is not None:
-        for name, value in (("mass", mass), ("stiffness", stiffness), ("damping", damping)):
-            if value is not None:
-                raise InputError(f"{name} = {value!r} beside damping_ratio: leave one of them out")
-        return restitution(damping_ratio)
-    if mass is None or stiffness is None or damping is None:
-        raise InputError("damping_ratio is missing: give it, or mass, stiffness and damping")
-    return restitution(ratio_of(mass, stiffness, damping))
+    return restitution(damping_ratio)
 
 
 class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
@@ -138,10 +126,7 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
     contact_half_angle: HalfAngle
     speed_ratio: SpeedRatio
     epsilon: Compliance = 0.0
-    mu: Mu = 0.2
     steps_per_period: Annotated[int, Meta(ge=4, description="of the wave")] = 256
-    amplitude: Annotated[float, Meta(gt=0, description="of the wave, m")] = 1e-9
-    frequency_hz: Frequency | None = None
 
     def force(self, scene: Scene, points: int, steps_per_period: int) -> float:
         """-F/(mu N) of so many springs. Raises InputError where none is in contact."""
@@ -149,18 +134,17 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
 
         found, _ = over_a_wave(
             scene.beam,
-            drive_frequency(scene, self.frequency_hz),
+            drive_frequency(scene),
             speed_ratio=self.speed_ratio,
             contact_half_angle=self.contact_half_angle,
             epsilon=self.epsilon,
-            mu=self.mu,
+            mu=MU,
             points=points,
             steps_per_period=steps_per_period,
-            amplitude=self.amplitude,
         )
         if found.normal_force <= 0.0:
             raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
-        return -found.force / (self.mu * found.normal_force)
+        return -found.force / (MU * found.normal_force)
 
 
 @quantity("slider.wave_force", unit="1", reads=("beam", "drive"))

@@ -1,6 +1,6 @@
 """Quantities of modes: frequencies, shapes, errors, orders, bounds, required N; the paper's drive rule; buckling."""
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
@@ -10,7 +10,7 @@ from verify.judge.bracket import Bracket
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN, model_meta
 from verify.quantities import options as opt
-from verify.quantities.base import Place, Scene, quantity
+from verify.quantities.base import Scene, quantity
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
@@ -47,18 +47,16 @@ def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
 
 
 @quantity("mode.law_ratio", unit="1", reads=BEAM)
-def law_ratio(scene: Scene, cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
+def law_ratio(
+    scene: Scene, cache: "SolutionCache", *, model: opt.DiscreteModel, mode: opt.Mode, count: opt.Size
+) -> float:
     """Frequency error over its leading term, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), mu = beta l."""
     from verify.exact.closed_forms import check_uniform
     from verify.exact.error_laws import law_of, leading_error
 
-    law_of(of.model)
+    law_of(model)
     check_uniform(scene.beam)
-    for name, value in of.settings:
-        if name in ("theory", "grading") or (name == "wall" and "clamped" in scene.beam.supports):
-            raise InputError(f"{name} = {value!r}: the leading law has none, leave it out or use mode.frequency_error")
-    law = leading_error(of.model, scene.beam.supports, of.mode, of.count)
-    return cache.frequency_error(of.model, of.count, of.mode, of.settings) / law
+    return cache.frequency_error(model, count, mode) / leading_error(model, scene.beam.supports, mode, count)
 
 
 @quantity("mode.shape_error", unit="1", reads=BEAM)
@@ -71,25 +69,6 @@ def shape_error(cache: "SolutionCache", of: opt.OneDiscreteMode, *, reading: Rea
 def curvature_error(cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
     """Relative L2 error of the curvature at joints or Gauss points."""
     return cache.curvature_error(of.model, of.count, of.mode, of.settings)
-
-
-def _shape(scene: Scene, cache: "SolutionCache", of: opt.OneMode, x: float, derivative: int) -> float:
-    from verify.models.places import places
-
-    at = places("x", x, scene.beam.length).ravel()
-    return cache.shape_at(of.model, of.count, of.mode, at, derivative, of.settings)
-
-
-@quantity("mode.deflection", unit="1/sqrt(kg)", reads=BEAM)
-def deflection(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
-    """Deflection of a mode of modal mass 1 kg at x, positive at the first displacement from the left end."""
-    return _shape(scene, cache, of, x, 0)
-
-
-@quantity("mode.slope", unit="1/(m sqrt(kg))", reads=BEAM)
-def slope(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
-    """Slope of the deflection of a mode of modal mass 1 kg at x."""
-    return _shape(scene, cache, of, x, 1)
 
 
 @quantity("mode.node_position", unit="m", reads=BEAM)
@@ -159,15 +138,11 @@ def count_needed(
     model: opt.DiscreteModel,
     mode: opt.Mode,
     error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
-    of: Annotated[
-        Literal["enough", "least"], Meta(description="N from which all larger ones suffice, or the least N that does")
-    ] = "enough",
 ) -> float:
-    """Number of segments or elements for a frequency error of at most `error`."""
+    """Number of segments or elements from which on the frequency error is at most `error`."""
     from verify.judge.sizing import enough_from
 
-    found = enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal"))
-    return found.smaller if of == "least" and found.smaller is not None else found.count
+    return enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal")).count
 
 
 @quantity("mode.stock_difference", unit="1", reads=BEAM)
@@ -199,12 +174,10 @@ def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = Non
 @quantity("beam.buckling_load", unit="N", reads=BEAM)
 def buckling_load(
     scene: Scene,
-    options: opt.ModelOptions,
     *,
     model: Annotated[str, model_meta("which model", "buckling_load")],
     count: opt.Size | None = None,
 ) -> float:
     """Compression at first buckling, whatever axial force the beam itself has."""
     opt.check_count(model, count)
-    settings = opt.check_settings(model, options.settings, "buckling")
-    return MODELS.named(model).buckling_load(scene.beam, count, **dict(settings))
+    return MODELS.named(model).buckling_load(scene.beam, count)
