@@ -6,12 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from verify import analytic_modes as exact
 from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
+from verify.beam import Beam
 from verify.elements import linear as elements
 from verify.errors import InputError
-from verify.exact import harmonic as exact_fields
-from verify.exact import modes as exact
 from verify.exact.buckling import buckling_load
 from verify.options import SUPPORTS
 from verify.section import Section

@@ -12,7 +12,6 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.report.plain import run_as_plain
 from verify.run.gates import judge

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
+from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
+from verify.run.runner import workbench_for
 
 from verify import Beam, analytic_modes, fem_beam, load_scene, segment_model
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
-from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
-from verify.run.runner import workbench_for
 from verify.segments.assembly import build_chain, chain_pencil
 from verify.waves.absorber import ending, reflection
 

@@ -5,10 +5,10 @@ import pytest
 from msgspec.structs import replace
 from scipy.optimize import brentq
 
+from verify import analytic_modes
 from verify.attached import PointSpring
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-from verify.exact import modes as analytic_modes
 from verify.exact.buckling import buckling_load, check_stable
 from verify.section import Section
 

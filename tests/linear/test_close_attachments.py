@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes as exact_modes
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
-from verify.exact import modes as exact_modes
 from verify.segments.attached import felt_at
 from verify.segments.crowded import _groups
 from verify.segments.linear import solve_modes

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.elements import linear as fem_beam
 from verify.exact import closed_forms, error_laws
-from verify.exact import modes as analytic_modes
 from verify.models import eigen
 from verify.segments import linear as segment_model
 

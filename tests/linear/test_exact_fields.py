@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.errors import ResonanceError
-from verify.exact import modes as analytic_modes
 from verify.section import Section
 
 BAR = Beam(

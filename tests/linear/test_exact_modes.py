@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.exact import modes as analytic_modes
 from verify.options import SUPPORTS
 from verify.section import Section
 

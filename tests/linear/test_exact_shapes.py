@@ -5,10 +5,10 @@ import pytest
 from msgspec.structs import replace
 
 from tests.beams import PAIRED, cut
+from verify import analytic_modes
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
-from verify.exact import modes as analytic_modes
 from verify.exact import shapes
 from verify.exact.shapes import general_shapes
 from verify.section import Section

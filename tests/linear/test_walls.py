@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
-from verify.exact import modes as analytic_modes
 from verify.judge import compare
 from verify.judge.cache import SolutionCache
 from verify.options import SUPPORTS, WALLS

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
-from verify.exact import modes as analytic_modes
 from verify.options import SUPPORTS
 from verify.segments import linear as segment_model
 from verify.segments.assembly import build_chain

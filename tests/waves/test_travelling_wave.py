@@ -6,11 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import load_scene
+from verify import analytic_modes, load_scene
 from verify.beam import PointForce
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import error_laws
-from verify.exact import modes as analytic_modes
 from verify.judge.cache import SolutionCache
 from verify.models.fields import HarmonicField, wavenumber
 from verify.quantities.base import evaluate
