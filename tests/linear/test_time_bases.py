@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from verify import analytic_modes
 from verify.attached import PointMass, PointSpring
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
