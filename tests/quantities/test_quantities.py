@@ -112,7 +112,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}), "slider.layer_efficiency": ("bare", LAYER),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}),
     "contact.restitution": ("bare", {"damping_ratio": 0.2}),
-    "slider.wave_force": ("driven", {**LAYER, "points": 21, "steps_per_period": 32}),
+    "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
     "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),
 }
 # fmt: on
@@ -221,7 +221,7 @@ def test_words_are_read_by_type():
         ("wave.reflection", "bare", {}, "drive.force is missing: add"),
         ("slider.displacement", "bare", {}, "time is missing and the scene has no"),
         ("slider.stall_force", "driven", {}, "slider.contact is missing: add"),
-        ("chain.transient_deflection", "bare", {}, "drive is missing"),
+        ("chain.transient_deflection", "bare", {}, "drive.force is missing: add"),
         ("drive.quarter_wavelength", "bare", {}, "frequency_hz is missing"),
         ("mode.frequency", "device", {"count": 14}, "does not model drive.device"),
         ("wave.deflection", "driven", {"x": 0.74}, "x = 0.74 lies off the beam"),

@@ -1,6 +1,6 @@
 """Quantities of the nonlinear chain: benchmark problems, its motion from rest, a slider on it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
@@ -11,10 +11,9 @@ from verify import options
 from verify.errors import InputError
 from verify.quantities.base import Place, Scene, quantity
 from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall
-from verify.quantities.slider import SliderOptions
+from verify.quantities.slider import SliderOptions, TimeOptions, motion_arguments
 
 if TYPE_CHECKING:
-    from verify.beam import PointForce
     from verify.chain.ride import ChainRide
     from verify.judge.cache import SolutionCache
 
@@ -109,25 +108,15 @@ def contact_line_error(scene: Scene, *, segments: Links, mode: Mode, x: Place) -
     return contact_line_error(scene.beam, mode, segments, x)
 
 
-def _forces(
-    scene: Scene, what: str, amplitude: float | None = None, soft_start: float | None = None
-) -> "tuple[Sequence[PointForce], float]":
-    """(forces, Hz) of a chain from rest. Raises InputError without forces, or for a [motion] of another kind."""
-    from verify.motion.request import soft_start as default_soft_start
-
-    if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
-        raise InputError(f"drive is missing: {what} takes a [drive] of kind force")
-    if (motion := scene.motion) is None:
-        values: list[tuple[str, Any, Any]] = [("soft_start_periods", soft_start or 0.0, 0.0)]
-    else:
-        soft = default_soft_start("rest", motion.soft_start_periods) if soft_start is None else soft_start
-        values = [("soft_start_periods", soft, 0.0), ("motion.modal_damping", motion.modal_damping or 0.0, 0.0)]
-        values += [("motion.start", motion.start, "rest")]
-    for name, value, needed in values:
-        if value != needed:
-            raise InputError(f"{name} = {value!r}: {what} is from rest, undamped, without soft start, give {needed!r}")
-    forces = scene.forces if amplitude is None else [replace(one, amplitude=amplitude) for one in scene.forces]
-    return forces, scene.drive.frequency_hz
+def _from_rest(scene: Scene, what: str, by: TimeOptions) -> dict[str, Any]:
+    """Arguments of a simulation from rest, undamped, without soft start. Raises InputError for a [motion] of others."""
+    if scene.motion is None and by.soft_start_periods is None:
+        by = replace(by, soft_start_periods=0.0)
+    request = motion_arguments(scene, by)
+    for name, needed in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
+        if (request[name] or 0.0) != needed:
+            raise InputError(f"{name} = {request[name]!r}: {what} is from rest, undamped, at once, give {needed!r}")
+    return request
 
 
 @quantity("chain.transient_deflection", unit="m")
@@ -143,7 +132,8 @@ def transient_deflection(
     """Deflection of the chain at x after a time from rest under the scene's forces."""
     from verify.chain.problems import transient
 
-    forces, hertz = _forces(scene, "chain.transient_deflection", force)
+    request = _from_rest(scene, "a chain", TimeOptions(model="analytic", time=time, force=force))
+    forces, hertz = request["forces"], request["frequency_hz"]
     motion = transient(scene.beam, forces, hertz, [time], segments, progress=cache.progress)
     return float(motion.deflection([x])[0, 0])
 
@@ -168,10 +158,11 @@ def axial_departure(
 
     from verify.chain.departure import SAMPLES, SAMPLES_PER_PERIOD, Driven, departure
 
-    forces, hertz = _forces(scene, "chain.axial_departure")
+    request = _from_rest(scene, "a chain", TimeOptions(model="analytic", time=time))
+    forces, hertz = request["forces"], request["frequency_hz"]
     times = np.linspace(0.0, time, max(SAMPLES, ceil(SAMPLES_PER_PERIOD * hertz * time) + 1))
     middle = 0.5 * scene.beam.length
-    driven = Driven(beam=scene.beam, forces=tuple(forces), frequency_hz=hertz, count=segments, x=middle, times=times)
+    driven = Driven(beam=scene.beam, forces=forces, frequency_hz=hertz, count=segments, x=middle, times=times)
     found = departure(driven, force, inertia, cache.progress)
     return found.at_end if of == "end" else found.rms
 
@@ -189,15 +180,17 @@ def _ride(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, options: S
     """The run of the scene's slider on the chain. Raises InputError."""
     from verify.chain.ride import ride_from_rest
 
-    slider, motion = options.of(scene), scene.motion
-    forces, hertz = _forces(scene, "a slider on the nonlinear chain", by.force, by.soft_start_periods)
-    if motion is None:
-        raise InputError("motion is missing: a slider on the nonlinear chain takes [motion] with its duration")
-    time, step = motion.duration, options.step or 1.0 / (motion.steps_per_period * hertz)
-    key: Any = ("chain", scene.beam, tuple(forces), hertz, slider, by.segments, time, step, by.links)
+    slider = options.of(scene)
+    if scene.motion is None:
+        raise InputError("motion is missing: a slider on a chain takes [motion] with its duration")
+    run = TimeOptions(model="analytic", force=by.force, soft_start_periods=by.soft_start_periods)
+    request = _from_rest(scene, "a slider on a chain", run)
+    forces, hertz, seconds = request["forces"], request["frequency_hz"], request["duration"]
+    step = options.step or 1.0 / (scene.motion.steps_per_period * hertz)
+    key: Any = ("chain", scene.beam, forces, hertz, slider, by.segments, seconds, step, by.links)
     if key not in cache.motors:
         cache.motors[key] = ride_from_rest(
-            scene.beam, forces, hertz, slider, by.segments, time, step=step, links=by.links, progress=cache.progress
+            scene.beam, forces, hertz, slider, by.segments, seconds, step=step, links=by.links, progress=cache.progress
         )
     found: ChainRide = cache.motors[key]
     return found

@@ -6,6 +6,7 @@ from msgspec import Meta
 
 from verify.checks import Relative, check_sizes
 from verify.errors import InputError
+from verify.exact import closed_forms
 from verify.judge.bracket import Bracket
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN, model_meta
@@ -51,11 +52,10 @@ def law_ratio(
     scene: Scene, cache: "SolutionCache", *, model: opt.DiscreteModel, mode: opt.Mode, count: opt.Size
 ) -> float:
     """Frequency error over its leading term, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), mu = beta l."""
-    from verify.exact.closed_forms import check_uniform
     from verify.exact.error_laws import law_of, leading_error
 
     law_of(model)
-    check_uniform(scene.beam)
+    closed_forms.check_uniform(scene.beam)
     return cache.frequency_error(model, count, mode) / leading_error(model, scene.beam.supports, mode, count)
 
 
@@ -85,43 +85,41 @@ def node_position(
     return float(positions[node - 1])
 
 
+class Orders(opt.ModelOptions, frozen=True, kw_only=True):
+    """One mode of one discrete model at several sizes."""
+
+    model: opt.DiscreteModel
+    mode: opt.Mode
+    counts: opt.Sizes
+
+    def __post_init__(self) -> None:
+        check_sizes("counts", self.counts)
+        if self.model != MEAN:
+            opt.check_settings(self.model, self.settings, "modal")
+
+
+class OrdersOrMean(Orders, frozen=True, kw_only=True):
+    """One mode of one discrete model, or of the mean of segment and fem, at several sizes."""
+
+    model: Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", sized=True, mean=True)]
+
+
 @quantity("mode.order", unit="1", reads=BEAM)
-def order(
-    scene: Scene,
-    cache: "SolutionCache",
-    options: opt.ModelOptions,
-    *,
-    model: Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", sized=True, mean=True)],
-    mode: opt.Mode,
-    counts: opt.Sizes,
-) -> float:
+def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
     """Observed order of the frequency error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
 
-    check_sizes("counts", counts)
-    expected = None
-    if model != MEAN:
-        opt.check_settings(model, options.settings, "modal")
-        expected = MODELS.named(model).order(scene.beam, **dict(options.settings))
-    return settled_order(counts, [cache.frequency_error(model, n, mode, options.settings) for n in counts], expected)
+    expected = None if of.model == MEAN else MODELS.named(of.model).order(scene.beam, **dict(of.settings))
+    errors = [cache.frequency_error(of.model, n, of.mode, of.settings) for n in of.counts]
+    return settled_order(of.counts, errors, expected)
 
 
 @quantity("mode.shape_order", unit="1", reads=BEAM)
-def shape_order(
-    cache: "SolutionCache",
-    options: opt.ModelOptions,
-    *,
-    model: opt.DiscreteModel,
-    mode: opt.Mode,
-    counts: opt.Sizes,
-    reading: Reading | None = None,
-) -> float:
+def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None = None) -> float:
     """Observed order of the shape error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
 
-    check_sizes("counts", counts)
-    settings = opt.check_settings(model, options.settings, "modal")
-    return settled_order(counts, [cache.shape_error(model, n, mode, reading, settings) for n in counts])
+    return settled_order(of.counts, [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts])
 
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
@@ -158,17 +156,13 @@ def rule_frequency(
     scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
 ) -> float:
     """Root mean square of two neighbouring natural frequencies, where both respond equally."""
-    from verify.exact.closed_forms import rule_frequency_hz
-
-    return rule_frequency_hz(scene.beam, mode - 1, mode)
+    return closed_forms.rule_frequency_hz(scene.beam, mode - 1, mode)
 
 
 @quantity("drive.quarter_wavelength", unit="m", reads=("beam", "drive"))
 def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
     """A quarter of the bending wavelength: the distance of a force from its end of the beam."""
-    from verify.exact.closed_forms import quarter_wavelength
-
-    return quarter_wavelength(scene.beam, opt.drive_frequency(scene, frequency_hz))
+    return closed_forms.quarter_wavelength(scene.beam, opt.drive_frequency(scene, frequency_hz))
 
 
 @quantity("beam.buckling_load", unit="N", reads=BEAM)

@@ -169,9 +169,8 @@ def start_time(scene: Scene, cache: "SolutionCache", free: FreeSpeed) -> float:
     from verify.motor.figures import started_of
 
     run, speed, spread = free.speed(scene, cache)
-    changes = abs(speed - float(run.speed[0])) > spread
-    found = started_of(run, speed) if changes else None
-    if found is None:
+    found = started_of(run, speed)
+    if found is None or abs(speed - float(run.speed[0])) <= spread:
         raise InputError(
             f"periods = {free.periods!r}: the slider does not get from {run.speed[0]:.6g} to {speed:.6g} m/s, "
             "give more, or slider.speed another value"

@@ -39,7 +39,6 @@ ForceAmplitude = Annotated[float, Meta(ge=0, description="of every force, N; def
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
 Mass = Annotated[float, Meta(gt=0, description="kg")]
-Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
 
 
 def check_count(model: str, count: int | None) -> None:
@@ -72,7 +71,7 @@ class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def settings(self) -> "Settings":
         """Those other than their defaults."""
-        return not_default(self, without=("model", "mode", "count"))
+        return not_default(self, without=("model", "mode", "count", "counts"))
 
 
 class OneMode(ModelOptions, frozen=True, kw_only=True):

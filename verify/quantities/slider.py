@@ -13,13 +13,14 @@ from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
-from verify.slider import GRAVITY, Slider, changed
+from verify.slider import Slider, changed
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
     from verify.motion.result import Ledger, Motion
 
 Time = Annotated[float, Meta(gt=0, description="s; default: the scene's motion.duration")]
+Window = Annotated[tuple[float, float], Meta(description="m, start and end")]
 SAMPLES_PER_PERIOD, POINTS = 32, 40
 """Instants and positions of a motion in which waves are measured."""
 
@@ -104,20 +105,14 @@ def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -
 
 
 def slider_run(
-    scene: Scene,
-    cache: "SolutionCache",
-    by: TimeOptions,
-    slider: SliderOptions,
-    *,
-    reversed_phases: bool = False,
-    **more: Any,
+    scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, reverse: bool = False, **more: Any
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
     from verify.motion.request import STEPS_PER_PERIOD
     from verify.motion.step_control import KNOWN
 
     arguments = motion_arguments(scene, by)
-    if reversed_phases:
+    if reverse:
         arguments["forces"] = tuple(replace(one, phase_deg=-one.phase_deg) for one in arguments["forces"])
     steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
     run = _simulated(cache, arguments, slider=slider.of(scene), step=slider.step, steps_per_period=steps, **more)
@@ -161,7 +156,7 @@ for _name, (_unit, _text) in RUN_FIGURES.items():
 def reversal(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
     """Displacement with all phases reversed over the displacement; below 0 it reverses."""
     there = slider_run(scene, cache, by, slider).displacement
-    back = slider_run(scene, cache, by, slider, reversed_phases=True).displacement
+    back = slider_run(scene, cache, by, slider, reverse=True).displacement
     return back / there if there else float("nan")
 
 
@@ -199,9 +194,7 @@ def order(
 
 
 @quantity("slider.deflection", unit="m")
-def deflection_with_slider(
-    scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place
-) -> float:
+def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
     """Deflection of the beam at x after a time, with the slider on it."""
     return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
 
@@ -250,27 +243,18 @@ def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: Sli
 @quantity("slider.coupling_size", unit="1")
 def coupling_size(
     scene: Scene,
+    cache: "SolutionCache",
     *,
     of: Annotated[Literal["friction", "normal"], Meta(description="full friction, or m omega^2 |G| of the inertia")],
 ) -> float:
     """Reaction of the slider on the steady exact beam relative to the wave: size of the two-way coupling."""
-    from verify.analytic_modes import solve_harmonic
-    from verify.beam import PointForce
-    from verify.motion.contact import couple, coupling_of, surface_speed, turned_by
-
-    opt.check_forces(scene, "a slider's beam")
-    slider = SliderOptions().of(scene)
-    x, hertz = slider.start_on(scene.beam), opt.drive_frequency(scene)
-    driven = solve_harmonic(scene.beam, opt.DriveOptions().forces(scene), hertz)
-    unit = solve_harmonic(scene.beam, (PointForce(position=x),), hertz)
-    turned = solve_harmonic(scene.beam, couple(scene.beam, x, hertz), hertz)
-    receptance = complex(unit.deflection([x])[0])
-    found = coupling_of(slider, scene.beam, hertz, surface_speed(driven, x), receptance, turned_by(turned, x))
-    if of == "normal":
-        return found.normal_size
-    if found.friction_size is None:
-        raise InputError(f"slider.position = {x!r} m: the drive does not move the surface there, choose another")
-    return found.friction_size
+    by = TimeOptions(model="analytic", start="steady", time=1.0 / opt.drive_frequency(scene))
+    coupling = slider_run(scene, cache, by, SliderOptions()).coupling
+    assert coupling is not None
+    size = coupling.normal_size if of == "normal" else coupling.friction_size
+    if size is None:
+        raise InputError("slider.position: the drive does not move the surface there, choose another")
+    return size
 
 
 @quantity("slider.terminal_speed", unit="m/s", reads=("beam", "drive"))
@@ -281,24 +265,16 @@ def terminal_speed(
     slope: opt.Slope,
     mu: opt.Mu,
     kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] = "tangential",
-    gravity: opt.Gravity = GRAVITY,
-    frequency_hz: opt.Frequency | None = None,
 ) -> float:
     """Steady mean speed along +x of a slider on a pure wave towards +x, tanh friction."""
     from verify.motion.pure_wave import terminal_speed
 
-    slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics, gravity=gravity)
-    return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene, frequency_hz))
+    slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
+    return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))
 
 
 @quantity("motion.reflection", unit="1", reads=("beam", "drive", "motion"))
-def reflection(
-    scene: Scene,
-    cache: "SolutionCache",
-    by: TimeOptions,
-    *,
-    window: Annotated[tuple[float, float], Meta(description="m, start and end")],
-) -> float:
+def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window: Window) -> float:
     """Gamma of two waves fitted to the phasors of the driven beam's motion in a window, without slider."""
     import numpy as np
 

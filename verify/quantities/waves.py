@@ -1,7 +1,6 @@
 """Quantities of the driven beam in its steady state: field, wave measures, sensitivities, power, absorbing devices."""
 
 from collections.abc import Callable
-from functools import partial
 from math import pi
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -11,8 +10,6 @@ from msgspec.structs import replace
 from verify import options
 from verify.checks import Relative, check_sizes
 from verify.errors import InputError
-from verify.models.catalogue import MODELS
-from verify.models.naming import model_meta
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
 
@@ -23,21 +20,15 @@ if TYPE_CHECKING:
     from verify.waves.case import DrivenCase
 
 Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
-Loss = Annotated[Relative, Meta(description="eta of E (1 + i eta); default: the beam's")]
 DRIVEN = ("beam", "drive")
 
 
-class SteadyDrive(opt.DriveOptions, frozen=True, kw_only=True):
-    """Drive and losses of a harmonic field."""
-
-    loss_factor: Loss | None = None
-    drive: Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")] | None = None
-    theory: opt.Theory = "euler-bernoulli"
-
-
-class FieldSettings(SteadyDrive, frozen=True, kw_only=True):
+class FieldSettings(opt.DriveOptions, frozen=True, kw_only=True):
     """Drive, losses and settings of a harmonic field."""
 
+    loss_factor: Annotated[Relative, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    drive: Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")] | None = None
+    theory: opt.Theory = "euler-bernoulli"
     load: Annotated[options.Load, Meta(description="distribution of a force over joints; segment")] = "reciprocal"
     reading: Annotated[options.Reading, Meta(description="interpolation between joints; segment")] = "corrected"
     wall: opt.Wall = "gregory"
@@ -52,7 +43,7 @@ class FieldOptions(FieldSettings, frozen=True, kw_only=True):
     count: opt.Size | None = None
 
 
-def driven_case(scene: Scene, options: SteadyDrive, model: str = "analytic", count: int | None = None) -> "DrivenCase":
+def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: int | None = None) -> "DrivenCase":
     """The driven beam of a scene with these options, by their own model if they have one. Raises InputError."""
     from verify.waves.case import DrivenCase
 
@@ -192,15 +183,12 @@ def lumped_swr(
 
 @quantity("wave.fastest_crests", unit="m/s", reads=DRIVEN)
 def fastest_crests(
-    scene: Scene,
-    options: SteadyDrive,
-    *,
-    limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1,
+    scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
     """Largest crest speed of the exact beam up to a reflection, within 1.5 % of the frequency and 5 to 175 deg."""
     from verify.waves.operating_point import fastest_point
 
-    return fastest_point(driven_case(scene, options), limit).crest_speed
+    return fastest_point(driven_case(scene, FieldOptions()), limit).crest_speed
 
 
 FromRightEnd = Annotated[float, Meta(ge=0, description="m from the right end")]
@@ -231,18 +219,11 @@ def absorber_reflection(
     ratio: Annotated[float, Meta(ge=0, description="resistance over the matched one, spring matched")] | None = None,
     resistance: Annotated[float, Meta(ge=0, description="of the dashpot, kg/s; rotational N m s")] | None = None,
     stiffness: Annotated[float, Meta(ge=0, description="with resistance, N/m; rotational N m/rad")] = 0.0,
-    model: (
-        Annotated[str, model_meta("of the whole beam; default: a half-infinite beam", "solve_harmonic")] | None
-    ) = None,
-    count: opt.Size | None = None,
+    model: Annotated[Literal["analytic"], Meta(description="whole beam; default: a half-infinite one")] | None = None,
 ) -> float:
-    """Gamma behind an absorbing device: of a half-infinite beam, or of a model's whole beam in its middle half."""
+    """Gamma behind an absorbing device: of a half-infinite beam, or of the scene's exact beam in its middle half."""
     from verify.waves.absorber import reflection
 
-    if model is not None:
-        opt.check_count(model, count)
-    elif count is not None:
-        raise InputError(f"count = {count!r}: a half-infinite beam has none, give model as well")
     if (ratio is None) == (resistance is None):
         raise InputError(f"ratio = {ratio!r} and resistance = {resistance!r}: give one of the two")
     if ratio is not None and stiffness:
@@ -254,13 +235,12 @@ def absorber_reflection(
         impedance = complex(resistance or 0.0, -stiffness / (2.0 * pi * hertz))
     if model is None:
         return reflection(impedance, end)
-    return _reflection_on_beam(scene, scene.beam.length - position, impedance, hertz, turning, model, count)
+    return _reflection_on_beam(scene, scene.beam.length - position, impedance, hertz, turning)
 
 
-def _reflection_on_beam(
-    scene: Scene, x: float, impedance: complex, hertz: float, turning: bool, model: str, count: int | None
-) -> float:
+def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float, turning: bool) -> float:
     """Gamma in the middle half between the other forces and a device at x, which replaces what acts there."""
+    from verify.analytic_modes import solve_harmonic
     from verify.device import of_impedance
     from verify.waves.devices import field_with_devices
     from verify.waves.driven import measured_alone
@@ -273,6 +253,4 @@ def _reflection_on_beam(
         raise InputError("drive.force: none is left beside the device, add one elsewhere")
     if impedance:
         devices.append(of_impedance(x, impedance, 2.0 * pi * hertz, turning=turning))
-    solve = partial(MODELS.named(model).solve_harmonic, count=count)
-    field = field_with_devices(solve, scene.beam, forces, hertz, devices)
-    return measured_alone(field, None, "reflection")
+    return measured_alone(field_with_devices(solve_harmonic, scene.beam, forces, hertz, devices), None, "reflection")

@@ -72,13 +72,13 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from msgspec.structs import replace
 
         from verify.models.catalogue import MODELS, discrete
-        from verify.quantities.waves import SteadyDrive, driven_case
+        from verify.quantities.waves import FieldOptions, driven_case
         from verify.report.result import Column, Figure, Result, Table
         from verify.waves.driven import driven, measured_alone
 
         drive = scene.drive
         assert drive is not None
-        exact = driven_case(scene, SteadyDrive())
+        exact = driven_case(scene, FieldOptions())
         models = [model.name for model in discrete("solve_harmonic", scene.beam)]
         rows: list[Row] = []
         for model, count in [("analytic", None), *((model, count) for model in models for count in self.counts)]:
