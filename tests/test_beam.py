@@ -7,7 +7,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
+from verify.beam import Beam
 from verify.errors import InputError
 from verify.section import Section
 

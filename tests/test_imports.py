@@ -38,7 +38,10 @@ def test_numerics_know_nothing_of_scenes_and_reports(room):
     ("words", "unloaded"),
     [
         (["--help"], {"numpy", "scipy", "numba", "matplotlib", "skfem", "rich", "pyvista"}),
-        (["measure", "paper", "mode.frequency", "model=analytic", "mode=3"], {"numba", "matplotlib", "skfem", "pyvista"}),
+        (
+            ["measure", "paper", "mode.frequency", "model=analytic", "mode=3"],
+            {"numba", "matplotlib", "skfem", "pyvista"},
+        ),
         (["scenes", "list"], {"scipy", "numba", "matplotlib", "skfem", "pyvista"}),
     ],
 )

@@ -6,12 +6,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
-from verify.errors import InputError
-from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts
 from verify.options import SUPPORTS
 from verify.section import Section

@@ -75,7 +75,7 @@ REFUSED = [
     ("measure bare.toml mode.frequency model=fem mode=1 count=4 n=2", "n is not a known key"),
     ("measure bare.toml mode.frequency model=fem mode=0 count=4", "mode = 0"),
     ("measure bare.toml mode.frequency model=fem mode=40 count=4", "mode = 40"),
-    ("measure bare.toml mode.deflection model=fem mode=1 count=4 x=0.5", "off the beam"),
+    ("measure bare.toml wave.deflection x=0.5", "off the beam"),
     ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.lenght=1", "did you mean 'length'"),
     ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.length=-1", "beam.length = -1"),
     ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.length", "write key=value"),

@@ -113,15 +113,6 @@ def test_frequencies_under_axial_force_on_a_foundation_are_the_discrete_dispersi
     )
 
 
-@pytest.mark.parametrize("ground", [1e6, 1e12])
-@pytest.mark.parametrize("count", [49, 150, 700])
-def test_modes_on_a_stiff_foundation_lie_close_together_and_are_told_apart(ground, count):
-    """The lowest three at 1e12: parts of 1e-10 between them, where Lanczos about zero finds none."""
-    beam = replace(PINNED, foundation=ground * EI / L**4)
-    found = linear.solve_modes(beam, 3, count).frequencies_hz
-    assert found == pytest.approx([float(discrete_hz(beam, n, count)) for n in (1, 2, 3)], rel=2e-14)
-
-
 @pytest.mark.parametrize("size", [1e6, 1e13, 1e30])
 def test_springs_however_stiff_are_pins_and_spoil_no_digit(size):
     stiff = replace(STRIP, supports=("free", "guided"), spring=(spring(0.0, size), spring(1.0, size / 7)))
@@ -187,41 +178,6 @@ def test_a_beam_free_to_tilt_stands_no_compression():
         linear.solve_modes(replace(STRIP, supports=("pinned", "free"), tension=-1e-3), 1, 20)
 
 
-@pytest.mark.parametrize(
-    ("beam", "rigid"),
-    [
-        (replace(STRIP, supports=("free", "free"), mass=(mass(0.3, 0.4, 0.01),)), 2),
-        (replace(STRIP, supports=("free", "free"), spring=(spring(0.3, 0.4),)), 1),
-        (replace(STRIP, supports=("free", "free"), spring=(spring(0.3, rotational=0.4),)), 1),
-        (replace(STRIP, supports=("free", "free"), tension=5 * EI / L**2), 1),
-        (replace(STRIP, supports=("guided", "free"), tension=-1 * EI / L**2), 1),
-        (replace(STRIP, supports=("free", "free"), tension=-5 * EI / L**2, foundation=900 * EI / L**4), 0),
-    ],
-)
-def test_rigid_motions_that_are_left_are_left_out_and_no_more(beam, rigid):
-    found = errors(beam, [80, 300], 3)
-    assert linear.n_elastic(beam, 7) == linear.unknowns(beam, 7) - rigid
-    every = linear.solve_modes(beam, linear.n_elastic(beam, 7), 7).frequencies_hz
-    assert every[:3] == pytest.approx(linear.solve_modes(beam, 3, 80).frequencies_hz, rel=0.02)
-    assert found == pytest.approx(np.zeros((2, 3)), abs=3e-7)
-    assert abs(found[1]).max() < 1e-8
-
-
-@pytest.mark.parametrize("count", [23, 300])
-def test_modes_are_normalised_with_everything_that_has_mass(count):
-    beam = replace(EVERYTHING, mass=(mass(0.237, 0.3, 0.01), mass(0.0, 0.2)))
-    modes = linear.solve_modes(beam, 4, count)
-    points, weights = np.polynomial.legendre.leggauss(4)
-    widths = np.diff(modes.nodes)
-    x = (modes.nodes[:-1, None] + 0.5 * widths[:, None] * (1 + points)).ravel()
-    heavy = np.where(x < 0.4 * L, *(piece.mass_per_length for piece in beam.pieces))
-    total = (modes.deflection(x) ** 2) @ (heavy * (0.5 * widths[:, None] * weights).ravel())
-    for one in beam.mass:
-        total += one.mass * modes.deflection([one.position])[:, 0] ** 2
-        total += one.rotary_inertia * modes.slope([one.position])[:, 0] ** 2
-    assert total == pytest.approx(np.ones(4), rel=1e-12)
-
-
 @pytest.mark.parametrize("loss", [0.0, 0.03])
 @pytest.mark.parametrize(
     "added", ["everything", "compression", "an elastic clamp", "a mass and a rotary inertia at the tip"]
@@ -237,17 +193,6 @@ def test_driven_fields_are_of_order_four_with_loss_in_the_beam_alone(added, loss
     assert np.log2(off[:-1] / off[1:]) == pytest.approx(4.0, abs=0.1)
     assert 1e-10 < off[-1] < 1e-6
     assert turned[-1] < 1e-6
-
-
-def test_modal_damping_takes_the_modes_of_what_stands_there_and_no_loss_beside():
-    force = [PointForce(position=0.3)]
-    hertz = linear.solve_modes(EVERYTHING, 2, 31).frequencies_hz[1]
-    damped = linear.solve_harmonic(EVERYTHING, force, hertz, 31, modal_damping=0.01).deflection([0.1])[0]
-    shape = linear.solve_modes(EVERYTHING, 2, 31).deflection([0.1, 0.3])[1]
-    alone = shape[0] * shape[1] / (0.02j * (2 * np.pi * hertz) ** 2)
-    assert damped == pytest.approx(alone, rel=0.05)
-    with pytest.raises(InputError, match="give one of the two"):
-        linear.solve_harmonic(replace(EVERYTHING, loss_factor=0.02), force, hertz, 31, modal_damping=0.01)
 
 
 def test_a_plain_section_is_the_shape_that_has_its_figures():

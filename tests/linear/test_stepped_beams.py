@@ -6,11 +6,11 @@ import pytest
 from msgspec.structs import replace
 
 from tests.beams import PAIRED
+from verify import analytic_modes
 from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.exact import modes as analytic_modes
 from verify.models.division import divide, part_counts
 from verify.section import Section
 from verify.segments import linear as segment_model

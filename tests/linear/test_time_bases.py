@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from motion_reference import FORCES, FREQUENCY, STRIP
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.attached import PointMass, PointSpring
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError
-from verify.exact import modes as analytic_modes
 from verify.models.catalogue import MODELS
 from verify.models.fields import phasor
 from verify.motion.free_vibration import free_vibration
@@ -17,6 +16,13 @@ from verify.motion.surface import basis_of
 from verify.section import Section
 from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
+
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
+FREQUENCY = 1310.0
+FORCES = (
+    PointForce(position=0.037, amplitude=1.3, phase_deg=17.0),
+    PointForce(position=0.402, amplitude=0.8, phase_deg=101.0),
+)
 
 HELD = [("pinned", "pinned"), ("clamped", "free"), ("clamped", "clamped"), ("guided", "pinned"), ("pinned", "clamped")]
 

@@ -120,9 +120,10 @@ def test_a_layer_that_gives_way_is_of_second_order_in_the_step():
 
 def test_points_become_a_layer_as_the_square_of_their_distance():
     cases = [(phi, r) for phi in (0.7, 0.9, 1.1, 1.3, 1.6) for r in (0.2, 0.71, 0.83)]
-    off = []
-    for n in (4, 8, 16, 32):
-        off.append(np.sqrt(np.mean([(dragged(*one, n=n, steps=509) - layer.force(*one)) ** 2 for one in cases])))
+    off = [
+        np.sqrt(np.mean([(dragged(*one, n=n, steps=509) - layer.force(*one)) ** 2 for one in cases]))
+        for n in (4, 8, 16, 32)
+    ]
     assert off[-1] < 1.5e-3
     assert 1.4 < np.log2(off[0] / off[-1]) / 3.0 < 3.2
 

@@ -36,9 +36,7 @@ def reference(name):
 @cache
 def run(name, steps):
     given = CASES[name]
-    contact = Contact(
-        stiffness=STIFFNESS, damping=given.get("damping", 0.0), tangential_stiffness=given.get("give")
-    )
+    contact = Contact(stiffness=STIFFNESS, damping=given.get("damping", 0.0), tangential_stiffness=given.get("give"))
     slider = Slider(
         mass=MASS,
         mu=0.2,
@@ -75,9 +73,7 @@ def test_motion_impulses_and_contact_times_equal_the_event_driven_ode(name):
 def test_landings_are_at_the_times_of_the_ode(name):
     modes = [("pressed",), *(mode for _, mode in reference(name).events)]
     wanted = [
-        event[0]
-        for i, event in enumerate(reference(name).events)
-        if event[1][0] == "pressed" and modes[i][0] == "free"
+        event[0] for i, event in enumerate(reference(name).events) if event[1][0] == "pressed" and modes[i][0] == "free"
     ]
     events = run(name, 4000).events
     assert events[events[:, 1] == LANDS, 0] == pytest.approx(wanted, abs=2e-3 * PERIOD)

@@ -308,7 +308,8 @@ KEPT = {"model": "segment", "count": 49, "samples": 18}
 def test_sliders_that_the_beam_does_not_feel_move_as_each_alone():
     first = replace(LIGHT, coupling="one-way", foot=(Foot(length=0.044, points=23),))
     other = replace(first, mass=0.034, mu=0.11, position=0.331, foot=(Foot(length=0.03, points=11),))
-    for slider, found in zip((first, other), run_motors(STRIP, PAIR, STRIP_HERTZ, 4e-3, sliders=[first, other], **KEPT)):
+    runs = run_motors(STRIP, PAIR, STRIP_HERTZ, 4e-3, sliders=[first, other], **KEPT)
+    for slider, found in zip((first, other), runs, strict=True):
         alone = run_motor(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=slider, **KEPT)
         assert found.start == alone.start
         assert found.travelled == pytest.approx(alone.travelled, rel=1e-6, abs=1e-12)
@@ -401,7 +402,10 @@ def test_a_continued_run_equals_one_run(coupling):
 # --- on the nonlinear chain, and on a beam that nothing holds
 
 
-def on_chain(model, size, links="rigid", place=0.23, foot=(Foot(length=0.02, points=3),), **more):
+WIDE = (Foot(length=0.02, points=3),)
+
+
+def on_chain(model, size, links="rigid", place=0.23, foot=WIDE, **more):
     """Two periods of everything `size` times as large: forces, preload, what friction's slope asks of speeds."""
     own = {"mass": 2e-3, "mu": 0.2, "slope": 100.0 / size, "gravity": 0.0, "preload": 0.3 * size, "position": place}
     slider = Slider(coupling="one-way", contact=Contact(stiffness=3e5, damping=5.0), foot=foot, **own)
@@ -452,9 +456,7 @@ def test_a_slider_runs_on_a_beam_that_nothing_holds_as_on_soft_springs():
     exact = run_motor(bar(), forces, 31e3, 1e-3, model="analytic", **asked)
     assert abs(exact.travelled[-1]) > 5e-8
     for model, count in (("segment", 31), ("fem", 40)):
-        free, held = (
-            run_motor(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying)
-        )
+        free, held = (run_motor(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying))
         assert free.motor_margins.sag is None
         assert free.travelled == pytest.approx(held.travelled, rel=1e-5)
         assert free.travelled == pytest.approx(exact.travelled, rel=5e-3)

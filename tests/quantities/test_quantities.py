@@ -67,8 +67,6 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "mode.law_ratio": ("clamped", {**SEGMENT, "mode": 2}),
     "mode.shape_error": ("clamped", {**SEGMENT, "mode": 2, "reading": "raw"}),
     "mode.curvature_error": ("clamped", {**SEGMENT, "mode": 2}),
-    "mode.deflection": ("loaded", {"model": "analytic", "mode": 3, "x": 0.31}),
-    "mode.slope": ("loaded", {**SEGMENT, "mode": 2, "x": 0.31}),
     "mode.node_position": ("loaded", {**FEM, "mode": 4, "node": 2}),
     "mode.order": ("clamped", {"model": "segment", "mode": 5, "counts": [12, 16, 24], "wall": "half"}),
     "mode.shape_order": ("clamped", {"model": "segment", "mode": 2, "counts": [8, 16, 32], "reading": "raw"}),
@@ -76,25 +74,21 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "mode.count_needed": ("clamped", {"model": "segment", "mode": 3, "error": 4e-3, "wall": "half"}),
     "mode.stock_difference": ("clamped", {"mode": 3, "count": 17}), "drive.rule_frequency": ("bare", {"mode": 5}),
     "drive.quarter_wavelength": ("driven", {}), "beam.buckling_load": ("loaded", {**SEGMENT}),
-    "wave.deflection": ("device", {**FEM, "x": 0.31}), "wave.slope": ("driven", {**SEGMENT, "count": 14, "x": 0.31}),
-    "wave.curvature": ("driven", {"x": 0.31}),
+    "wave.deflection": ("device", {**FEM, "x": 0.31}),
     **{f"wave.{name}": ("device", {}) for name in ("standing_wave_ratio", "reflection", "energy_flux", "crest_speed")},
     **{f"wave.{name}": ("driven", {**SEGMENT, "count": 30}) for name in ("envelope", "travelling_index")},
     "wave.signed_area_spread": ("driven", {"window": [0.2, 0.5]}), "wave.axis_ratio": ("driven", {"x": 0.31}),
     "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
     "wave.order": ("driven", {"model": "fem", "counts": [20, 40, 80]}),
     "wave.lumped_swr": ("bare", {"x": 0.31, "modes": [5, 6]}),
-    "wave.receptance": ("driven", {**FEM, "position": 0.21, "x": 0.31}),
-    "wave.reflection_per_hertz": ("driven", {**FEM}), "wave.reflection_per_degree": ("driven", {}),
     "wave.fastest_crests": ("driven", {"limit": 0.7}), "wave.absorber_impedance": ("driven", {"position": 0.083}),
-    "wave.absorber_reflection": ("driven", {"position": 0.083, "resistance": 1.3, "mass": 0.003, "stiffness": 910.0}),
+    "wave.absorber_reflection": ("driven", {"position": 0.083, "resistance": 1.3, "stiffness": 910.0}),
     **{f"slider.{name}": ("driven", TIME) for name in ("displacement", "mean_speed", "largest_friction", "reversal")},
     **{f"slider.{name}": ("driven", TIME) for name in ("mean_friction", "mean_surface_speed", "imbalance")},
     "slider.order": ("driven", {"count": 12, "steps": [2e-5, 1e-5, 5e-6]}),
     "slider.deflection": ("driven", {**TIME, "x": 0.31}), "slider.energy": ("driven", {**TIME, "of": "friction_loss"}),
-    "slider.coupling_size": ("driven", {"of": "friction", **FEM}),
+    "slider.coupling_size": ("driven", {"of": "friction"}),
     "slider.terminal_speed": ("driven", {"amplitude": 1e-6, "slope": 310.0, "mu": 0.23}),
-    "motion.deflection": ("driven", {**TIME, "x": 0.31}),
     "motion.reflection": ("driven", {**TIME, "time": 4e-3, "window": [0.2, 0.5], "start": "steady"}),
     **{f"slider.{name}": ("motor", HELD) for name in ("stall_force", "normal_mean", "contact_share", "stuck_share")},
     **{f"slider.{name}": ("motor", {**HELD, "speed": -3e-4}) for name in ("force_speed", "power", "wear_power")},
@@ -106,7 +100,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "chain.hanging_frequency": ("bare", {"segments": 7, "mode": 2}),
     "chain.turning_frequency": ("bare", {"segments": 7, "mode": 2, "speed": 1.3}),
     "chain.large_amplitude_frequency": ("bare", {"segments": 6, "amplitude": 0.9}),
-    "chain.energy_drift": ("bare", {"segments": 5, "periods": 0.2}), "chain.imbalance": ("bare", {"segments": 4}),
+    "chain.energy_drift": ("bare", {"segments": 5, "step": 2e-5}), "chain.imbalance": ("bare", {"segments": 4}),
     "chain.contact_line_error": ("clamped", {"segments": 9, "mode": 2, "x": 0.31}),
     "chain.transient_deflection": ("undamped", {"segments": 5, "time": 7e-4, "x": 0.31}),
     "chain.axial_departure": ("undamped", {"segments": 5, "force": 30.0, "time": 7e-4}),
@@ -117,8 +111,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slider.winkler_speed_ratio": ("bare", {"contact_half_angle": 1.1}),
     "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}), "slider.layer_efficiency": ("bare", LAYER),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}),
-    "contact.restitution": ("bare", {"mass": 0.003, "stiffness": 6.1e4, "damping": 1.3}),
-    "slider.wave_force": ("driven", {**LAYER, "points": 21, "steps_per_period": 32}),
+    "contact.restitution": ("bare", {"damping_ratio": 0.2}),
+    "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
     "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),
 }
 # fmt: on
@@ -143,13 +137,13 @@ def test_value_is_finite(name):
 
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_bad_value_is_refused(name):
-    bad = {"whole number": 0.5, "number": float("nan"), "true | false": "perhaps"}
+    bad = {"whole number": 0.5, "number": float("nan"), "true or false": "perhaps"}
     for argument in QUANTITIES[name].arguments:
-        with pytest.raises(InputError, match=argument.name):
-            figure(name, **{argument.name: bad.get(argument.type, "nonsense")})
-        if argument.required:
-            with pytest.raises(InputError, match=f"{argument.name} is missing"):
-                figure(name, remove=argument.name)
+        with pytest.raises(InputError, match=argument["name"]):
+            figure(name, **{argument["name"]: bad.get(argument["type"], "nonsense")})
+        if argument["required"]:
+            with pytest.raises(InputError, match=f"{argument['name']} is missing"):
+                figure(name, remove=argument["name"])
     with pytest.raises(InputError, match="lenght is not a known key"):
         figure(name, lenght=1.0)
 
@@ -157,13 +151,12 @@ def test_bad_value_is_refused(name):
 OTHERS: dict[str, Any] = {
     "count": 17, "mode": 2, "x": 0.37, "wall": "third-order", "joints": "tensioned", "grading": 1.3,
     "theory": "timoshenko", "attachment": "lever", "reading": "raw", "frequency_hz": 700.0, "phase_deg": 61.0,
-    "position": 0.053, "loss_factor": 0.013, "modal_damping": 0.031, "joint_dashpot": 0.002, "load": "lever",
-    "drive": "displacement", "window": [0.21, 0.47], "modes": 7, "time": 8e-4, "start": "steady",
-    "soft_start_periods": 0.7, "force": 2.1, "mu": 0.17, "slope": 210.0, "law": "coulomb", "coupling": "one-way",
-    "line": "raw", "kinematics": "following", "normal": "massless", "preload": 0.29, "slider_position": 0.301,
-    "slider_speed": 0.007, "step": 1.1e-5, "steps_per_period": 31, "stiffness": 7e4, "damping": 17.0, "mass": 0.004,
-    "tangential_stiffness": 2e4, "restitution": 0.3, "points": 3, "foot_length": 0.03, "speed": -2e-4,
-    "links": "stretching", "segments": 6, "epsilon": 0.2, "ratio": 0.7, "turning": True, "alone": True,
+    "position": 0.053, "loss_factor": 0.013, "modal_damping": 0.031, "load": "lever", "drive": "displacement",
+    "window": [0.21, 0.47], "modes": 7, "time": 8e-4, "start": "steady", "soft_start_periods": 0.7, "force": 2.1,
+    "mu": 0.17, "slope": 210.0, "law": "coulomb", "coupling": "one-way", "kinematics": "following",
+    "normal": "massless", "slider_position": 0.301, "slider_speed": 0.007, "step": 1.1e-5, "steps_per_period": 31,
+    "stiffness": 7e4, "mass": 0.004, "speed": -2e-4, "links": "stretching", "segments": 6, "epsilon": 0.2,
+    "ratio": 0.7, "turning": True,
 }  # fmt: skip
 EFFECTS = [
     ("mode.frequency", "elastic", {"model": "segment", "count": 14, "mode": 3}),
@@ -172,13 +165,11 @@ EFFECTS = [
     ("wave.deflection", "elastic", {"model": "segment", "count": 14, "x": 0.31}),
     ("wave.deflection", "elastic", {"model": "analytic", "x": 0.31}),
     ("wave.axis_ratio", "driven", {"model": "fem", "count": 14}),
-    ("wave.receptance", "elastic", {"model": "fem", "count": 14, "position": 0.21, "x": 0.31}),
     ("wave.absorber_reflection", "device", {"position": 0.04, "resistance": 1.3, "model": "analytic"}),
     ("slider.displacement", "heavy", {"count": 14}),
-    ("motion.deflection", "driven", {"model": "analytic", "x": 0.31}),
     ("chain.slider_displacement", "undamped", {"segments": 5, "coupling": "one-way", "normal": "massless"}),
     ("slider.layer_force", "bare", LAYER),
-    ("slider.force_speed", "motor", {**HELD, "speed": -3e-4, "law": "coulomb", "coupling": "one-way"}),
+    ("slider.force_speed", "motor", {**HELD, "speed": -3e-4}),
 ]
 
 
@@ -186,14 +177,12 @@ EFFECTS = [
 def test_argument_changes_value_or_is_refused(name, where, arguments):
     scene, cache = SCENES[where], SolutionCache(SCENES[where].beam)
     value = evaluate(name, arguments, scene, cache)
-    for argument in QUANTITIES[name].arguments:
-        if argument.name in OTHERS and arguments.get(argument.name) != OTHERS[argument.name]:
+    for argument in QUANTITIES[name].schema.__struct_fields__:
+        if argument in OTHERS and arguments.get(argument) != OTHERS[argument]:
             try:
-                assert evaluate(name, {**arguments, argument.name: OTHERS[argument.name]}, scene, cache) != value, (
-                    argument
-                )
+                assert evaluate(name, {**arguments, argument: OTHERS[argument]}, scene, cache) != value, argument
             except InputError as refused:
-                assert argument.name in str(refused)
+                assert argument in str(refused)
 
 
 def test_equals_direct_call():
@@ -232,14 +221,13 @@ def test_words_are_read_by_type():
         ("wave.reflection", "bare", {}, "drive.force is missing: add"),
         ("slider.displacement", "bare", {}, "time is missing and the scene has no"),
         ("slider.stall_force", "driven", {}, "slider.contact is missing: add"),
-        ("chain.transient_deflection", "bare", {}, "drive is missing"),
+        ("chain.transient_deflection", "bare", {}, "drive.force is missing: add"),
         ("drive.quarter_wavelength", "bare", {}, "frequency_hz is missing"),
         ("mode.frequency", "device", {"count": 14}, "does not model drive.device"),
         ("wave.deflection", "driven", {"x": 0.74}, "x = 0.74 lies off the beam"),
-        ("wave.receptance", "driven", {"position": -0.01}, "position = -0.01 lies off the beam"),
+        ("wave.reflection", "driven", {"position": -0.01}, "position = -0.01 lies off the beam"),
         ("slider.mean_speed", "driven", {"slider_position": 0.74}, "slider_position = 0.74 lies off the beam"),
         ("slider.order", "driven", {"counts": [8, 16, 32]}, "counts = .* and steps = .*: give one"),
-        ("contact.restitution", "bare", {"damping_ratio": 0.2}, "mass = 0.003 beside damping_ratio"),
     ],
 )
 def test_refused_with_field_and_remedy(name, where, changed, sentence):

@@ -5,11 +5,11 @@ from math import inf, nan
 import pytest
 
 from verify import Beam
+from verify.convert import convert
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
 from verify.judge.cache import SolutionCache
 from verify.quantities.base import QUANTITIES, quantity
-from verify.scene.convert import convert
 from verify.scene.gates import run_gate
 from verify.scene.model import Complex, Gate, Scene
 

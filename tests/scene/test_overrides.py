@@ -3,8 +3,8 @@
 import pytest
 
 from verify import load_scene
+from verify.convert import literal
 from verify.errors import InputError
-from verify.scene.convert import literal
 from verify.scene.load import tables_of, toml_text
 from verify.scene.run import effective_overrides, plan, skipped_gates
 

@@ -93,7 +93,6 @@ def test_variants_stand_side_by_side(run, renders):
     axes = renders(result)
     guides = [line for line in axes["errors-over-size"].lines if line.get_gid() == "guide"]
     assert len(guides) == 2
-    assert "work-precision" in axes
 
 
 def test_convergence_charts_of_the_paper(run, renders):

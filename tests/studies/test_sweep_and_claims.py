@@ -82,7 +82,7 @@ def test_sweeps_render(renders):
         (["mode.frequency"], {"mod": [1]}, "'mode'"),
         (["mode.frequency"], {"beam.lenght": [1.0]}, "'length'"),
         (["mode.frequency"], {"beem.length": [1.0]}, "'beam'"),
-        (["mode.frequency"], {"drive.force.7.amplitude": [1.0]}, "entry"),
+        (["mode.frequency"], {"drive.force.7.amplitude": [1.0]}, "7 is not known"),
         (["mode.frequency"], {"mode": []}, "sweep.over.mode"),
         (["mode.frequency"], {"beam.length,beam.width": [1.0]}, "lists of 2"),
         (["mode.frequency"], {"mode": list(range(1, 1000)), "count": list(range(1, 1000))}, "combinations"),

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import analytic_modes
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
-from verify.exact import modes as analytic_modes
 from verify.options import SUPPORTS
 from verify.segments import linear as segment_model
 from verify.segments.assembly import build_chain
@@ -93,12 +93,6 @@ def test_the_spliced_field_obeys_the_beam_equation_its_ends_and_its_forces(titan
     assert rise == pytest.approx(field.wavenumber**4 * (w @ field.deflection(x)), rel=1e-9)
 
 
-def test_no_frequency_overflows(titanium_strip):
-    for supports in (("pinned", "pinned"), ("clamped", "free")):
-        beam = replace(titanium_strip, supports=supports, loss_factor=0.01)
-        assert np.isfinite(analytic_modes.solve_harmonic(beam, FORCES, 1e12).deflection(X)).all()
-
-
 @pytest.mark.parametrize(
     "supports", [("pinned", "pinned"), ("clamped", "free"), ("free", "free"), ("guided", "clamped")], ids="-".join
 )
@@ -153,25 +147,6 @@ def test_orders_of_loads_and_readings(titanium_strip, load, reading, expected):
     ]
     band = 0.45 if reading == "links" else 0.25  # how far x lies from the next joint matters to a straight link
     assert np.log2(errors[0] / errors[1]) == pytest.approx(expected, abs=band)
-
-
-def test_raw_readings_of_49_links_are_wrong_by_their_known_amounts(paper_beam):
-    """The reference sheet's figures at 4276 Hz in leading order: -mu^2/6, +mu^2/12 and -mu^4/180 of the axis ratio."""
-    from verify.waves.measures import ellipse, surface_motion
-
-    forces = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
-    frequency = 4252.71  # the chain's own best, where its wave is pure
-
-    def ratio(reading, x):
-        field = segment_model.solve_harmonic(paper_beam, forces, frequency, 49, reading=reading)
-        return abs(field.slope(x) * 0.0005 / field.deflection(x))[0] / (0.0005 * abs(field.wavenumber))
-
-    joint, middle = 0.5 * 24 / 49, 0.25
-    assert ratio("links", joint) - 1 == pytest.approx(-0.29, abs=0.03)
-    assert ratio("links", middle) - 1 == pytest.approx(0.20, abs=0.03)
-    assert ratio("raw", joint) - 1 == pytest.approx(-0.024, abs=0.01)
-    field = segment_model.solve_harmonic(paper_beam, forces, frequency, 49)
-    assert ellipse(surface_motion(paper_beam, field.slope(0.25)), field.deflection(0.25))[0][0] < 0
 
 
 @pytest.mark.parametrize("model", SOLVERS)

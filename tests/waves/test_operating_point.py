@@ -1,16 +1,21 @@
-"""Sensitivities of an operating point, against the closed form of two waves between two forces on a pinned beam."""
+"""Operating points: frequency, phase, two-mode approximation."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify.beam import PointForce
-from verify.errors import ResonanceError
+from verify import Beam, PointForce, PointMass, analytic_modes, travelling_wave
+from verify.errors import InputError, ResonanceError
 from verify.models.catalogue import MODELS
-from verify.waves import measures as travelling_wave
+from verify.waves.best_phase import TRIED, phases_to_try
 from verify.waves.case import DrivenCase
 from verify.waves.driven import own_wavenumber
+from verify.waves.lumped import TwoModes, local_swr, local_waves
 from verify.waves.operating_point import Landscape, driven_point, fastest_point
+
+# --- Operating point ---
 
 WINDOW = (0.1825, 0.5475)
 """The middle half of 0.73 m."""
@@ -134,3 +139,121 @@ def test_a_lead_and_that_lead_less_a_turn_are_one_drive(titanium_strip, lead):
     case = DrivenCase(beam=lossy, model="analytic", count=None, forces=forces, frequency_hz=900.0)
     assert driven_point(case).phase_deg == -90.0
     assert fastest_point(case, 0.9).phase_deg < 0.0
+
+
+# --- Best phase ---
+
+CIRCLE = 4001
+CASES = 400
+
+
+def waves(seed, scale=3e-6):
+    """Amplitudes of both drives in either wave, (CASES, 2) each, all sizes and phases different."""
+    parts = np.random.default_rng(seed).standard_normal((4, CASES, 2))
+    return scale * (parts[0] + 1j * parts[1]), 0.7 * scale * (parts[2] + 1j * parts[3])
+
+
+def figures(forward, backward, phases):
+    """(reflection, crest speed but for a factor), (n, p) each."""
+    plus, minus = (abs(w[:, :1] + w[:, 1:] * np.exp(1j * phases)) ** 2 for w in (forward, backward))
+    reflection = np.sqrt(np.minimum(plus, minus) / np.maximum(plus, minus))
+    return reflection, abs(plus - minus) / np.sqrt(plus + minus)
+
+
+def fastest(forward, backward, limit, phases):
+    """The largest allowed speed among phases, (n,); 0 where none is allowed."""
+    reflection, speed = figures(forward, backward, phases)
+    return np.where(reflection <= limit + 1e-13, speed, 0.0).max(axis=1)
+
+
+@pytest.mark.parametrize("limit", [0.05, 0.1, 0.43, 0.97])
+@pytest.mark.parametrize("ends", [(0.087, 3.05), (-3.05, -0.087), (0.4, 1.7)])
+def test_no_phase_of_a_fine_circle_beats_the_ten_that_are_tried(limit, ends):
+    forward, backward = waves(11)
+    tried = phases_to_try(forward, backward, limit, ends)
+    assert tried.shape == (CASES, TRIED)
+    assert ((tried >= ends[0]) & (tried <= ends[1])).all()
+    found = fastest(forward, backward, limit, tried)
+    every = fastest(forward, backward, limit, np.linspace(*ends, CIRCLE))
+    assert (found >= every * (1.0 - 1e-15)).all()
+    assert np.count_nonzero(every) > 9
+    allowed = every > 0.0  # a fine circle comes as near as its steps are small
+    assert found[allowed] == pytest.approx(every[allowed], rel=5e-3)
+
+
+@pytest.mark.parametrize("scale", [1e-60, 1.0, 1e60, 1e-190, 1e160])
+def test_amplitudes_of_any_size_have_the_same_best_phase(scale):
+    forward, backward = waves(7, 1.0)
+    plain = phases_to_try(forward, backward, 0.3, (0.1, 3.0))
+    assert np.sort(phases_to_try(scale * forward, scale * backward, 0.3, (0.1, 3.0))) == pytest.approx(
+        np.sort(plain), abs=1e-7
+    )
+
+
+# --- Lumped ---
+
+SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
+STRIP = Beam(**SIZES)
+PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+TWO = [PointForce(position=0.0116), PointForce(position=0.5 - 0.0116, phase_deg=90.0)]
+
+
+@given(lower=st.integers(1, 60), part=st.floats(0.01, 0.99))
+def test_neighbours_of_a_pinned_beam_have_the_ratio_of_a_tangent(lower, part):
+    found = TwoModes(beam=STRIP, modes=(lower, lower + 1)).local_swr(part * STRIP.length)[0]
+    half = 0.5 * np.pi * part
+    assert found == pytest.approx(max(np.tan(half), 1.0 / np.tan(half)), rel=1e-7)
+
+
+def test_it_is_right_at_mid_span_of_the_papers_beam_and_wrong_at_a_quarter():
+    """REFERENCE-motor, section 2: 1 and 2.414 where the field has 1.056 everywhere."""
+    field = analytic_modes.solve_harmonic(PAPER, TWO, 4276.0)
+    everywhere = local_swr(field, np.linspace(0.03, 0.47, 45))
+    assert np.ptp(everywhere) < 1e-9
+    assert everywhere[0] == pytest.approx(1.0563563, abs=1e-6)
+    lumped = TwoModes(beam=PAPER).local_swr([0.25, 0.125, 0.375])
+    assert lumped == pytest.approx([1.0, 1.0 + np.sqrt(2.0), 1.0 + np.sqrt(2.0)], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "supports", [("clamped", "free"), ("free", "free"), ("guided", "pinned"), ("clamped", "pinned")]
+)
+def test_of_any_ends_the_near_fields_are_left_out(supports):
+    """Beside a clamped end the modes are no sines; what waves in them is, and sines alone are fitted far from it."""
+    beam = Beam(**SIZES, supports=supports)
+    picture = TwoModes(beam=beam, modes=(17, 18), ratio=0.8, phase_deg=70.0)
+    x = np.linspace(0.0, beam.length, 401)
+    parts = []
+    for mode in picture.modes:
+        k = picture.wavenumber(mode)
+        shape = analytic_modes.mode_shape(beam, mode, x)
+        middle = slice(150, 250)
+        basis = np.stack([np.exp(-1j * k * x[middle]), np.exp(1j * k * x[middle])], axis=1)
+        parts.append(np.linalg.lstsq(basis, shape[middle].astype(complex), rcond=None)[0][:, None] * [[1.0]])
+        parts[-1] = parts[-1] * np.array([np.exp(-1j * k * x), np.exp(1j * k * x)])
+    fitted = parts[0] + 0.8 * np.exp(1j * np.deg2rad(70.0)) * parts[1]
+    found = np.array(picture.local_waves(x))
+    assert abs(found - fitted).max() < 1e-6 * abs(fitted).max()
+
+
+def test_local_waves_of_a_field_are_those_that_are_fitted_in_a_window():
+    forces = [PointForce(position=0.04), PointForce(position=0.78, amplitude=0.7, phase_deg=55.0)]
+    field = analytic_modes.solve_harmonic(STRIP, forces, 2390.0)
+    fitted = travelling_wave.measure(field, window=(0.3, 0.5)).waves
+    plus, minus = (wave[0] for wave in local_waves(field, 0.4))
+    assert (plus, minus) == (pytest.approx(fitted.forward, rel=1e-6), pytest.approx(fitted.backward, rel=1e-6))
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"modes": (4, 4)}, r"modes = \[4, 4\]: one mode with itself stands"),
+        ({"modes": (0, 4)}, r"modes = 0: give a whole number"),
+        ({"ratio": -1.0}, r"ratio = -1\.0: give"),
+        ({"phase_deg": float("inf")}, "phase_deg = inf: give"),
+        ({"beam": Beam(**SIZES, mass=[PointMass(position=0.2, mass=0.1)])}, r"beam\.mass: two modes are one wave on"),
+    ],
+)
+def test_what_is_no_picture_is_refused(given, said):
+    with pytest.raises(InputError, match=said):
+        TwoModes(**({"beam": STRIP} | given))

@@ -50,7 +50,7 @@ def choose(
 
 
 def _modes(text: str) -> int | range:
-    from verify.scene.convert import typed
+    from verify.convert import typed
 
     modes = typed(text, tuple[int, ...], "mode")
     if not all(isinstance(mode, int) and mode > 0 for mode in modes):
@@ -73,8 +73,8 @@ def _error(text: str) -> float:
 
 
 def _rules(words: tuple[str, ...]) -> Any:
+    from verify.convert import convert, literal
     from verify.judge.variants import Rules
-    from verify.scene.convert import convert, literal
 
     pairs = [word.partition("=") for word in words]
     for key, equals, _ in pairs:

@@ -27,7 +27,7 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
     Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """
     from verify.commands.table import run_study
-    from verify.scene.convert import typed
+    from verify.convert import typed
     from verify.scene.load import load_scene
     from verify.studies.sweep import run_sweep
 

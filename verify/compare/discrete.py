@@ -102,6 +102,8 @@ class DiscreteBeam:
             matrix = block_diag([_assembled(values / 3.0, values / 6.0, which) for values, which in pairs]).tocsr()
         else:
             inertias = NODE_INERTIA.get(mass, 0.0) * self.masses * self.lengths**2 + 0.5 * self.rotary
+            if mass == "lumped" and not self.rotary.any():  # rotations are no modes
+                n_modes = min(n_modes, int(free.sum()) - self.beam.rigid_motions)
             matrix = diags_array(np.append(_at_ends(0.5 * self.masses)[free], _at_ends(inertias)[turning]))
         return self._lowest_hz(n_modes, strain, stiffness, matrix, free)
 

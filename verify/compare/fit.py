@@ -146,16 +146,14 @@ class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def identify(data: Data) -> Identification:
     """Rank all candidates by the likeliest fault of the list. Raises InputError where none has so many modes."""
     tested = {"none": _best(data, [Fault(kind="none", entries=data.entries, modes=data.modes)])}
-    if not tested["none"]:
-        raise InputError(
-            f"count = {data.count}: no candidate of so few parts has {data.n_modes - 1} modes, raise count"
-        )
     if tested["none"][0].rms > data.floor:
         faults = list(_faults(data))
         tested |= {kind: _best(data, [one for one in faults if one.kind == kind]) for kind in {f.kind for f in faults}}
     accepted = [fits[0] for fits in tested.values() if fits and data.accepts(fits[0])]
     likeliest = min(accepted or tested["none"][:1], key=data.score)
     best, *ranking = _best(data, [likeliest.fault], every=True)
+    if data.count is not None and not any(one.candidate.sized for one in (best, *ranking)):
+        raise InputError(f"count = {data.count}: no model of so few parts has {data.n_modes - 1} modes, raise count")
     equal = [one for one in ranking if _same(one, best)]
     close = [one for one in ranking if one not in equal and data.near(one, best)]
     rivals = []

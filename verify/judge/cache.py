@@ -225,17 +225,6 @@ class SolutionCache:
         computed = modes.curvatures()[self.paired_index(model, count, mode, settings)]
         return shape_error(exact, computed, node_weights(modes.curvature_points))
 
-    def shape_at(
-        self, model: str, count: int | None, mode: int, x: "Array", derivative: int, settings: Settings = ()
-    ) -> float:
-        """A derivative of a mass-normalised shape at x, (1,), metres. Raises InputError."""
-        if count is None:
-            from verify.exact.modes import mode_shape
-
-            return float(mode_shape(self.beam, mode, x, derivative, theory_of(settings))[0])
-        shapes = self.modes(model, count, mode, settings).shapes(x, derivative)
-        return float(shapes[self.paired_index(model, count, mode, settings), 0])
-
     def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
         """Zeros of a mode between the ends, (n_nodes,), metres, ascending. Raises InputError."""
         from verify.exact.modes import mode_shape

@@ -6,6 +6,8 @@ from msgspec import Meta
 from verify.errors import InputError, near_name
 from verify.models.catalogue import MODELS
 
+AMONG = "among"
+"""Key of the annotation of an argument that names a model."""
 MEAN = "mean"
 """The middle between the model below and the model above, where a model's name is asked for."""
 
@@ -36,4 +38,4 @@ class Among(msgspec.Struct, frozen=True):
 
 def model_meta(meaning: str, verb: str, *, sized: bool = False, mean: bool = False) -> Meta:
     """The annotation of an argument that names a model."""
-    return Meta(description=meaning, extra={"among": Among(verb, sized, mean)})
+    return Meta(description=meaning, extra={AMONG: Among(verb, sized, mean)})

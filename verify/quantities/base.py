@@ -14,27 +14,29 @@ Nothing here imports numpy.
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import isfinite, isnan
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, TypeAlias, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import msgspec
 from msgspec import Meta
 
 from verify.checks import plain
+from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
 from verify.judge.bracket import Bracket
-from verify.models.naming import Among
+from verify.models.naming import AMONG
 from verify.registry import Registry
-from verify.scene.convert import arms_of, convert, entry_of, metas_of, typed
 
 if TYPE_CHECKING:
-    from verify.beam import Beam, PointForce
-    from verify.device import Device
     from verify.judge.cache import SolutionCache
-    from verify.slider import Slider
+    from verify.scene.model import Scene as Scene  # noqa: PLC0414
+else:
+    Scene = Any
+    """Of annotations, which `@quantity` evaluates; scenes import quantities."""
 
 Value: TypeAlias = float | complex | Bracket
 """Type of an evaluated quantity."""
-Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={"place": True})]
+PLACE = "place"
+Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True})]
 """A position on the beam: `evaluate` raises InputError for one off the beam."""
 TABLES = ("beam", "drive", "slider", "motion")
 """Tables of a scene that a quantity may depend on."""
@@ -42,48 +44,8 @@ ROUNDING = 1e-12
 """Tolerance of a position at an end, relative to the length (as `models.places`)."""
 
 
-class Scene(Protocol):
-    """What a quantity reads of a scene."""
-
-    @property
-    def beam(self) -> "Beam":
-        """The beam."""
-
-    @property
-    def drive(self) -> Any:
-        """None, or a value with `frequency_hz` and `kind`."""
-
-    @property
-    def forces(self) -> "Sequence[PointForce]":
-        """Forces of the drive, measured from the left end."""
-
-    @property
-    def devices(self) -> "Sequence[Device]":
-        """Devices of the drive, measured from the left end."""
-
-    @property
-    def slider(self) -> "Slider | None":
-        """The slider."""
-
-    @property
-    def motion(self) -> Any:
-        """None, or a value with `duration`, `start`, `soft_start_periods`, `modal_damping`, `steps_per_period`."""
-
-
-class Argument(msgspec.Struct, frozen=True, kw_only=True):
-    """One argument of a quantity."""
-
-    name: str
-    type: str
-    required: bool
-    default: Any = None
-    description: str = ""
-    group: str = ""
-    """Class name of the option group that it belongs to; empty for one of the quantity's own."""
-
-
 class Quantity:
-    """A named quantity of interest. `@quantity` makes and registers it; calling it calls the function."""
+    """A named quantity of interest. `@quantity` makes and registers it."""
 
     def __init__(
         self,
@@ -118,32 +80,26 @@ class Quantity:
         self._types = {field[0]: field[1] for field in fields}
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
-    def __call__(self, *values: Any, **arguments: Any) -> Value:
-        """The function itself, with option groups as values."""
-        return self.function(*values, **arguments)
-
     @property
-    def arguments(self) -> tuple[Argument, ...]:
-        """The arguments with their types, defaults and descriptions."""
-        group_of = {name: kind.__name__ for kind in self._groups.values() for name in kind.__struct_fields__}
-        return tuple(
-            Argument(
-                name=field.name,
-                type=_type_name(field.type),
-                required=field.required,
-                default=None if field.required else field.default,
-                description=next((meta.description for meta in reversed(metas_of(field.type)) if meta.description), ""),
-                group=group_of.get(field.name, ""),
-            )
-            for field in msgspec.structs.fields(self.schema)
-        )
+    def arguments(self) -> list[dict[str, Any]]:
+        """The arguments as plain data: name, type, whether required, default, description."""
+        found = []
+        for field in msgspec.structs.fields(self.schema):
+            among = extra_of(field.type, AMONG)
+            one: dict[str, Any] = {
+                "name": field.name,
+                "type": " | ".join(among.names()) if among else type_name(field.type),
+            }
+            one |= {"required": field.required, "default": None if field.required else field.default}
+            found.append(one | {"description": description_of(field.type)})
+        return found
 
     def bind(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Keyword arguments of the function: checked, with defaults, option groups built. Raises InputError."""
         data = {name: _native(value, name) for name, value in arguments.items()}
         required = {field.name for field in msgspec.structs.fields(self.schema) if field.required}
         for name, kind in self._types.items():
-            among = _among(kind)
+            among = extra_of(kind, AMONG)
             if among is not None and isinstance(data.get(name), str):
                 among.check(data[name], name)
             elif among is not None and name in required - set(data) and set(data) <= set(self._types):
@@ -168,8 +124,11 @@ class Quantity:
             )
         length = scene.beam.length
         for name, x in arguments.items():
-            place = any((meta.extra or {}).get("place") for meta in metas_of(self._types[name]))
-            if place and x is not None and not -ROUNDING * length <= x <= length * (1.0 + ROUNDING):
+            if (
+                extra_of(self._types[name], PLACE)
+                and x is not None
+                and not -ROUNDING * length <= x <= length * (1.0 + ROUNDING)
+            ):
                 raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
         supplied = {"scene": scene, "cache": cache}
         value = plain(self.function(**{name: supplied[name] for name in self._supplied}, **bound), self.name)
@@ -222,11 +181,9 @@ def describe(*words: str) -> list[dict[str, Any]]:
     """
     found = []
     for one in QUANTITIES.values():
-        arguments = one.arguments
-        text = " ".join((one.name, one.summary, one.unit, *(argument.name for argument in arguments))).casefold()
+        text = " ".join((one.name, one.summary, one.unit, *one.schema.__struct_fields__)).casefold()
         if all(word.casefold() in text for word in words):
-            plain_arguments = [msgspec.to_builtins(argument) for argument in arguments]
-            found.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": plain_arguments})
+            found.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": one.arguments})
     if not found:
         raise InputError(f"words = {shown(' '.join(words))}: no quantity matches, leave a word out")
     return found
@@ -248,28 +205,6 @@ def as_text(value: Value, digits: int = 12) -> str:
     if isinstance(value, Bracket):
         return f"{value.lower:.{digits}g} .. {value.upper:.{digits}g}"
     return "NaN" if isnan(value) else f"{value:.{digits}g}" if isfinite(value) else "infinity"
-
-
-def _among(kind: Any) -> Among | None:
-    """The models that an argument may name; None for any other argument."""
-    return next((meta.extra["among"] for meta in metas_of(kind) if meta.extra and "among" in meta.extra), None)
-
-
-def _member(kind: Any) -> Any:
-    """The type without None and annotations."""
-    return next(arm for arm in arms_of(kind) if arm is not type(None))
-
-
-def _type_name(kind: Any) -> str:
-    if among := _among(kind):
-        return " | ".join(among.names())
-    arm = _member(kind)
-    if get_origin(arm) is Literal:
-        return " | ".join(map(str, get_args(arm)))
-    if get_origin(arm) is tuple:
-        parts = get_args(arm)
-        return f"list of {_type_name(parts[0])}s" if parts[-1] is Ellipsis else f"{len(parts)} {_type_name(parts[0])}s"
-    return {int: "whole number", float: "number", str: "word", bool: "true | false"}.get(arm, str(arm))
 
 
 def _native(value: Any, name: str) -> Any:

@@ -1,6 +1,6 @@
 """Quantities of the nonlinear chain: benchmark problems, its motion from rest, a slider on it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
@@ -10,19 +10,15 @@ from msgspec.structs import replace
 from verify import options
 from verify.errors import InputError
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.options import ForceAmplitude, Grading, Mode, SoftStart, Wall
-from verify.quantities.slider import ChainSliderOptions, Time
+from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall
+from verify.quantities.slider import SliderOptions, TimeOptions, motion_arguments
 
 if TYPE_CHECKING:
-    from verify.beam import PointForce
     from verify.chain.ride import ChainRide
     from verify.judge.cache import SolutionCache
 
-Method = Annotated[Literal["adaptive", "rk4"], Meta(description="default: rk4 with a step")]
 Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
-Tolerance = Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step")]
 Seconds = Annotated[float, Meta(gt=0, description="s, from rest")]
-FixedStep = Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive")]
 BEAM = ("beam",)
 
 
@@ -32,12 +28,11 @@ def cantilever_tip(
     segments: Links,
     load: Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")],
     component: Annotated[Literal["deflection", "shortening"], Meta(description="w/L, or 1 - x/L")] = "deflection",
-    wall: Wall = "gregory",
 ) -> float:
     """Tip displacement over L of a cantilever under a dead transverse force (elastica)."""
     from verify.chain.problems import cantilever_tip
 
-    return float(getattr(cantilever_tip(load, segments, wall), component))
+    return float(getattr(cantilever_tip(load, segments), component))
 
 
 @quantity("chain.rollup_gap", unit="1", reads=())
@@ -62,12 +57,11 @@ def turning_frequency(
     segments: Links,
     mode: Mode,
     speed: Annotated[float, Meta(ge=0, le=1e3, description="of the hub, in sqrt(EI / (rho A L^4))")],
-    wall: Wall = "gregory",
 ) -> float:
     """Omega sqrt(rho A L^4/EI) of the lead-lag modes of a rotating cantilever."""
     from verify.chain.problems import turning_frequency
 
-    return turning_frequency(mode, segments, speed, wall)
+    return turning_frequency(mode, segments, speed)
 
 
 @quantity("chain.large_amplitude_frequency", unit="1", reads=BEAM)
@@ -90,69 +84,39 @@ def energy_drift(
     cache: "SolutionCache",
     *,
     segments: Links,
-    amplitude: Annotated[float, Meta(gt=0, le=0.1, description="at mid-span, over L")] = 0.05,
-    periods: Annotated[float, Meta(gt=0, le=1000, description="of the linear first mode")] = 1.0,
-    step: FixedStep | None = None,
-    tolerance: Tolerance | None = None,
+    step: Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive")] | None = None,
 ) -> float:
-    """Largest change of energy of an undamped free chain over its energy."""
+    """Largest change of energy of an undamped free chain over its energy, in a period from 0.05 L at mid-span."""
     from verify.chain.problems import energy_drift
 
-    if step is not None and tolerance is not None:
-        raise InputError(f"tolerance = {tolerance!r} with step = {step!r}: give one of the two")
-    return energy_drift(scene.beam, segments, amplitude, periods, step, tolerance or 1e-8, cache.progress)
+    return energy_drift(scene.beam, segments, 0.05, 1.0, step, 1e-8, cache.progress)
 
 
 @quantity("chain.imbalance", unit="1", reads=())
-def imbalance(
-    cache: "SolutionCache",
-    *,
-    segments: Links,
-    tip: Annotated[options.Tip, Meta(description="free, or a roller on an axial spring")] = "free",
-    tolerance: Tolerance = 1e-9,
-) -> float:
+def imbalance(cache: "SolutionCache", *, segments: Links) -> float:
     """Residual of the energy balance of a chain under base motion, load and actuator, over its damping loss."""
     from verify.chain.problems import shaken_imbalance
 
-    return shaken_imbalance(segments, tip, tolerance, cache.progress)
+    return shaken_imbalance(segments, "free", 1e-9, cache.progress)
 
 
 @quantity("chain.contact_line_error", unit="1", reads=BEAM)
-def contact_line_error(
-    scene: Scene,
-    *,
-    segments: Links,
-    mode: Mode,
-    x: Annotated[Place, Meta(description="m, selects the piece of the line")],
-    wall: Wall = "gregory",
-    grading: Grading = 1.0,
-) -> float:
-    """Slope of the chain's contact line in a mode less the beam's, over the largest slope."""
+def contact_line_error(scene: Scene, *, segments: Links, mode: Mode, x: Place) -> float:
+    """Slope of the chain's contact line at x in a mode less the beam's, over the largest slope."""
     from verify.chain.problems import contact_line_error
 
-    return contact_line_error(scene.beam, mode, segments, x, wall=wall, grading=grading)
+    return contact_line_error(scene.beam, mode, segments, x)
 
 
-def _forces(
-    scene: Scene, what: str, amplitude: float | None = None, soft_start: float | None = None
-) -> "tuple[Sequence[PointForce], float]":
-    """(forces, Hz) of a chain from rest. Raises InputError without forces, or for a [motion] of another kind."""
-    from verify.motion.request import soft_start as default_soft_start
-
-    if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
-        raise InputError(f"drive is missing: {what} takes a [drive] of kind force")
-    if (motion := scene.motion) is not None:
-        soft = default_soft_start("rest", motion.soft_start_periods) if soft_start is None else soft_start
-        values = {"start": motion.start, "modal_damping": motion.modal_damping or 0.0, "soft_start_periods": soft}
-        for (name, value), needed in zip(values.items(), ("rest", 0.0, 0.0), strict=True):
-            if value != needed:
-                raise InputError(
-                    f"motion.{name} = {value!r}: {what} is from rest, undamped, without soft start, give {needed!r}"
-                )
-    elif soft_start:
-        raise InputError(f"soft_start_periods = {soft_start!r}: {what} is without soft start, give 0")
-    forces = scene.forces if amplitude is None else [replace(one, amplitude=amplitude) for one in scene.forces]
-    return forces, scene.drive.frequency_hz
+def _from_rest(scene: Scene, what: str, by: TimeOptions) -> dict[str, Any]:
+    """Arguments of a simulation from rest, undamped, without soft start. Raises InputError for a [motion] of others."""
+    if scene.motion is None and by.soft_start_periods is None:
+        by = replace(by, soft_start_periods=0.0)
+    request = motion_arguments(scene, by)
+    for name, needed in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
+        if (request[name] or 0.0) != needed:
+            raise InputError(f"{name} = {request[name]!r}: {what} is from rest, undamped, at once, give {needed!r}")
+    return request
 
 
 @quantity("chain.transient_deflection", unit="m")
@@ -164,27 +128,13 @@ def transient_deflection(
     time: Seconds,
     x: Place,
     force: ForceAmplitude | None = None,
-    method: Method | None = None,
-    inertia: Annotated[Literal["full", "transverse"], Meta(description="transverse: none along x")] = "full",
-    step: FixedStep | None = None,
-    tolerance: Tolerance | None = None,
 ) -> float:
     """Deflection of the chain at x after a time from rest under the scene's forces."""
     from verify.chain.problems import transient
 
-    forces, hertz = _forces(scene, "chain.transient_deflection", force)
-    motion = transient(
-        scene.beam,
-        forces,
-        hertz,
-        [time],
-        segments,
-        step=step,
-        method=method or ("rk4" if step is not None else "adaptive"),
-        axial_inertia=inertia == "full",
-        tolerance=tolerance,
-        progress=cache.progress,
-    )
+    request = _from_rest(scene, "a chain", TimeOptions(model="analytic", time=time, force=force))
+    forces, hertz = request["forces"], request["frequency_hz"]
+    motion = transient(scene.beam, forces, hertz, [time], segments, progress=cache.progress)
     return float(motion.deflection([x])[0, 0])
 
 
@@ -196,23 +146,23 @@ def axial_departure(
     segments: Links,
     force: Annotated[float, Meta(gt=0, description="N, of every force")],
     time: Seconds = 1e-3,
-    x: Annotated[Place, Meta(description="m from the left end; default mid-span")] | None = None,
     inertia: Annotated[
         options.Inertia, Meta(description="transverse: rigid, none along x; elastic: links stretch by EA / l")
     ] = "full",
     of: Annotated[Literal["end", "rms"], Meta(description="at that time, or rms until then")] = "end",
 ) -> float:
-    """Deflection of the nonlinear chain less the linear one's from rest, over the rms of the linear one's."""
+    """Deflection of the nonlinear chain at mid-span less the linear one's from rest, over the rms of the latter."""
     from math import ceil
 
     import numpy as np
 
     from verify.chain.departure import SAMPLES, SAMPLES_PER_PERIOD, Driven, departure
 
-    forces, hertz = _forces(scene, "chain.axial_departure")
+    request = _from_rest(scene, "a chain", TimeOptions(model="analytic", time=time))
+    forces, hertz = request["forces"], request["frequency_hz"]
     times = np.linspace(0.0, time, max(SAMPLES, ceil(SAMPLES_PER_PERIOD * hertz * time) + 1))
-    place = 0.5 * scene.beam.length if x is None else x
-    driven = Driven(beam=scene.beam, forces=tuple(forces), frequency_hz=hertz, count=segments, x=place, times=times)
+    middle = 0.5 * scene.beam.length
+    driven = Driven(beam=scene.beam, forces=forces, frequency_hz=hertz, count=segments, x=middle, times=times)
     found = departure(driven, force, inertia, cache.progress)
     return found.at_end if of == "end" else found.rms
 
@@ -222,26 +172,25 @@ class ChainRideOptions(msgspec.Struct, frozen=True, kw_only=True):
 
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
-    time: Time | None = None
     force: ForceAmplitude | None = None
     soft_start_periods: SoftStart | None = None
 
 
-def _ride(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, options: ChainSliderOptions) -> "ChainRide":
+def _ride(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, options: SliderOptions) -> "ChainRide":
     """The run of the scene's slider on the chain. Raises InputError."""
     from verify.chain.ride import ride_from_rest
-    from verify.motion.request import STEPS_PER_PERIOD
 
-    slider, motion = options.of(scene), scene.motion
-    forces, hertz = _forces(scene, "a slider on the nonlinear chain", by.force, by.soft_start_periods)
-    time = by.time if by.time is not None or motion is None else motion.duration
-    if time is None:
-        raise InputError("time is missing and the scene has no [motion]: give time in seconds")
-    step = options.step or 1.0 / ((motion.steps_per_period if motion else STEPS_PER_PERIOD) * hertz)
-    key: Any = ("chain", scene.beam, tuple(forces), hertz, slider, by.segments, time, step, by.links)
+    slider = options.of(scene)
+    if scene.motion is None:
+        raise InputError("motion is missing: a slider on a chain takes [motion] with its duration")
+    run = TimeOptions(model="analytic", force=by.force, soft_start_periods=by.soft_start_periods)
+    request = _from_rest(scene, "a slider on a chain", run)
+    forces, hertz, seconds = request["forces"], request["frequency_hz"], request["duration"]
+    step = options.step or 1.0 / (scene.motion.steps_per_period * hertz)
+    key: Any = ("chain", scene.beam, forces, hertz, slider, by.segments, seconds, step, by.links)
     if key not in cache.motors:
         cache.motors[key] = ride_from_rest(
-            scene.beam, forces, hertz, slider, by.segments, time, step=step, links=by.links, progress=cache.progress
+            scene.beam, forces, hertz, slider, by.segments, seconds, step=step, links=by.links, progress=cache.progress
         )
     found: ChainRide = cache.motors[key]
     return found
@@ -253,7 +202,7 @@ def _imbalance(run: "ChainRide") -> float:
 
 
 def _ride_figure(read: "Callable[[ChainRide], float]") -> Callable[..., float]:
-    def ride_figure(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, slider: ChainSliderOptions) -> float:
+    def ride_figure(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, slider: SliderOptions) -> float:
         return read(_ride(scene, cache, by, slider))
 
     return ride_figure

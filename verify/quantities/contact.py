@@ -7,16 +7,18 @@ import msgspec
 from msgspec import Meta
 
 from verify.checks import check_sizes
+from verify.contact import bouncing, landing, layer
 from verify.errors import InputError
 from verify.quantities.base import Scene, quantity
-from verify.quantities.options import Frequency, Mass, Mu, Slope, drive_frequency
+from verify.quantities.options import Mass, Mu, Sizes, Slope, drive_frequency
 from verify.slider import GRAVITY
 
-Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
 HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
 SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]
 Compliance = Annotated[float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), tangential; 0 for Coulomb")]
 Stiffness = Annotated[float, Meta(gt=0, description="N/m")]
+MU = 0.2
+"""Of a foot on a wave; the ratio of its forces over mu does not depend on it."""
 
 
 @quantity("friction.creep_speed", unit="m/s", reads=())
@@ -25,7 +27,7 @@ def creep_speed(
     mu: Mu,
     slope: Slope,
     pull: Annotated[float, Meta(description="external force over mass, m/s^2")],
-    gravity: Gravity = GRAVITY,
+    gravity: Annotated[float, Meta(gt=0, description="m/s^2")] = GRAVITY,
 ) -> float:
     """Speed under a constant force below the friction limit, tanh friction."""
     from verify.motion.rigid_surface import creep_speed
@@ -74,17 +76,13 @@ def coulomb_decrement(
 @quantity("slider.winkler_speed_ratio", unit="1", reads=())
 def winkler_speed_ratio(*, contact_half_angle: HalfAngle, epsilon: Compliance = 0.0) -> float:
     """No-load speed over crest speed of a rigid slider on a Winkler layer over a wave."""
-    from verify.contact.layer import no_load_speed
-
-    return no_load_speed(contact_half_angle, epsilon)
+    return layer.no_load_speed(contact_half_angle, epsilon)
 
 
 @quantity("slider.layer_force", unit="1", reads=())
 def layer_force(*, contact_half_angle: HalfAngle, speed_ratio: SpeedRatio, epsilon: Compliance = 0.0) -> float:
     """Friction force over mu N on a rigid slider on a Winkler layer over a wave."""
-    from verify.contact.layer import force
-
-    return force(contact_half_angle, speed_ratio, epsilon)
+    return layer.force(contact_half_angle, speed_ratio, epsilon)
 
 
 @quantity("slider.layer_efficiency", unit="1", reads=())
@@ -94,9 +92,7 @@ def layer_efficiency(
     speed_ratio: Annotated[float, Meta(ge=0, lt=1, description="of the slider over the surface at the crests")],
 ) -> float:
     """Power of that slider over power into the layer, Coulomb friction."""
-    from verify.contact.layer import efficiency
-
-    return efficiency(contact_half_angle, speed_ratio)
+    return layer.efficiency(contact_half_angle, speed_ratio)
 
 
 @quantity("contact.landing_phase", unit="rad", reads=())
@@ -104,32 +100,15 @@ def landing_phase(
     *, acceleration_ratio: Annotated[float, Meta(gt=1, description="A omega^2 over the acceleration of the preload")]
 ) -> float:
     """Phase of a vibrating surface at the first impact of a mass that has lifted off."""
-    from verify.contact.bouncing import landing_phase
-
-    return landing_phase(acceleration_ratio)
+    return bouncing.landing_phase(acceleration_ratio)
 
 
 @quantity("contact.restitution", unit="1", reads=())
 def restitution(
-    *,
-    damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)); or mass, stiffness, damping")]
-    | None = None,
-    mass: Mass | None = None,
-    stiffness: Stiffness | None = None,
-    damping: Annotated[float, Meta(ge=0, description="of the dashpot, N s/m")] | None = None,
+    *, damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)) of mass, spring and dashpot")]
 ) -> float:
     """Coefficient of restitution of an impact on a spring and dashpot that only push."""
-    from verify.contact.landing import damping_ratio as ratio_of
-    from verify.contact.landing import restitution
-
-    if damping_ratio is not None:
-        for name, value in (("mass", mass), ("stiffness", stiffness), ("damping", damping)):
-            if value is not None:
-                raise InputError(f"{name} = {value!r} beside damping_ratio: leave one of them out")
-        return restitution(damping_ratio)
-    if mass is None or stiffness is None or damping is None:
-        raise InputError("damping_ratio is missing: give it, or mass, stiffness and damping")
-    return restitution(ratio_of(mass, stiffness, damping))
+    return landing.restitution(damping_ratio)
 
 
 class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
@@ -138,54 +117,38 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
     contact_half_angle: HalfAngle
     speed_ratio: SpeedRatio
     epsilon: Compliance = 0.0
-    mu: Mu = 0.2
     steps_per_period: Annotated[int, Meta(ge=4, description="of the wave")] = 256
-    amplitude: Annotated[float, Meta(gt=0, description="of the wave, m")] = 1e-9
-    frequency_hz: Frequency | None = None
 
-    def force(self, scene: Scene, points: int, steps_per_period: int) -> float:
-        """-F/(mu N) of so many springs. Raises InputError where none is in contact."""
+    def force(self, scene: Scene, points: int = 61, refine: float = 1.0) -> float:
+        """-F/(mu N) of so many springs, over a shorter time step. Raises InputError where none is in contact."""
         from verify.motor.on_wave import over_a_wave
 
         found, _ = over_a_wave(
             scene.beam,
-            drive_frequency(scene, self.frequency_hz),
+            drive_frequency(scene),
             speed_ratio=self.speed_ratio,
             contact_half_angle=self.contact_half_angle,
             epsilon=self.epsilon,
-            mu=self.mu,
+            mu=MU,
             points=points,
-            steps_per_period=steps_per_period,
-            amplitude=self.amplitude,
+            steps_per_period=round(refine * self.steps_per_period),
         )
         if found.normal_force <= 0.0:
             raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
-        return -found.force / (self.mu * found.normal_force)
+        return -found.force / (MU * found.normal_force)
 
 
 @quantity("slider.wave_force", unit="1", reads=("beam", "drive"))
-def wave_force(
-    scene: Scene,
-    contact: WaveContact,
-    *,
-    points: Annotated[int, Meta(ge=2, description="springs in a wavelength")] = 61,
-) -> float:
+def wave_force(scene: Scene, contact: WaveContact) -> float:
     """Friction force over mu N on a rigid foot of springs over a pure wave, by time integration."""
-    return contact.force(scene, points, contact.steps_per_period)
+    return contact.force(scene)
 
 
 @quantity("slider.wave_force_order", unit="1", reads=("beam", "drive"))
-def wave_force_order(
-    scene: Scene,
-    contact: WaveContact,
-    *,
-    counts: Annotated[tuple[int, ...], Meta(min_length=3, description="three or more numbers of springs")],
-) -> float:
+def wave_force_order(scene: Scene, contact: WaveContact, *, counts: Sizes) -> float:
     """Observed order of that force in the number of springs, against the Winkler layer; steps in proportion."""
-    from verify.contact.layer import force
     from verify.judge.compare import observed_order
 
     check_sizes("counts", counts)
-    exact = force(contact.contact_half_angle, contact.speed_ratio, contact.epsilon)
-    steps = [round(contact.steps_per_period * n / counts[0]) for n in counts]
-    return observed_order(counts, [contact.force(scene, n, s) - exact for n, s in zip(counts, steps, strict=True)])
+    exact = layer.force(contact.contact_half_angle, contact.speed_ratio, contact.epsilon)
+    return observed_order(counts, [contact.force(scene, n, n / counts[0]) - exact for n in counts])

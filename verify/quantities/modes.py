@@ -1,16 +1,17 @@
 """Quantities of modes: frequencies, shapes, errors, orders, bounds, required N; the paper's drive rule; buckling."""
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
 from verify.checks import Relative, check_sizes
 from verify.errors import InputError
+from verify.exact import closed_forms
 from verify.judge.bracket import Bracket
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN, model_meta
 from verify.quantities import options as opt
-from verify.quantities.base import Place, Scene, quantity
+from verify.quantities.base import Scene, quantity
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
@@ -47,18 +48,15 @@ def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
 
 
 @quantity("mode.law_ratio", unit="1", reads=BEAM)
-def law_ratio(scene: Scene, cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
+def law_ratio(
+    scene: Scene, cache: "SolutionCache", *, model: opt.DiscreteModel, mode: opt.Mode, count: opt.Size
+) -> float:
     """Frequency error over its leading term, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), mu = beta l."""
-    from verify.exact.closed_forms import check_uniform
     from verify.exact.error_laws import law_of, leading_error
 
-    law_of(of.model)
-    check_uniform(scene.beam)
-    for name, value in of.settings:
-        if name in ("theory", "grading") or (name == "wall" and "clamped" in scene.beam.supports):
-            raise InputError(f"{name} = {value!r}: the leading law has none, leave it out or use mode.frequency_error")
-    law = leading_error(of.model, scene.beam.supports, of.mode, of.count)
-    return cache.frequency_error(of.model, of.count, of.mode, of.settings) / law
+    law_of(model)
+    closed_forms.check_uniform(scene.beam)
+    return cache.frequency_error(model, count, mode) / leading_error(model, scene.beam.supports, mode, count)
 
 
 @quantity("mode.shape_error", unit="1", reads=BEAM)
@@ -71,25 +69,6 @@ def shape_error(cache: "SolutionCache", of: opt.OneDiscreteMode, *, reading: Rea
 def curvature_error(cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
     """Relative L2 error of the curvature at joints or Gauss points."""
     return cache.curvature_error(of.model, of.count, of.mode, of.settings)
-
-
-def _shape(scene: Scene, cache: "SolutionCache", of: opt.OneMode, x: float, derivative: int) -> float:
-    from verify.models.places import places
-
-    at = places("x", x, scene.beam.length).ravel()
-    return cache.shape_at(of.model, of.count, of.mode, at, derivative, of.settings)
-
-
-@quantity("mode.deflection", unit="1/sqrt(kg)", reads=BEAM)
-def deflection(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
-    """Deflection of a mode of modal mass 1 kg at x, positive at the first displacement from the left end."""
-    return _shape(scene, cache, of, x, 0)
-
-
-@quantity("mode.slope", unit="1/(m sqrt(kg))", reads=BEAM)
-def slope(scene: Scene, cache: "SolutionCache", of: opt.OneMode, *, x: Place) -> float:
-    """Slope of the deflection of a mode of modal mass 1 kg at x."""
-    return _shape(scene, cache, of, x, 1)
 
 
 @quantity("mode.node_position", unit="m", reads=BEAM)
@@ -106,43 +85,41 @@ def node_position(
     return float(positions[node - 1])
 
 
+class Orders(opt.ModelOptions, frozen=True, kw_only=True):
+    """One mode of one discrete model at several sizes."""
+
+    model: opt.DiscreteModel
+    mode: opt.Mode
+    counts: opt.Sizes
+
+    def __post_init__(self) -> None:
+        check_sizes("counts", self.counts)
+        if self.model != MEAN:
+            opt.check_settings(self.model, self.settings, "modal")
+
+
+class OrdersOrMean(Orders, frozen=True, kw_only=True):
+    """One mode of one discrete model, or of the mean of segment and fem, at several sizes."""
+
+    model: Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", sized=True, mean=True)]
+
+
 @quantity("mode.order", unit="1", reads=BEAM)
-def order(
-    scene: Scene,
-    cache: "SolutionCache",
-    options: opt.ModelOptions,
-    *,
-    model: Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", sized=True, mean=True)],
-    mode: opt.Mode,
-    counts: opt.Sizes,
-) -> float:
+def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
     """Observed order of the frequency error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
 
-    check_sizes("counts", counts)
-    expected = None
-    if model != MEAN:
-        opt.check_settings(model, options.settings, "modal")
-        expected = MODELS.named(model).order(scene.beam, **dict(options.settings))
-    return settled_order(counts, [cache.frequency_error(model, n, mode, options.settings) for n in counts], expected)
+    expected = None if of.model == MEAN else MODELS.named(of.model).order(scene.beam, **dict(of.settings))
+    errors = [cache.frequency_error(of.model, n, of.mode, of.settings) for n in of.counts]
+    return settled_order(of.counts, errors, expected)
 
 
 @quantity("mode.shape_order", unit="1", reads=BEAM)
-def shape_order(
-    cache: "SolutionCache",
-    options: opt.ModelOptions,
-    *,
-    model: opt.DiscreteModel,
-    mode: opt.Mode,
-    counts: opt.Sizes,
-    reading: Reading | None = None,
-) -> float:
+def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None = None) -> float:
     """Observed order of the shape error over N; outside the asymptotic range an InputError."""
     from verify.judge.compare import settled_order
 
-    check_sizes("counts", counts)
-    settings = opt.check_settings(model, options.settings, "modal")
-    return settled_order(counts, [cache.shape_error(model, n, mode, reading, settings) for n in counts])
+    return settled_order(of.counts, [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts])
 
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
@@ -159,15 +136,11 @@ def count_needed(
     model: opt.DiscreteModel,
     mode: opt.Mode,
     error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
-    of: Annotated[
-        Literal["enough", "least"], Meta(description="N from which all larger ones suffice, or the least N that does")
-    ] = "enough",
 ) -> float:
-    """Number of segments or elements for a frequency error of at most `error`."""
+    """Number of segments or elements from which on the frequency error is at most `error`."""
     from verify.judge.sizing import enough_from
 
-    found = enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal"))
-    return found.smaller if of == "least" and found.smaller is not None else found.count
+    return enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal")).count
 
 
 @quantity("mode.stock_difference", unit="1", reads=BEAM)
@@ -183,28 +156,22 @@ def rule_frequency(
     scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
 ) -> float:
     """Root mean square of two neighbouring natural frequencies, where both respond equally."""
-    from verify.exact.closed_forms import rule_frequency_hz
-
-    return rule_frequency_hz(scene.beam, mode - 1, mode)
+    return closed_forms.rule_frequency_hz(scene.beam, mode - 1, mode)
 
 
 @quantity("drive.quarter_wavelength", unit="m", reads=("beam", "drive"))
 def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
     """A quarter of the bending wavelength: the distance of a force from its end of the beam."""
-    from verify.exact.closed_forms import quarter_wavelength
-
-    return quarter_wavelength(scene.beam, opt.drive_frequency(scene, frequency_hz))
+    return closed_forms.quarter_wavelength(scene.beam, opt.drive_frequency(scene, frequency_hz))
 
 
 @quantity("beam.buckling_load", unit="N", reads=BEAM)
 def buckling_load(
     scene: Scene,
-    options: opt.ModelOptions,
     *,
     model: Annotated[str, model_meta("which model", "buckling_load")],
     count: opt.Size | None = None,
 ) -> float:
     """Compression at first buckling, whatever axial force the beam itself has."""
     opt.check_count(model, count)
-    settings = opt.check_settings(model, options.settings, "buckling")
-    return MODELS.named(model).buckling_load(scene.beam, count, **dict(settings))
+    return MODELS.named(model).buckling_load(scene.beam, count)

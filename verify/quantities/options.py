@@ -1,7 +1,7 @@
 """Annotated argument types and the option groups that several quantities share."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 from msgspec import Meta
@@ -27,7 +27,6 @@ ModesModel = Annotated[str, model_meta("which model", "solve_modes")]
 DiscreteModel = Annotated[str, model_meta("which discrete model", "solve_modes", sized=True)]
 FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
 DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
-UnitModel = Annotated[str, model_meta("which model", "unit_responses")]
 TimeModel = Annotated[str, model_meta("which model", "time_basis")]
 Frequency = Annotated[float, Meta(gt=0, description="Hz; default: the scene's drive")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
@@ -35,13 +34,11 @@ Theory = Annotated[options.Theory, Meta(description="beam theory")]
 Wall = Annotated[options.Wall, Meta(description="joint at a clamped end; half: k = 2EI/l")]
 Joints = Annotated[options.Joints, Meta(description="joint stiffness of Eq. (1)")]
 Attachment = Annotated[options.Attachment, Meta(description="point masses and springs on segments")]
-Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
 SoftStart = Annotated[float, Meta(ge=0, description="periods over which the forces grow; default: the scene's")]
 ForceAmplitude = Annotated[float, Meta(ge=0, description="of every force, N; default: the scene's")]
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
 Mass = Annotated[float, Meta(gt=0, description="kg")]
-Preload = Annotated[float, Meta(ge=0, description="normal force in addition to the weight, N")]
 
 
 def check_count(model: str, count: int | None) -> None:
@@ -53,7 +50,7 @@ def check_count(model: str, count: int | None) -> None:
 
 
 def check_settings(model: str, chosen: "Settings", kind: str) -> "Settings":
-    """The settings. Raises InputError for one that the model lacks; `kind` is modal, field or buckling."""
+    """The settings. Raises InputError for one that the model lacks; `kind` is modal or field."""
     known = getattr(MODELS.named(model), f"{kind}_settings")
     for name, value in chosen:
         if name not in known:
@@ -67,14 +64,14 @@ class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
 
     wall: Wall = "gregory"
     joints: Joints = "series"
-    grading: Grading = 1.0
+    grading: Annotated[float, Meta(gt=0, description="length of a section's last part over its first")] = 1.0
     theory: Theory = "euler-bernoulli"
     attachment: Attachment = "reciprocal"
 
     @property
     def settings(self) -> "Settings":
         """Those other than their defaults."""
-        return not_default(self, without=("model", "mode", "count"))
+        return not_default(self, without=("model", "mode", "count", "counts"))
 
 
 class OneMode(ModelOptions, frozen=True, kw_only=True):
@@ -110,18 +107,14 @@ class DriveOptions(msgspec.Struct, frozen=True, kw_only=True):
     phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
     position: Annotated[Place, Meta(description="m, d of the first force, L - d of the second")] | None = None
 
-    def frequency(self, scene: Scene) -> float:
-        """Hz. Raises InputError where neither argument nor drive has it."""
-        return drive_frequency(scene, self.frequency_hz)
-
     def forces(self, scene: Scene, amplitude: float | None = None) -> tuple[PointForce, ...]:
         """The scene's forces with these positions, phase and amplitude (N). Raises InputError."""
         forces = list(scene.forces)
         if not forces:
             raise InputError("drive.force is missing: add force = [{ position = ... }] to [drive]")
-        if (self.position is not None or self.phase_deg is not None) and len(forces) != 2:
-            name = "position" if self.position is not None else "phase_deg"
-            raise InputError(f"{name} is for two forces and the scene has {len(forces)}: leave it out")
+        for name in ("position", "phase_deg"):
+            if getattr(self, name) is not None and len(forces) != 2:
+                raise InputError(f"{name} is for two forces and the scene has {len(forces)}: leave it out")
         if self.position is not None:
             positions = (self.position, scene.beam.length - self.position)
             forces = [replace(force, position=x) for force, x in zip(forces, positions, strict=True)]
@@ -145,11 +138,6 @@ def check_forces(scene: Scene, what: str) -> None:
     """Raise InputError for a drive by displacements, where `what` takes forces."""
     if scene.drive is not None and scene.drive.kind != "force":
         raise InputError(f"drive.kind = {scene.drive.kind!r}: {what} takes imposed forces, give kind = 'force'")
-
-
-def given(values: Any, names: Sequence[str]) -> dict[str, Any]:
-    """Those fields of an option group that are not None."""
-    return {name: value for name in names if (value := getattr(values, name)) is not None}
 
 
 def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> "Settings":

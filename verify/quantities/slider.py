@@ -13,15 +13,16 @@ from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
-from verify.slider import GRAVITY, Slider, changed
+from verify.slider import Slider, changed
 
 if TYPE_CHECKING:
     from verify.judge.cache import SolutionCache
     from verify.motion.result import Ledger, Motion
 
 Time = Annotated[float, Meta(gt=0, description="s; default: the scene's motion.duration")]
-SAMPLES_PER_PERIOD = 32
-"""Of a motion in which waves are measured."""
+Window = Annotated[tuple[float, float], Meta(description="m, start and end")]
+SAMPLES_PER_PERIOD, POINTS = 32, 40
+"""Instants and positions of a motion in which waves are measured."""
 
 
 class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
@@ -37,23 +38,17 @@ class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
     force: opt.ForceAmplitude | None = None
 
 
-class SliderValues(msgspec.Struct, frozen=True, kw_only=True):
+class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
     """Values that replace those of the scene's slider."""
 
     mu: opt.Mu | None = None
     slope: opt.Slope | None = None
     mass: opt.Mass | None = None
     law: Annotated[options.Law, Meta(description="tanh of Eq. (3), or coulomb with sticking")] | None = None
-    coupling: Annotated[options.CouplingChoice, Meta(description="of slider and beam")] | None = None
-    preload: opt.Preload | None = None
-    slider_position: Annotated[Place, Meta(description="m, at the start")] | None = None
-
-
-class ChainSliderOptions(SliderValues, frozen=True, kw_only=True):
-    """The slider on a nonlinear chain, by default the scene's."""
-
     kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] | None = None
+    coupling: Annotated[options.CouplingChoice, Meta(description="of slider and beam")] | None = None
     normal: Annotated[options.NormalChoice, Meta(description="held: weight and inertia act on the beam")] | None = None
+    slider_position: Annotated[Place, Meta(description="m, at the start")] | None = None
     slider_speed: Annotated[float, Meta(description="m/s, at the start")] | None = None
     step: Annotated[float, Meta(gt=0, description="of the slider, s; default: by drive and start")] | None = None
 
@@ -62,22 +57,10 @@ class ChainSliderOptions(SliderValues, frozen=True, kw_only=True):
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
         scene.slider.check_stays()
-        given = {name: value for name, value in msgspec.structs.asdict(self).items() if value is not None}
-        given.pop("step", None)
-        return changed_slider(scene.slider, given)
-
-
-class SliderOptions(ChainSliderOptions, frozen=True, kw_only=True):
-    """The slider, by default the scene's."""
-
-    line: Annotated[options.Line, Meta(description="contact line of a chain")] | None = None
-
-
-def changed_slider(slider: Slider, given: dict[str, Any]) -> Slider:
-    """A slider with other values, by the names of `SliderOptions`. Raises InputError."""
-    if given.get("law") == "coulomb" and "slope" in given:
-        raise InputError(f"slope = {given['slope']!r} is K of law = 'tanh': law = 'coulomb' has none, leave it out")
-    return changed(slider, **{name.removeprefix("slider_"): value for name, value in given.items()})
+        if self.law == "coulomb" and self.slope is not None:
+            raise InputError(f"slope = {self.slope!r} is K of law = 'tanh': law = 'coulomb' has none, leave it out")
+        values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
+        return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
@@ -99,7 +82,7 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     return {
         "beam": scene.beam,
         "forces": by.forces(scene, by.force),
-        "frequency_hz": by.frequency(scene),
+        "frequency_hz": opt.drive_frequency(scene, by.frequency_hz),
         "duration": time,
         "model": by.model,
         "count": by.count,
@@ -121,26 +104,15 @@ def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -
     return cache.motions[key]
 
 
-def _check_modes_used(by: TimeOptions, start: str, two_way: bool) -> None:
-    if by.modes is not None and start == "steady" and not two_way:
-        raise InputError(f"modes = {by.modes!r}: a steady field without two-way coupling has none, leave it out")
-
-
 def slider_run(
-    scene: Scene,
-    cache: "SolutionCache",
-    by: TimeOptions,
-    slider: SliderOptions,
-    *,
-    reversed_phases: bool = False,
-    **more: Any,
+    scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, reverse: bool = False, **more: Any
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
     from verify.motion.request import STEPS_PER_PERIOD
     from verify.motion.step_control import KNOWN
 
     arguments = motion_arguments(scene, by)
-    if reversed_phases:
+    if reverse:
         arguments["forces"] = tuple(replace(one, phase_deg=-one.phase_deg) for one in arguments["forces"])
     steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
     run = _simulated(cache, arguments, slider=slider.of(scene), step=slider.step, steps_per_period=steps, **more)
@@ -157,7 +129,8 @@ def slider_run(
             f"step = {status.step_s:.3g} s, the default: halving it changes the displacement by "
             f"{100.0 * status.moved:.2g} %, give a shorter step or time"
         )
-    _check_modes_used(by, arguments["start"], bool(run.coupling and run.coupling.two_way))
+    if by.modes is not None and arguments["start"] == "steady" and not (run.coupling and run.coupling.two_way):
+        raise InputError(f"modes = {by.modes!r}: a steady field without two-way coupling has none, leave it out")
     return run
 
 
@@ -183,7 +156,7 @@ for _name, (_unit, _text) in RUN_FIGURES.items():
 def reversal(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
     """Displacement with all phases reversed over the displacement; below 0 it reverses."""
     there = slider_run(scene, cache, by, slider).displacement
-    back = slider_run(scene, cache, by, slider, reversed_phases=True).displacement
+    back = slider_run(scene, cache, by, slider, reverse=True).displacement
     return back / there if there else float("nan")
 
 
@@ -203,28 +176,25 @@ def order(
     def displacement(by: TimeOptions, step: float | None = None) -> float:
         return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
 
-    if steps is not None and counts is None:
-        check_sizes("steps", steps)
-        if slider.step is not None:
-            raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
-        exact = displacement(by, min(steps) / 16.0)
-        errors = [relative_error(displacement(by, step), exact) for step in steps]
-        return settled_order([1.0 / step for step in steps], errors, told=f"steps = {list(steps)}")
-    if counts is None or steps is not None:
+    if counts is not None and steps is None:
+        check_sizes("counts", counts)
+        if by.count is not None or not MODELS.named(by.model).sized:
+            raise InputError(f"counts = {list(counts)}: an order over counts is of a discrete model without count")
+        exact = displacement(replace(by, model="analytic"))
+        errors = [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
+        return settled_order(counts, errors)
+    if steps is None or counts is not None:
         raise InputError(f"counts = {counts!r} and steps = {steps!r}: give one of the two")
-    check_sizes("counts", counts)
-    if by.count is not None or not MODELS.named(by.model).sized:
-        name, value = ("count", by.count) if by.count is not None else ("model", by.model)
-        raise InputError(f"{name} = {value!r}: an order over counts is that of a discrete model without count")
-    exact = displacement(replace(by, model="analytic"))
-    found = [displacement(replace(by, count=n, modes=None)) for n in counts]
-    return settled_order(counts, [relative_error(one, exact) for one in found])
+    check_sizes("steps", steps)
+    if slider.step is not None:
+        raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
+    exact = displacement(by, min(steps) / 16.0)
+    errors = [relative_error(displacement(by, step), exact) for step in steps]
+    return settled_order([1.0 / step for step in steps], errors, told=f"steps = {list(steps)}")
 
 
 @quantity("slider.deflection", unit="m")
-def deflection_with_slider(
-    scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place
-) -> float:
+def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
     """Deflection of the beam at x after a time, with the slider on it."""
     return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
 
@@ -273,38 +243,18 @@ def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: Sli
 @quantity("slider.coupling_size", unit="1")
 def coupling_size(
     scene: Scene,
-    drive: opt.DriveOptions,
+    cache: "SolutionCache",
     *,
     of: Annotated[Literal["friction", "normal"], Meta(description="full friction, or m omega^2 |G| of the inertia")],
-    model: opt.FieldModel = "analytic",
-    count: opt.Size | None = None,
-    mass: opt.Mass | None = None,
-    slider_position: Annotated[Place, Meta(description="m, of the slider")] | None = None,
-    mu: opt.Mu | None = None,
-    preload: opt.Preload | None = None,
 ) -> float:
-    """Reaction of the slider on the steady beam relative to the wave: size of the two-way coupling."""
-    from verify.beam import PointForce
-    from verify.motion.contact import couple, coupling_of, surface_speed, turned_by
-
-    opt.check_count(model, count)
-    opt.check_forces(scene, "a slider's beam")
-    friction_alone = {"mu": mu, "preload": preload, "phase_deg": drive.phase_deg, "position": drive.position}
-    for name, value in friction_alone.items():
-        if of == "normal" and value is not None:
-            raise InputError(f"{name} = {value!r} is for of = 'friction': leave it out")
-    slider = SliderOptions(mass=mass, slider_position=slider_position, mu=mu, preload=preload).of(scene)
-    x, hertz, solver = slider.start_on(scene.beam), drive.frequency(scene), MODELS.named(model)
-    driven = solver.solve_harmonic(scene.beam, drive.forces(scene), hertz, count)
-    unit = solver.solve_harmonic(scene.beam, (PointForce(position=x),), hertz, count)
-    turned = solver.solve_harmonic(scene.beam, couple(scene.beam, x, hertz), hertz, count)
-    receptance = complex(unit.deflection([x])[0])
-    found = coupling_of(slider, scene.beam, hertz, surface_speed(driven, x), receptance, turned_by(turned, x))
-    if of == "normal":
-        return found.normal_size
-    if found.friction_size is None:
-        raise InputError(f"slider_position = {x!r} m: the drive does not move the surface there, choose another")
-    return found.friction_size
+    """Reaction of the slider on the steady exact beam relative to the wave: size of the two-way coupling."""
+    by = TimeOptions(model="analytic", start="steady", time=1.0 / opt.drive_frequency(scene))
+    coupling = slider_run(scene, cache, by, SliderOptions()).coupling
+    assert coupling is not None
+    size = coupling.normal_size if of == "normal" else coupling.friction_size
+    if size is None:
+        raise InputError("slider.position: the drive does not move the surface there, choose another")
+    return size
 
 
 @quantity("slider.terminal_speed", unit="m/s", reads=("beam", "drive"))
@@ -315,37 +265,16 @@ def terminal_speed(
     slope: opt.Slope,
     mu: opt.Mu,
     kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] = "tangential",
-    gravity: Annotated[float, Meta(gt=0, description="m/s^2")] = GRAVITY,
-    frequency_hz: opt.Frequency | None = None,
 ) -> float:
     """Steady mean speed along +x of a slider on a pure wave towards +x, tanh friction."""
     from verify.motion.pure_wave import terminal_speed
 
-    slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics, gravity=gravity)
-    return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene, frequency_hz))
+    slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
+    return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))
 
 
-MOTION = ("beam", "drive", "motion")
-
-
-@quantity("motion.deflection", unit="m", reads=MOTION)
-def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, x: Place) -> float:
-    """Deflection of the driven beam at x after a time, without slider."""
-    arguments = motion_arguments(scene, by)
-    _check_modes_used(by, arguments["start"], two_way=False)
-    return float(_simulated(cache, arguments, at=(x,)).deflection[-1, 0])
-
-
-@quantity("motion.reflection", unit="1", reads=MOTION)
-def reflection(
-    scene: Scene,
-    cache: "SolutionCache",
-    by: TimeOptions,
-    *,
-    window: Annotated[tuple[float, float], Meta(description="m, start and end")],
-    points: Annotated[int, Meta(ge=4, le=2000, description="equidistant positions in the window")] = 40,
-    periods: Annotated[int, Meta(ge=1, description="the last ones of the drive; default: all")] | None = None,
-) -> float:
+@quantity("motion.reflection", unit="1", reads=("beam", "drive", "motion"))
+def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window: Window) -> float:
     """Gamma of two waves fitted to the phasors of the driven beam's motion in a window, without slider."""
     import numpy as np
 
@@ -356,11 +285,7 @@ def reflection(
     arguments = motion_arguments(scene, by)
     hertz = arguments["frequency_hz"]
     check_window(scene.beam, [force.position for force in arguments["forces"]], hertz, window)
-    x = places("window", np.linspace(*window, points), scene.beam.length)
-    available = arguments["duration"] * hertz
-    if periods is not None and periods > available:
-        raise InputError(f"periods = {periods!r}: the motion has {available:.4g}, give fewer or a longer time")
-    samples = int(SAMPLES_PER_PERIOD * available) + 1
+    x = places("window", np.linspace(*window, POINTS), scene.beam.length)
+    samples = int(SAMPLES_PER_PERIOD * arguments["duration"] * hertz) + 1
     run = _simulated(cache, arguments, at=tuple(map(float, x)), samples=samples)
-    last = samples if periods is None else SAMPLES_PER_PERIOD * periods
-    return measure_series(scene.beam, x, run.times[-last:], run.deflection[-last:], hertz).reflection
+    return measure_series(scene.beam, x, run.times, run.deflection, hertz).reflection

@@ -7,9 +7,9 @@ from typing import Any
 
 import msgspec
 
+from verify.convert import convert, entry_of, table_of, typed
 from verify.errors import InputError, NoTomlError, near_name, raise_all, shown
 from verify.files import exists
-from verify.scene.convert import convert, entry_of, table_of, typed
 from verify.scene.model import Scene
 
 DATA = Path(__file__).parent / "data"

@@ -9,8 +9,8 @@ from typing import Any
 
 import msgspec
 
+from verify.convert import description_of, table_of
 from verify.errors import InputError, near_name
-from verify.scene.convert import metas_of, table_of
 from verify.scene.model import Scene
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -79,8 +79,7 @@ def descriptions(kind: type[msgspec.Struct]) -> dict[str, str]:
                 found[node.target.id] = " ".join(str(ast.literal_eval(after.value)).split())
     fields = {field.name: field for field in msgspec.structs.fields(kind)}
     for name, field in fields.items():
-        texts = [meta.description for meta in metas_of(field.type) if meta.description]
-        found.setdefault(name, texts[0] if texts else "")
+        found.setdefault(name, description_of(field.type))
     return {fields[name].encode_name: found[name] for name in fields if found[name]}
 
 

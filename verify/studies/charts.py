@@ -1,6 +1,6 @@
-"""What the tables and charts of several studies share: columns, lines in suitable units, errors over N."""
+"""What the tables and charts of several studies share: columns, lines in suitable units, movies."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -28,6 +28,13 @@ def percent(name: str, form: str = "+.4g") -> "Column":
     from verify.report.result import Column
 
     return Column(name, format=form, percent=True)
+
+
+def sized_title(model: str, count: int | None) -> str:
+    """'49 segments', 'exact beam'."""
+    from verify.models.catalogue import MODELS
+
+    return f"{count} {MODELS[model].title}" if count else MODELS[model].title
 
 
 def model_style(model: str) -> dict[str, Any]:
@@ -65,21 +72,6 @@ def plot_lines(
     ax.set(xlabel=f"{x[0]}, {x_unit.name}", ylabel=f"{y[0]}, {y_unit.name}")
     if any(label for label, *_ in drawn):
         ax.legend()
-
-
-def plot_errors(ax: "Axes", lines: Iterable[tuple[str, str, str, Sequence[int], Sequence[Any]]], ylabel: str) -> None:
-    """Absolute values over N on logarithmic axes: (label, colour, line style, N, values); zero and None are gaps."""
-    from matplotlib.ticker import NullLocator
-
-    sizes: set[int] = set()
-    for label, color, style, counts, values in lines:
-        known = [(count, abs(value)) for count, value in zip(counts, values, strict=True) if value]
-        ax.loglog([n for n, _ in known], [value for _, value in known], style, color=color, label=label)
-        sizes |= {n for n, _ in known}
-    ax.set_xticks(sorted(sizes), [str(n) for n in sorted(sizes)])
-    ax.xaxis.set_minor_locator(NullLocator())
-    ax.set(xlabel="number of segments or elements N", ylabel=ylabel)
-    ax.legend()
 
 
 def movie(key: str, title: str, caption: str, set_up: "Callable[[Axes], Any]") -> "Movie":

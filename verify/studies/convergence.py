@@ -1,5 +1,6 @@
 """Frequency errors over the number of segments or elements: observed orders, two-sided bound, solve times."""
 
+from collections.abc import Sequence
 from functools import partial
 from math import log, log10
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
@@ -9,7 +10,7 @@ from msgspec import Meta
 from verify.errors import InputError, NoBracketError
 from verify.judge.variants import Rules, Variant
 from verify.studies.base import Progress, Study
-from verify.studies.charts import percent, plot_errors, si, variant_colors
+from verify.studies.charts import percent, si, variant_colors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +29,6 @@ CAPTIONS = {
     "errors-over-size": "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of "
     "segments and Hermite elements cancel.",
     "bracket": "The exact frequency (zero) lies in the band for every N; no reference solution is needed for that.",
-    "work-precision": "Warm solve from beam to modes, set-up included, median of interleaved repeats. Numbers: N.",
 }
 
 
@@ -51,40 +51,25 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         rows = self._rows(cache, variants, progress)
         bounds, no_bound = self._bounds(cache)
         settled, warnings = self._summarise(cache, rows)
-        mode = max(self.modes)
-        error_columns = [
-            Column("mode"),
-            Column("model"),
-            Column("N"),
-            Column("frequency", "Hz", ".8g"),
-            percent("error"),
-        ]
-        error_columns += [Column("order", format=".2f"), si("solve time", "s", ".3g")]
-        bound_columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
-        bound_columns += [percent("width", ".4g"), percent("error of the mean")]
+        columns = [Column("mode"), Column("model"), Column("N"), Column("frequency", "Hz", ".8g"), percent("error")]
+        columns += [Column("order", format=".2f"), si("solve time", "s", ".3g")]
         note = "Order: from the size before. Time: warm solve of all modes, set-up included, median of repeats."
-        tables = [
-            Table("Frequency error over N", error_columns, [tuple(list(row.values())[:7]) for row in rows], [note])
-        ]
-        figures: list[tuple[str, str, Any, tuple[Any, ...]]] = [
-            (
-                "errors-over-size",
-                "Convergence with the number of segments or elements",
-                self._draw_errors,
-                (rows, bounds),
-            ),
-            ("work-precision", "Frequency error over solve time", self._draw_work, (rows,)),
-        ]
+        cells = [tuple(list(row.values())[:7]) for row in rows]
+        title, draw = "Frequency error over N", partial(self._draw_errors, cache, rows, bounds)
+        tables = [Table(title, columns, cells, [note])]
+        figures = [Figure("errors-over-size", title, CAPTIONS["errors-over-size"], draw)]
         if bounds:
+            columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
+            columns += [percent("width", ".4g"), percent("error of the mean")]
             title = "Two-sided bound: segments below, Hermite elements above"
-            tables.append(Table(title, bound_columns, [tuple(row.values()) for row in bounds]))
-            figures.insert(1, ("bracket", f"Two-sided bound on mode {mode}", self._draw_bound, (bounds,)))
+            tables.append(Table(title, columns, [tuple(row.values()) for row in bounds]))
+            title, draw = f"Two-sided bound on mode {max(self.modes)}", partial(self._draw_bound, cache, bounds)
+            figures.append(Figure("bracket", title, CAPTIONS["bracket"], draw))
+        errors = ", ".join(settled)
         return Result(
-            summary=f"Mode {mode}, N = {self.counts[-1]}, error: {', '.join(settled)}." if settled else "",
+            summary=f"Mode {max(self.modes)}, N = {self.counts[-1]}, error: {errors}." if settled else "",
             tables=tables,
-            figures=[
-                Figure(key, title, CAPTIONS[key], partial(draw, cache, *values)) for key, title, draw, values in figures
-            ],
+            figures=figures,
             warnings=[*warnings, *no_bound, *left_out.values()],
             data={"rows": rows, "bounds": bounds},
         )
@@ -170,19 +155,17 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
         mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
         colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
-        lines = []
         for mode, style in zip(self.modes, STYLES * len(self.modes), strict=False):
             first = mode == self.modes[0]
             for one, color in colors.items():
                 own = [row for row in rows if row["variant"] == one and row["mode"] == mode and row["error"]]
-                label = one.title if first else ""
-                lines.append((label, color, style, [r["N"] for r in own], [100 * r["error"] for r in own]))
-            own = [row for row in bounds if row["mode"] == mode]
-            label = "mean of both" if first and bounds else ""
-            lines.append((label, mean, style, [r["N"] for r in own], [100 * r["mean_error"] for r in own]))
-            lines.append((f"mode {mode}", "#7d8590", style, [], []))
-        plot_errors(ax, lines, "|frequency error|, %")
-        ax.legend(ncols=2)
+                errors = [100 * abs(row["error"]) for row in own]
+                ax.loglog([row["N"] for row in own], errors, style, color=color, label=one.title if first else "")
+            own = [row for row in bounds if row["mode"] == mode and row["mean_error"]]
+            label, errors = "mean of both" if first and bounds else "", [100 * abs(row["mean_error"]) for row in own]
+            ax.loglog([row["N"] for row in own], errors, style, color=mean, label=label)
+            ax.plot([], [], style, color="#7d8590", label=f"mode {mode}")
+        _label_sizes(ax, self.counts, "|frequency error|, %")
         guides = {one.order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors}
         if bounds:
             guides.setdefault(6, [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]])
@@ -190,23 +173,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)
 
-    def _draw_work(self, cache: "SolutionCache", rows: list[Row], ax: "Axes") -> None:
-        colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
-        for mode, style in zip(self.modes, STYLES * len(self.modes), strict=False):
-            for one, color in colors.items():
-                own = [row for row in rows if row["variant"] == one and row["mode"] == mode and row["error"]]
-                times, errors = [1e3 * r["run_time_s"] for r in own], [100 * abs(r["error"]) for r in own]
-                ax.loglog(times, errors, style, color=color, label=one.title if mode == self.modes[0] else "")
-                for row, time, error in zip(own, times, errors, strict=True):
-                    if mode == self.modes[-1]:
-                        ax.annotate(str(row["N"]), (time, error), (4, 4), textcoords="offset points", fontsize=8)
-            ax.plot([], [], style, color="#7d8590", label=f"mode {mode}")
-        ax.set(xlabel="solve time, ms", ylabel="|frequency error|, %")
-        ax.legend(ncols=2)
-
     def _draw_bound(self, cache: "SolutionCache", bounds: list[Row], ax: "Axes") -> None:
-        from matplotlib.ticker import NullLocator
-
         from verify.report.plotting import MODEL_COLORS
 
         own = [row for row in bounds if row["mode"] == max(self.modes)]
@@ -217,7 +184,13 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         ax.plot(counts, lower, "-o", color=MODEL_COLORS["segment"], label="lower bound, segments")
         ax.plot(counts, [100 * row["mean_error"] for row in own], "-o", color=MODEL_COLORS["mean"], label="mean")
         ax.axhline(0.0, color=MODEL_COLORS["analytic"], linewidth=1.0)
-        ax.set_xticks(counts, [str(count) for count in counts])
-        ax.xaxis.set_minor_locator(NullLocator())
-        ax.set(xlabel="number of segments or elements N", ylabel="against the exact frequency, %")
-        ax.legend()
+        _label_sizes(ax, counts, "against the exact frequency, %")
+
+
+def _label_sizes(ax: "Axes", counts: Sequence[int], ylabel: str) -> None:
+    from matplotlib.ticker import NullLocator
+
+    ax.set_xticks(counts, [str(count) for count in counts])
+    ax.xaxis.set_minor_locator(NullLocator())
+    ax.set(xlabel="number of segments or elements N", ylabel=ylabel)
+    ax.legend(ncols=2)

@@ -1,17 +1,16 @@
-"""The slider of a scene in time: displacement, velocity, friction on every model, validity margins, errors over N."""
+"""The slider of a scene in time: displacement, velocity, friction on every model, validity margins."""
 
 from functools import partial
-from math import log
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
+from msgspec.structs import replace
 
 from verify.checks import Relative, check_number
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, movie, percent, plot_errors, plot_lines, si
-from verify.studies.convergence import Counts
+from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,7 +59,6 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         Relative | None, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")
     ] = None
     count: Annotated[int, Meta(ge=1, description="Segments and elements.")] = 49
-    counts: Annotated[Counts, Meta(description="Segments and elements of the errors over N.")] = (49, 98, 196)
     steps_per_period: Annotated[int, Meta(ge=1, description="Steps of the slider in a period, at least.")] = 128
     samples: Annotated[int, Meta(ge=2, le=100_000, description="Stored instants, ends included.")] = 1001
 
@@ -86,52 +84,33 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 "steps, leave it out or add [slider]"
             )
 
-    def simulate(self, scene: "Scene", model: str, count: int | None, *, refine: int = 1, store: bool = False) -> "Run":
-        """The scene's slider on one model. Raises InputError.
-
-        `refine` divides the time step; `store` keeps every step, the deflection at the joints and the energy balance.
-        """
+    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+        """Simulate the slider on every model. Raises InputError."""
         import numpy as np
 
-        from verify.motion.request import soft_start
-        from verify.motion.simulate import simulate
-
-        assert scene.drive is not None
-        steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
-        run = simulate(
-            scene.beam,
-            scene.forces,
-            scene.drive.frequency_hz,
-            self.duration,
-            model=model,
-            count=count,
-            start=self.start,
-            soft_start_periods=soft_start(self.start, self.soft_start_periods),
-            modal_damping=self.modal_damping,
-            slider=scene.slider,
-            at=np.linspace(0.0, scene.beam.length, (count or self.count) + 1).tolist() if store else (),
-            samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2) if store else 2,
-            steps_per_period=refine * self.steps_per_period,
-            ledger=store,
-        )
-        if run.statistics.interrupted:
-            raise KeyboardInterrupt
-        return run
-
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
-        """Simulate the slider on every model and at every size. Raises InputError."""
         from verify.exact.in_time import check_beam
         from verify.models.catalogue import MODELS, bounding, discrete
+        from verify.motion.simulate import simulate
+        from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result
 
+        scene = replace(scene, studies={**scene.studies, "motion": self})
         assert scene.slider is not None
+        assert scene.drive is not None
+        steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
         check_beam(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
-        models = [model.name for model in discrete("time_basis", scene.beam)]
         runs: dict[str, Run] = {}
-        for model in ("analytic", *models):
+        for model in ("analytic", *(model.name for model in discrete("time_basis", scene.beam))):
             progress(f"slider on {MODELS[model].title}")
-            runs[model] = self.simulate(scene, model, self.count if MODELS[model].sized else None, store=True)
-        errors, step_error = self._errors(scene, models, runs, progress)
+            runs[model] = simulate(
+                **motion_arguments(scene, TimeOptions(model=model, count=self.count if MODELS[model].sized else None)),
+                slider=scene.slider,
+                at=np.linspace(0.0, scene.beam.length, self.count + 1).tolist(),
+                samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2),
+                steps_per_period=self.steps_per_period,
+            )
+            if runs[model].statistics.interrupted:
+                raise KeyboardInterrupt
         chain = runs[bounding()[0].name]
         warnings, valid = _warnings(runs)
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
@@ -154,52 +133,20 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             Figure(key, title, "Along +x.", partial(plot_lines, lines=own, x=("time", "s"), y=y))
             for key, title, own, y in lines
         ]
-        if errors:
-            caption = "Against the exact beam at the same time step."
-            figures.append(
-                Figure("slider-errors", "Error of the displacement", caption, lambda ax: _draw_errors(ax, errors))
-            )
         keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
         keys += ["coupling", "margins", "ledger", "statistics", "notes"]
         return Result(
             summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
-            tables=_tables(runs, errors, step_error),
+            tables=_tables(runs),
             figures=figures,
             movies=[movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
             warnings=warnings,
-            data={
-                "runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()},
-                "errors": errors,
-            },
+            data={"runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()}},
         )
-
-    def _errors(
-        self, scene: "Scene", models: list[str], runs: "dict[str, Run]", progress: Progress
-    ) -> tuple[list[dict[str, Any]], float | None]:
-        """(a row for each model and size, relative change of the exact displacement by half the step)."""
-        exact = runs["analytic"].displacement
-        if not exact or not all(run.statistics.finished for run in runs.values()):
-            return [], None
-        progress("slider on exact beam, half the step")
-        step_error = abs(self.simulate(scene, "analytic", None, refine=2).displacement / exact - 1.0)
-        rows: list[dict[str, Any]] = []
-        for model in models:
-            before: tuple[int, float] | None = None
-            for count in sorted(set(self.counts)):
-                progress(f"slider on {model}, N = {count}")
-                displacement = self.simulate(scene, model, count).displacement
-                error = displacement / exact - 1.0
-                order = log(before[1] / error) / log(count / before[0]) if before and before[1] * error > 0.0 else None
-                row = {"model": model, "N": count, "displacement": displacement, "error": error, "order": order}
-                rows.append(row)
-                before = count, error
-        return rows, step_error
 
 
 def _title(run: "Run") -> str:
-    from verify.models.catalogue import MODELS
-
-    return f"{run.count} {MODELS[run.model].title}" if run.count else MODELS[run.model].title
+    return sized_title(run.model, run.count)
 
 
 def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
@@ -229,8 +176,7 @@ def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
     return [*stopped, *warnings], valid
 
 
-def _tables(runs: "dict[str, Run]", errors: list[dict[str, Any]], step_error: float | None) -> "list[Table]":
-    from verify.models.catalogue import MODELS
+def _tables(runs: "dict[str, Run]") -> "list[Table]":
     from verify.report.result import Column, Table
 
     exact = runs["analytic"].displacement
@@ -251,25 +197,7 @@ def _tables(runs: "dict[str, Run]", errors: list[dict[str, Any]], step_error: fl
     limits = [Column("model"), Column("coupling"), Column("friction coupling", format=".1e")]
     limits += [Column("normal coupling", format=".1e"), Column("lift-off", format=".3g")]
     limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), percent("theory", "+.3g"), percent("discretisation", "+.3g")]
-    tables = [Table("Slider on each model", results, rows), Table("Validity of these runs", limits, validity, NOTES)]
-    if step_error is not None:
-        columns = [Column("model"), Column("N"), si("displacement", "m", "+.7g"), percent("error")]
-        notes = [f"Half the time step changes the exact value by {100 * step_error:.1g} %."]
-        cells = [(MODELS[row["model"]].title, *list(row.values())[1:]) for row in errors]
-        columns += [Column("order", format=".2f")]
-        tables.append(Table("Displacement over N, against the exact beam", columns, cells, notes))
-    return tables
-
-
-def _draw_errors(ax: "Axes", rows: list[dict[str, Any]]) -> None:
-    from verify.models.catalogue import MODELS
-
-    lines = []
-    for model in dict.fromkeys(row["model"] for row in rows):
-        own = [row for row in rows if row["model"] == model]
-        errors = [100 * row["error"] for row in own]
-        lines.append((MODELS[model].title, model_style(model)["color"], "-o", [row["N"] for row in own], errors))
-    plot_errors(ax, lines, "|error of the displacement|, %")
+    return [Table("Slider on each model", results, rows), Table("Validity of these runs", limits, validity, NOTES)]
 
 
 def _movie(run: "Run") -> "Callable[[Axes], Any]":

@@ -1,25 +1,20 @@
-"""The motor of a scene: force over speed, no load, starting and stopping on every model, and from rest on the chain."""
+"""The motor of a scene: force over speed, no load, starting, stopping and reversing on every model."""
 
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from math import pi, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.checks import Relative, check_number
+from verify.checks import Relative
 from verify.errors import InputError
-from verify.options import Links, Start
+from verify.options import Start
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, movie, percent, plot_lines, si
+from verify.studies.charts import model_style, percent, plot_lines, si, sized_title
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matplotlib.axes import Axes
-
     from verify.judge.cache import SolutionCache
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed, Timed
@@ -27,18 +22,14 @@ if TYPE_CHECKING:
     from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
-CHAIN = "chain"
 HELD_PERIODS = 11_520
 """Periods after which the means at a held speed count as not converged."""
 LAST = 0.25
 """Fraction of a free run, at its end, over which means are formed."""
-REST_DURATION, REST_PLACES, MOST_REST_PERIODS = 0.02, 8, 1000
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
-FRAMES, PLACES = 36, 73
 LARGE = 0.1
 """Size of a neglected effect beyond which a summary is omitted."""
-CHAIN_COLORS = {"rigid": "#cc3f76", "stretching": "#8f5bd1"}
 WARNINGS = {
     "means": "{}: means at {} of {} held speeds are not converged after {} periods, values derived from them are "
     "omitted; more slider.contact.damping or slider.preload calms the motion.",
@@ -55,10 +46,6 @@ CAPTIONS = {
     "motor-power": "Force times speed; below zero the load drives the motor.",
     "motor-speed": "Free run from the slider's own speed (solid), drive switched off (dotted), drive phases reversed "
     "(dashed). The beam's own transient is neglected.",
-    "motor-rest": "From the slider's own place, undamped, forces switched on at once: a nonlinear chain has no other "
-    "start.",
-    "motor-moving": "Feet (orange) and surface over one period, without load; of feet between two beams the lower one. "
-    "Bars: normal force of each contact point, up on the upper face, down on the lower face, relative to the largest.",
 }
 
 
@@ -85,15 +72,10 @@ class Field:
     """Drive switched off; None where the beam would ring on."""
     reversal: "Timed | None"
     """Drive phases reversed."""
-    period: "MotorRun"
-    """One period without load at a fixed place, with the surface around the feet."""
     amplitude: float
     """Of the surface under the slider, m."""
-
-    @property
-    def last(self) -> int:
-        """Samples of the last quarter of the free run, an even number."""
-        return max(int(LAST * (len(self.free.times) - 1)) // 2 * 2, 2)
+    last: int
+    """Samples of the last quarter of the free run, an even number."""
 
 
 class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -102,10 +84,8 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: ClassVar[str] = "motor"
     title: ClassVar[str] = "The motor"
 
-    models: Annotated[
-        tuple[str, ...], Meta(min_length=1, description="Models; 'chain', the nonlinear chain, runs from rest.")
-    ] = ("analytic", "segment", "fem")
-    count: Annotated[int, Meta(ge=2, le=250, description="Segments, elements and links.")] = 49
+    models: Annotated[tuple[str, ...], Meta(min_length=1, description="Models.")] = ("analytic", "segment", "fem")
+    count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements.")] = 49
     speeds: Annotated[int, Meta(ge=2, le=201, description="Points of the force-speed curve.")] = 9
     periods: Annotated[int, Meta(ge=20, le=100_000, description="Periods of a free run, at most of stopping.")] = 2000
     start: Annotated[Start, Meta(description="Beam at the start of the free run: steady or at rest.")] = "steady"
@@ -114,37 +94,17 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         Relative | None, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")
     ] = None
     steps_per_period: Annotated[int, Meta(ge=16, le=4096, description="Steps in a period, at least.")] = 61
-    chain: Annotated[float | None, Meta(description="Duration of the runs from rest, s; 0.02 unless set.")] = None
-    chain_force: Annotated[
-        float | None, Meta(description="Force amplitude from rest, N, preload in proportion; the scene's unless set.")
-    ] = None
-    links: Annotated[tuple[Links, ...] | None, Meta(description="Links of the chain; both kinds unless set.")] = None
-    places: Annotated[int | None, Meta(description="Start positions in one wavelength; 8 unless set.")] = None
 
     def __post_init__(self) -> None:
         from verify.models.naming import Among
 
-        for model in self.linear:
+        for model in self.models:
             Among("time_basis").check(model, "motor.models")
-        if not self.linear:
-            raise InputError("motor.models = ['chain']: add a linear model to compare with")
         if self.start == "steady" and self.soft_start_periods:
             raise InputError(
                 f"motor.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
                 "start, leave it out"
             )
-        for name, unit, least in (
-            ("chain", "seconds", 0.0),
-            ("chain_force", "newton", 0.0),
-            ("places", "positions", 1),
-        ):
-            if getattr(self, name) is not None:
-                check_number(f"motor.{name}", getattr(self, name), unit, above=least)
-
-    @property
-    def linear(self) -> tuple[str, ...]:
-        """The linear models."""
-        return tuple(name for name in self.models if name != CHAIN)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces or a slider with contact, and for what does not combine."""
@@ -155,71 +115,44 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError("motor: the beam moves under a [drive] of kind force, add its forces")
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
-        for model in self.linear:
+        for model in self.models:
             for start in ("steady", self.start):
                 check_combines(model, start, scene.slider)
         check_on_beam(scene.slider, scene.beam, scene.slider.start_on(scene.beam))
-        if CHAIN not in self.models:
-            return
-        check_combines(CHAIN, "rest", scene.slider)
-        if scene.beam.supports != ("pinned", "pinned"):
-            raise InputError(
-                f"motor.models has the chain, with beam.supports = {list(scene.beam.supports)!r}: give pinned ends, or "
-                "leave the chain out"
-            )
-        if (self.chain or REST_DURATION) * scene.drive.frequency_hz > MOST_REST_PERIODS:
-            raise InputError(f"motor.chain = {self.chain!r} s exceeds {MOST_REST_PERIODS} periods: shorten it")
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
+        from verify.models.catalogue import MODELS
+        from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
 
         fields: list[Field] = []
-        for model in self.linear:
+        for model in self.models:
             speeds = [at.speed for at in fields[0].curve] if fields else []
-            fields.append(self._field(self._case(scene, model), speeds, progress))
-        rest = self._from_rest(scene, progress) if CHAIN in self.models else []
+            count = self.count if MODELS[model].sized else None
+            options = MotorOptions(
+                model=model, count=count, modal_damping=self.modal_damping, steps_per_period=self.steps_per_period
+            )
+            fields.append(self._field(options.case(scene), speeds, progress))
         warnings, valid = _warnings(fields)
         first = fields[0]
         speed, force = 100 * first.speed, first.curve[0].force
         return Result(
             summary=f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})." if valid else "",
-            tables=[*_tables(fields), *([_rest_table(rest)] if rest else [])],
-            figures=_figures(fields, rest),
-            movies=[movie("motor-moving", f"Contact, {first.name}", CAPTIONS["motor-moving"], _movie(first))],
+            tables=_tables(fields),
+            figures=_figures(fields),
             warnings=warnings,
             data={
                 "curves": {field.name: field.curve for field in fields},
                 "margins": {field.name: field.free.motor_margins for field in fields},
-                "from_rest": [{key: row[key] for key in row if key not in ("times", "path", "style")} for row in rest],
             },
-        )
-
-    def _case(self, scene: "Scene", model: str) -> "MotorCase":
-        from verify.models.catalogue import MODELS
-        from verify.motor.case import MotorCase
-
-        assert scene.drive is not None
-        assert scene.slider is not None
-        return MotorCase(
-            beam=scene.beam,
-            forces=scene.forces,
-            frequency_hz=scene.drive.frequency_hz,
-            slider=scene.slider,
-            model=model,
-            count=self.count if model == CHAIN or MODELS[model].sized else None,
-            modal_damping=self.modal_damping,
-            steps_per_period=self.steps_per_period,
         )
 
     def _field(self, case: "MotorCase", speeds: list[float], progress: Progress) -> Field:
         """Held speeds, free run, stopping and reversing on one model. Raises InputError."""
-        import numpy as np
-
         from verify.motor import figures as motor
-        from verify.motor.result import uninterrupted
 
-        name = _name(case.model, case.count)
+        name = sized_title(case.model, case.count)
         progress(f"force over speed, {name}")
         crests = motor.crest_speed(case)
         still, settled = motor.held(case, 0.0, periods=HELD_PERIODS)
@@ -239,13 +172,6 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         speed, spread = motor.mean_speed(run, last)
         goes_on = run.statistics.finished and self.start == "steady"
         two_way = run.coupling is not None and run.coupling.two_way
-        x = case.slider.start_on(case.beam)
-        ends = [x + foot.offset + 0.75 * side * foot.length for foot in case.slider.feet for side in (-1.0, 1.0)]
-        half = max(0.5 * (max(ends) - min(ends)), 0.0125 * case.beam.length)
-        places = np.clip(0.5 * (max(ends) + min(ends)) + np.linspace(-half, half, PLACES), 0.0, case.beam.length)
-        begin = motor.held(case, target, periods=HELD_PERIODS)[1]
-        settings = {"held_speed": target, "frozen": True, "at": places.tolist(), "samples": FRAMES + 1}
-        period = uninterrupted(case.run(case.period, continue_from=begin, **settings))
         return Field(
             case=case,
             name=name,
@@ -253,87 +179,14 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             curve=curve,
             no_load=unloaded,
             free=run,
+            last=last,
             speed=speed,
             spread=spread,
             converged=run.statistics.finished and motor.comes_to_speed(run, last, crests),
             stop=motor.stopped(case, run, self.periods) if goes_on and not two_way else None,
             reversal=motor.reversed_way(case, run, -speed, self.periods) if goes_on else None,
-            period=period,
-            amplitude=float(abs(case.field().deflection([x])[0])),
+            amplitude=float(abs(case.field().deflection([case.slider.start_on(case.beam)])[0])),
         )
-
-    def _from_rest(self, scene: "Scene", progress: Progress) -> list[dict[str, Any]]:
-        """A row for each model from rest, undamped, forces switched on at once: a chain has no other start.
-
-        The wave never becomes steady, and the final position depends on the start position: the slider is placed at
-        several positions of one wavelength, the wave in either direction, and means have a standard error.
-        """
-        import numpy as np
-
-        from verify.models.fields import lossless_wavenumber
-        from verify.models.underfoot import standing_at
-        from verify.motor.result import uninterrupted
-        from verify.motor.run import run_motors
-
-        assert scene.drive is not None
-        assert scene.slider is not None
-        factor = (self.chain_force or 0.0) / max(abs(force.amplitude) for force in scene.forces) or 1.0
-        slider = replace(scene.slider, preload=factor * scene.slider.preload, gravity=factor * scene.slider.gravity)
-        x, n, seconds = slider.start_on(scene.beam), self.places or REST_PLACES, self.chain or REST_DURATION
-        wavelength = 2.0 * pi / abs(lossless_wavenumber(standing_at(scene.beam, x), scene.drive.frequency_hz))
-        sliders = [replace(slider, position=x + (k - n // 2) / n * wavelength) for k in range(n)]
-        kinds: list[tuple[str, Links]] = [(model, "rigid") for model in self.linear]
-        kinds += [(CHAIN, links) for links in self.links or ("rigid", "stretching")]
-        rows: list[dict[str, Any]] = []
-        for model, links in kinds:
-            case = self._case(scene, model).driven(factor)
-            name = f"{links} links" if model == CHAIN else _name(model, case.count)
-            progress(f"from rest, {name}")
-            runs: list[MotorRun] = []
-            for one in (case, case.turned()):
-                runs += run_motors(
-                    one.beam,
-                    one.forces,
-                    one.frequency_hz,
-                    seconds,
-                    sliders=[*sliders, *sliders],
-                    held_speed=[None] * n + [0.0] * n,
-                    frozen=[False] * n + [True] * n,
-                    model=model,
-                    count=one.count,
-                    start="rest",
-                    modal_damping=0.0,
-                    links=links,
-                    samples=int(seconds * one.frequency_hz) + 2,
-                    steps_per_period=one.steps_per_period,
-                )
-            forward, still, backward, still_back = (list(map(uninterrupted, runs[k * n :][:n])) for k in range(4))
-            ends = np.array([run.displacement for run in (*forward, *backward)])
-            means = np.array([run.friction[len(run.friction) // 2 :].mean() for run in (*still, *still_back)])
-            push = np.repeat([1.0, -1.0], n) * means / (slider.mu * slider.normal_force)
-            apart = ends - (rows[0]["ends"] if rows else ends)
-            rows.append(
-                {
-                    "name": name,
-                    "style": {"color": CHAIN_COLORS[links]} if model == CHAIN else model_style(model),
-                    "ends": ends,
-                    "times": forward[n // 2].times,
-                    "path": forward[n // 2].travelled,
-                    "departure": float(apart.mean()),
-                    "departure_error": float(apart.std(ddof=1)) / sqrt(2 * n),
-                    "departure_rms": float(np.sqrt((apart**2).mean())),
-                    "push": float(push.mean()),
-                    "push_error": float(push.std(ddof=1)) / sqrt(2 * n),
-                    "axial_inertia": forward[0].motor_margins.chain,
-                }
-            )
-        return rows
-
-
-def _name(model: str, count: int | None) -> str:
-    from verify.models.catalogue import MODELS
-
-    return f"{count} {MODELS[model].title}" if count else MODELS[model].title
 
 
 def _warnings(fields: list[Field]) -> tuple[list[str], bool]:
@@ -422,20 +275,7 @@ def _tables(fields: list[Field]) -> "list[Table]":
     ]
 
 
-def _rest_table(rows: list[dict[str, Any]]) -> "Table":
-    from verify.report.result import Column, Table
-
-    keys = ("name", "departure", "departure_error", "departure_rms", "push", "push_error", "axial_inertia")
-    columns = [Column("model"), si("departure", "m", "+.3g"), si("± departure", "m", ".2g"), si("rms", "m", ".3g")]
-    columns += [Column("push", format="+.3f"), Column("± push", format=".2g"), Column("(kL)² ⟨θ²⟩", format=".1e")]
-    notes = [
-        "Departure: mean distance of the final position from that on the first model over all starts, standard error. "
-        "Push: force at standstill over mu N that reverses with the wave."
-    ]
-    return Table("From rest, undamped", columns, [tuple(row[key] for key in keys) for row in rows], notes)
-
-
-def _figures(fields: list[Field], rest: list[dict[str, Any]]) -> "list[Figure]":
+def _figures(fields: list[Field]) -> "list[Figure]":
     import numpy as np
 
     from verify.report.result import Figure
@@ -460,56 +300,12 @@ def _figures(fields: list[Field], rest: list[dict[str, Any]]) -> "list[Figure]":
     still, ends = fields[0].curve[0], np.array([0.0, fields[0].curve[-1].speed])
     limit = np.copysign(fields[0].case.slider.mu * still.normal_force, still.force)
     force.append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
-    paths = [(row["name"], row["times"], row["path"], row["style"]) for row in rest]
     charts = [
         ("motor-force", "Force over speed", force, ("speed", "m/s"), ("force", "N")),
         ("motor-power", "Power over speed", power, ("speed", "m/s"), ("power", "W")),
         ("motor-speed", "Starting, stopping, reversing", speed, ("time", "s"), ("speed", "m/s")),
-        ("motor-rest", "From rest", paths, ("time", "s"), ("displacement", "m")),
     ]
     return [
         Figure(key, title, CAPTIONS[key], partial(plot_lines, lines=lines, x=x, y=y))
         for key, title, lines, x, y in charts
-        if lines
     ]
-
-
-def _movie(field: Field) -> "Callable[[Axes], Any]":
-    def set_up(ax: "Axes") -> Any:
-        import numpy as np
-
-        from verify.units import unit_of, unit_over
-
-        run = field.period
-        slider, start = run.slider, run.start or 0.0
-        assert slider is not None
-        along, up = unit_of(float(run.points[-1])), unit_over(run.deflection.ravel().tolist())
-        swing, largest = float(abs(run.deflection).max()), float(run.pressures[1:].max()) or 1.0
-        (surface,) = ax.plot(along.factor * run.points, 0.0 * run.points, label=field.name, **model_style(run.model))
-        feet: list[Any] = []
-        first = 0
-        for f, foot in enumerate(slider.feet):
-            own = slice(first, first + foot.points)
-            first += foot.points * (1 + foot.mirrored)
-            ends = foot.offset + 0.5 * foot.length * np.array([-1.0, 1.0])
-            size = 3 if foot.length else 9
-            (body,) = ax.plot(along.factor * (start + ends), [0.0, 0.0], "-s", color="#d96c05", markersize=size)
-            x = along.factor * (start + run.point_offsets[own])
-            bars = ax.vlines(x, 0.0 * x, 0.0 * x, color="#cc3f76", linewidth=3)
-            feet.append((f, foot, own, ends - foot.offset, x, body, bars))
-        limit = 2.4 * up.factor * swing
-        ax.set(xlabel=f"x, {along.name}", ylabel=f"height, {up.name}", ylim=(-limit, limit))
-
-        def update(k: int) -> list[Any]:
-            surface.set_ydata(up.factor * run.deflection[k])
-            for f, foot, own, ends, x, body, bars in feet:
-                side = -1.0 if foot.face == "lower" else 1.0
-                low = run.height[k, f] + run.pitch[k, f] * (run.point_offsets[own] - foot.offset)
-                high = low + side * 0.9 * swing * run.pressures[k, own] / largest
-                body.set_ydata(up.factor * (run.height[k, f] + run.pitch[k, f] * ends))
-                bars.set_segments(np.stack([np.c_[x, up.factor * low], np.c_[x, up.factor * high]], axis=1))
-            return [surface, *(one for *_, body, bars in feet for one in (body, bars))]
-
-        return update, range(1, len(run.times))
-
-    return set_up

@@ -44,7 +44,6 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
         from verify.judge.cache import EULER, comparable, theory_of
-        from verify.judge.compare import EIGENVALUE_FLOOR
         from verify.report.result import Column, Figure, Result, Table
         from verify.words import theory_name
 
@@ -61,10 +60,6 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         theories, theory = self._theories(cache), theory_of(variants[0].settings)
         series: list[Sequence[float | None]] = [*errors.values(), *theories.values()]
         rows = [(mode, cache.exact_hz(mode, theory), *(own[mode - 1] for own in series)) for mode in numbers]
-        parts: list[tuple[str, float | None]] = []
-        parts += ((f"discretisation, {one.title}", own[-1]) for one, own in errors.items())
-        parts += [(f"theory, {theory_name(name)}", own[-1]) for name, own in theories.items()]
-        parts += [("rounding of eigenvalues, at most", EIGENVALUE_FLOOR)]
         known = {one.title: own[-1] for one, own in errors.items() if own[-1] is not None}
         largest = max((abs(own[-1]) for own in theories.values()), default=0.0)
         euler = all(theory_of(one.settings) == EULER for one in variants)
@@ -76,15 +71,11 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         summary = ", ".join(f"{title} {100 * error:+.4g} %" for title, error in known.items())
         columns = [Column("mode"), Column(f"exact {theory_name(theory)}", "Hz", ".7g")]
         columns += [percent(one.title) for one in variants] + [percent(f"{theory_name(t)} theory") for t in theories]
-        part_columns = [Column("contribution"), percent("relative size", "+.3g")]
         note = "Theory: change of the exact frequency against Euler-Bernoulli theory."
         size = f"N = {self.count}"
         return Result(
             summary=f"Mode {self.modes}, {size}, against the exact beam: {summary}." if known else "",
-            tables=[
-                Table(f"Frequency errors, {size}", columns, rows),
-                Table(f"Contributions to the error of mode {self.modes}", part_columns, parts, [note]),
-            ],
+            tables=[Table(f"Frequency errors, {size}", columns, rows, [note] * bool(theories))],
             figures=[
                 Figure(key, f"{title}, {size}", CAPTIONS[key], partial(draw_errors, errors, beside))
                 for key, title, beside in (

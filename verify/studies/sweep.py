@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import msgspec
 from msgspec import Meta
-from msgspec.structs import replace
 
 from verify.errors import InputError, near_name, shown
 from verify.studies.base import Progress, Study
@@ -49,14 +48,11 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raise InputError for an unknown quantity, scene key or argument, and for an empty list."""
         _combinations(self.over)
         wanted = _quantities(self.quantities)
-        others = {name: one for name, one in scene.studies.items() if name != "sweep"}
-        bare = replace(scene, studies=others, gate=())  # a copy with this sweep would check itself
-        for key in _keys(self.over):
-            if "." in key:
-                _with_value(bare, key.split("."), key)
-        known = {argument.name for one in wanted for argument in one.arguments}
-        for name in [*self.arguments, *(key for key in _keys(self.over) if "." not in key)]:
-            if name not in known:
+        tables, known = _tables(scene), {name for one in wanted for name in one.schema.__struct_fields__}
+        for name in [*self.arguments, *(key.strip() for keys in self.over for key in keys.split(","))]:
+            if "." in name:
+                _put(tables, name.split("."), name, None)
+            elif name not in known:
                 remedy = near_name(name, tuple(known))
                 raise InputError(f"sweep: {name} is no argument of {', '.join(self.quantities)}: {remedy}")
         if self.claims and not scene.claim:
@@ -93,12 +89,12 @@ def run_sweep(
         arguments=dict(arguments or {}),
         claims=claims,
     )
-    bare = replace(scene, studies={name: one for name, one in scene.studies.items() if name != "sweep"}, gate=())
-    study.check(bare)
+    study.check(scene)
+    tables = _tables(scene)
     combinations = _combinations(study.over)
     values = map_processes(
         _evaluate,
-        [(bare, study, one) for one in combinations],
+        [(tables, study, one) for one in combinations],
         lambda done: progress(f"combination {done} of {len(combinations)}"),
         max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
     )
@@ -127,22 +123,24 @@ def run_sweep(
     )
 
 
-def _evaluate(task: "tuple[Scene, Sweep, dict[str, Any]]") -> dict[str, Any]:
+def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
     """Values by quantity, number of claims that agree, reason for a missing value, of one combination."""
     from verify.judge.cache import SolutionCache
     from verify.quantities.base import evaluate
+    from verify.scene.load import scene_from
     from verify.studies.claims import computed
 
-    scene, study, combination = task
+    tables, study, combination = task
     row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None}
     try:
         for key, value in combination.items():
-            scene = _with_value(scene, key.split("."), key, value) if "." in key else scene
+            tables = _put(tables, key.split("."), key, value) if "." in key else tables
+        scene = scene_from(tables)
         cache = SolutionCache(scene.beam)
         arguments = study.arguments | {key: value for key, value in combination.items() if "." not in key}
         for one in _quantities(study.quantities):
-            own = {argument.name for argument in one.arguments}
-            row[one.name] = evaluate(one.name, {k: v for k, v in arguments.items() if k in own}, scene, cache)
+            own = {k: v for k, v in arguments.items() if k in one.schema.__struct_fields__}
+            row[one.name] = evaluate(one.name, own, scene, cache)
         for claim in scene.claim if study.claims else ():
             row[AGREE] += claim.agrees(computed(claim, scene, cache))
     except InputError as error:
@@ -154,10 +152,6 @@ def _quantities(names: Sequence[str]) -> list[Any]:
     from verify.quantities.base import QUANTITIES
 
     return [QUANTITIES.named(name) for name in names]
-
-
-def _keys(over: Mapping[str, Sequence[Any]]) -> list[str]:
-    return [key.strip() for keys in over for key in keys.split(",")]
 
 
 def _combinations(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
@@ -176,40 +170,24 @@ def _combinations(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     return [{key: value for part in parts for key, value in part.items()} for parts in product(*axes)]
 
 
-_SAME = object()
+def _tables(scene: "Scene") -> dict[str, Any]:
+    """The scene as in a file, without gates and without the sweep, which would check itself."""
+    tables = {name: msgspec.to_builtins(getattr(scene, name)) for name in scene.__struct_fields__ if name != "gate"}
+    studies = tables.pop("studies")
+    return tables | {name: study for name, study in studies.items() if name != "sweep"}
 
 
-def _with_value(node: Any, path: list[str], key: str, value: Any = _SAME) -> Any:
-    """A copy of a scene, or of a part of it, with another value at a path; without a value only the path is checked.
-
-    Raises InputError for a path that does not exist and for a value that does not fit.
-    """
+def _put(node: Any, path: list[str], key: str, value: Any) -> Any:
+    """A copy of plain tables with another value at a path. Raises InputError for a path that does not exist."""
     head, *rest = path
-    if isinstance(node, tuple):
-        known = [str(i) for i in range(len(node))]
-        if head not in ("*", *known) or not node:
-            raise InputError(f"sweep.over.{key}: {head!r} is no entry, give one of {', '.join([*known, '*'])}")
-        changed = [
-            (_with_value(one, rest, key, value) if rest else value) if head in ("*", i) else one
-            for i, one in zip(known, node, strict=True)
-        ]
-        return tuple(changed)
-    studies = getattr(node, "studies", {})
-    if head in studies:
-        return replace(node, studies=studies | {head: _with_value(studies[head], rest, key, value)})
-    names = getattr(node, "__struct_fields__", ())
-    if head not in names:
-        raise InputError(f"sweep.over.{key}: {head} is not known: {near_name(head, (*names, *studies))}")
-    if rest:
-        return replace(node, **{head: _with_value(getattr(node, head), rest, key, value)})
-    if value is _SAME:
-        return node
-    try:
-        return msgspec.convert(msgspec.to_builtins(node) | {head: value}, type(node))
-    except msgspec.ValidationError as error:
-        if isinstance(error.__cause__, InputError):
-            raise error.__cause__ from None
-        raise InputError(f"{key} = {shown(value)}: {error}") from None
+    names = dict(enumerate(node)) if isinstance(node, list | tuple) else node if isinstance(node, dict) else {}
+    known = {str(name): one for name, one in names.items()}
+    if head not in known and not (head == "*" and isinstance(node, list | tuple) and node):
+        raise InputError(f"sweep.over.{key}: {head} is not known: {near_name(head, tuple(known))}")
+    for name, one in known.items():
+        if head in ("*", name):
+            known[name] = _put(one, rest, key, value) if rest else value
+    return list(known.values()) if isinstance(node, list | tuple) else known
 
 
 def _cell(value: Any) -> Any:

@@ -1,15 +1,13 @@
-"""The driven beam: standing-wave ratio and crest speed over N, envelope, surface ellipses, where to drive."""
+"""The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
 from msgspec import Meta
 
-from verify.checks import Relative
 from verify.errors import InputError, WindowError
-from verify.models.naming import Among, model_meta
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, movie, plot_errors, plot_lines, si
+from verify.studies.charts import model_style, movie, plot_lines, si, sized_title
 from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
@@ -32,7 +30,6 @@ ENVELOPES = (
     "A pure travelling wave on one section without losses has a flat envelope; ripples are reflection. Near forces and "
     "ends the near field decays."
 )
-SIZES = "Against the exact beam: solid at the drive's frequency, dotted at each model's frequency of least reflection."
 MOVIE = (
     "One period of the drive. Links are straight between their joints. The motion of surface points along the beam is "
     "magnified as in the ellipses."
@@ -45,15 +42,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: ClassVar[str] = "wave"
     title: ClassVar[str] = "The driven beam"
 
-    count: Annotated[int, Meta(ge=1, description="Segments and elements of envelopes and operating points.")] = 49
+    count: Annotated[int, Meta(ge=1, description="Segments and elements of envelopes and movie.")] = 49
     counts: Annotated[Counts, Meta(description="Segments and elements of the errors over N.")] = (49, 98, 196)
-    model: Annotated[str, model_meta("Model of the operating points.", "unit_responses")] = "segment"
-    reflection_limit: Annotated[
-        Relative, Meta(gt=0, lt=1, description="Largest reflection of the fastest operating point.")
-    ] = 0.1
-    operating_loss_factor: Annotated[
-        Relative, Meta(gt=0, lt=1, description="Loss factor of the operating points where the beam is undamped.")
-    ] = 1e-3
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
@@ -63,8 +53,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         if len(scene.forces) != 2 or scene.drive is None:
             raise InputError("wave: the study needs a [drive] with two forces, add them")
-        for verb in ("solve_harmonic", "unit_responses"):
-            Among(verb).check(self.model, "wave.model")
         MODELS["analytic"].check(scene.beam, 1, 0)
         places, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
         try:
@@ -84,32 +72,19 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from msgspec.structs import replace
 
         from verify.models.catalogue import MODELS, discrete
+        from verify.quantities.waves import FieldOptions, driven_case
         from verify.report.result import Column, Figure, Result, Table
-        from verify.waves.case import DrivenCase
         from verify.waves.driven import driven, measured_alone
-        from verify.waves.operating_point import operating_points
 
         drive = scene.drive
         assert drive is not None
-        exact = DrivenCase(
-            beam=scene.beam,
-            model="analytic",
-            count=None,
-            forces=scene.forces,
-            frequency_hz=drive.frequency_hz,
-            kind=drive.kind,
-        )
+        exact = driven_case(scene, FieldOptions())
         models = [model.name for model in discrete("solve_harmonic", scene.beam)]
         rows: list[Row] = []
         for model, count in [("analytic", None), *((model, count) for model in models for count in self.counts)]:
-            name = f"{count} {MODELS[model].title}" if count else MODELS[model].title
-            progress(name)
-            row: Row = {"name": name, "model": model, "N": count}
+            row: Row = {"name": sized_title(model, count), "model": model, "N": count}
+            progress(row["name"])
             rows.append(row | _waves(replace(exact, model=model, count=count), cache))
-        progress("operating points")
-        beam = replace(scene.beam, loss_factor=scene.beam.loss_factor or self.operating_loss_factor)
-        case = replace(exact, beam=beam, model=self.model, count=self.count if MODELS[self.model].sized else None)
-        points, problems = operating_points(case, self.reflection_limit)
         fields = {"analytic": driven(exact, cache)}
         fields |= {model: driven(replace(exact, model=model, count=self.count), cache) for model in models}
         other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
@@ -125,12 +100,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
-        at = [Column("operating point"), Column("frequency", "Hz", ".2f"), Column("phase", "°", ".2f")]
-        at += [Column("reflection", format=".4f"), si("crest speed", "m/s", "+.5g")]
-        at += [Column("reflection per Hz", "1/Hz", ".2g"), Column("reflection per degree", "1/°", ".2g")]
-        keys = ("frequency_hz", "phase_deg", "reflection", "crest_speed", "per_hertz", "per_degree")
-        names = ["least reflection" if p.what.startswith("least") else "largest crest speed" for p in points]
-        where = [(name, *(getattr(p, key) for key in keys)) for name, p in zip(names, points, strict=True)]
         size = self.count if self.count in self.counts else max(self.counts)
         ratios = [f"{r['name']} {r['drive'].standing_wave_ratio:.5g}" for r in rows if r["N"] in (None, size)]
         x, up, magnified, widest = ellipses(fields["analytic"])
@@ -141,10 +110,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
         return Result(
             summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
-            tables=[
-                Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
-                Table(f"Where to drive, {MODELS[self.model].title}, loss factor {beam.loss_factor:g}", at, where),
-            ],
+            tables=[Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes)],
             figures=[
                 Figure(
                     "wave-envelopes",
@@ -158,17 +124,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     caption,
                     lambda ax: plot_lines(ax, [*paths, start], ("x", "m"), ("deflection", "m")),
                 ),
-                Figure(
-                    "wave-sizes", "Error of the standing-wave ratio over N", SIZES, lambda ax: _draw_sizes(ax, rows)
-                ),
             ],
             movies=[movie("wave-moving", f"One period, N = {self.count}", MOVIE, _movie(fields, self.count))],
-            warnings=[
-                *(f"{row['name']}: {row['note']}." for row in rows if row["note"]),
-                *(f"{name}: {point.note}." for name, point in zip(names, points, strict=True) if point.note),
-                *map(str, problems),
-            ],
-            data={"rows": rows, "points": points, "other_drive_standing_wave_ratio": ratio},
+            warnings=[f"{row['name']}: {row['note']}." for row in rows if row["note"]],
+            data={"rows": rows, "other_drive_standing_wave_ratio": ratio},
         )
 
 
@@ -220,20 +179,6 @@ def _draw_envelopes(ax: "Axes", fields: Fields) -> None:
     x = np.linspace(0.0, fields["analytic"].beam.length, 601)
     lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
     plot_lines(ax, lines, ("x", "m"), ("amplitude", "m"))
-
-
-def _draw_sizes(ax: "Axes", rows: list[Row]) -> None:
-    from verify.models.catalogue import MODELS
-
-    lines = []
-    for model in dict.fromkeys(row["model"] for row in rows[1:]):
-        own = [row for row in rows if row["model"] == model]
-        for key, style, text in (("drive", "-o", "at the drive"), ("best", ":o", "at its best frequency")):
-            pairs = [(row["N"], row[key], rows[0][key]) for row in own]
-            errors = [a.standing_wave_ratio - b.standing_wave_ratio if a and b else None for _, a, b in pairs]
-            label, color = f"{MODELS[model].title}, {text}", model_style(model)["color"]
-            lines.append((label, color, style, [n for n, _, _ in pairs], errors))
-    plot_errors(ax, lines, "|difference of the standing-wave ratio|")
 
 
 def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":

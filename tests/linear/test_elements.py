@@ -1,4 +1,4 @@
-"""Rayleigh's and Timoshenko's theories in elements: what scikit-fem assembles, orders, digits, limits, fields."""
+"""Hermite elements and scikit-fem; elements with shear."""
 
 import mpmath as mp
 import numpy as np
@@ -10,18 +10,70 @@ from tests.reference.transfer import frequency_near, state
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.elements import linear
+from verify.elements.in_time import time_basis
+from verify.elements.stock import stock_frequency_hz
 from verify.errors import InputError
+from verify.scene.load import load_scene
 from verify.section import Section
 
-STRIP = Beam(length=0.43, width=0.017, thickness=0.013, youngs_modulus=113e9, density=4470.0)
-L, EI, MASS = STRIP.length, STRIP.bending_stiffness, STRIP.mass_per_length * STRIP.length
+# --- Scikit fem ---
+
+PAPER = load_scene("paper").beam
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
+STEPS = (Section(length=0.16), Section(length=0.04, thickness=0.0031), Section(length=0.23, youngs_modulus=61e9))
+STEPPED = replace(STRIP, section=STEPS, supports=("clamped", "guided"))
+FORCES = [PointForce(position=0.0137), PointForce(position=0.2911, amplitude=0.7, phase_deg=63.0)]
+
+
+def works():
+    """Everything the model is asked for, by name."""
+    return {
+        "modes": lambda: linear.solve_modes(STRIP, 5, 23).frequencies_hz,
+        "modes of many elements": lambda: linear.solve_modes(STEPPED, 5, 300, grading=1.4).frequencies_hz,
+        "field": lambda: linear.solve_harmonic(STRIP, FORCES, 777.0, 23).deflection([0.1417]),
+        "unit responses": lambda: linear.unit_responses(STRIP, [0.1], np.array([777.0]), np.array([0.1417]), 23),
+        "motion on equal elements": lambda: time_basis(STRIP, 23).omegas,
+        "motion on a stepped beam": lambda: time_basis(STEPPED, 23).omegas,
+    }
+
+
+def raising(*_, **__):
+    raise ZeroDivisionError("scikit-fem's is gone")
+
+
+@pytest.mark.parametrize("work", works())
+@pytest.mark.parametrize("form", ["bending", "inertia"])
+def test_without_scikit_fems_assembly_there_is_no_model(form, work, monkeypatch):
+    from verify.elements import element
+
+    monkeypatch.setattr(getattr(element, form), "_kernel", raising)
+    with pytest.raises(ZeroDivisionError):
+        works()[work]()
+
+
+@pytest.mark.parametrize("beam", [PAPER, STRIP, replace(STRIP, supports=("clamped", "free"))], ids=str)
+@pytest.mark.parametrize(("count", "least", "most"), [(49, 1e-13, 1e-9), (400, 3e-11, 1e-6), (3000, 3e-7, 3e-3)])
+def test_scikit_fems_own_element_loses_digits_with_the_size(beam, count, least, most):
+    """Mode 1 of the paper's beam: 1e-11, 7e-9, 3e-5. Rounding, so that the bands are wide; it grows about like N^4."""
+    off = stock_frequency_hz(beam, 1, count) / linear.solve_modes(beam, 1, count).frequencies_hz[0] - 1
+    assert least < abs(off) < most
+
+
+# --- Timoshenko elements ---
+
+STRIP_TIMOSHENKO_ELEMENTS = Beam(length=0.43, width=0.017, thickness=0.013, youngs_modulus=113e9, density=4470.0)
+L, EI, MASS = (
+    STRIP_TIMOSHENKO_ELEMENTS.length,
+    STRIP_TIMOSHENKO_ELEMENTS.bending_stiffness,
+    STRIP_TIMOSHENKO_ELEMENTS.mass_per_length * STRIP_TIMOSHENKO_ELEMENTS.length,
+)
 STOCKY = {
-    "clamped and pinned": replace(STRIP, supports=("clamped", "pinned")),
-    "a cantilever": replace(STRIP, supports=("clamped", "free")),
-    "free and thick": replace(STRIP, supports=("free", "free"), thickness=0.06),
-    "guided and clamped": replace(STRIP, supports=("guided", "clamped"), thickness=0.03),
+    "clamped and pinned": replace(STRIP_TIMOSHENKO_ELEMENTS, supports=("clamped", "pinned")),
+    "a cantilever": replace(STRIP_TIMOSHENKO_ELEMENTS, supports=("clamped", "free")),
+    "free and thick": replace(STRIP_TIMOSHENKO_ELEMENTS, supports=("free", "free"), thickness=0.06),
+    "guided and clamped": replace(STRIP_TIMOSHENKO_ELEMENTS, supports=("guided", "clamped"), thickness=0.03),
     "everything": replace(
-        STRIP,
+        STRIP_TIMOSHENKO_ELEMENTS,
         supports=("clamped", "guided"),
         foundation=900 * EI / L**4,
         mass=(PointMass(position=0.2 * L, mass=0.3 * MASS, rotary_inertia=0.01 * MASS * L**2),),
@@ -88,7 +140,7 @@ def sine(beam, mode, shear=True):
 @pytest.mark.parametrize("thickness", [0.0013, 0.013, 0.08])
 @pytest.mark.parametrize(("count", "digits"), [(7, 5e-15), (49, 1e-14), (300, 5e-14), (2000, 2e-13)])
 def test_frequencies_of_pinned_beams_are_the_discrete_dispersion_slender_or_thick(thickness, count, digits):
-    beam = replace(STRIP, thickness=thickness)
+    beam = replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=thickness)
     found = linear.solve_modes(beam, 4, count, theory="timoshenko").frequencies_hz
     off = [float(hertz / discrete_hz(beam, n + 1, count) - 1) for n, hertz in enumerate(found)]
     assert off == pytest.approx([0.0] * 4, abs=digits)
@@ -98,7 +150,7 @@ def test_frequencies_of_pinned_beams_are_the_discrete_dispersion_slender_or_thic
 @pytest.mark.parametrize("theory", ["rayleigh", "timoshenko"])
 def test_their_error_is_the_hermite_elements(thickness, theory):
     """mu^4 / 1440 with mu = n pi / N, slender or thick."""
-    beam, count = replace(STRIP, thickness=thickness), 40
+    beam, count = replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=thickness), 40
     found = linear.solve_modes(beam, 5, count, theory=theory).frequencies_hz
     for mode, hertz in enumerate(found, 1):
         exact = sine(beam, mode, theory == "timoshenko")[0]
@@ -123,7 +175,10 @@ def test_frequencies_are_of_order_four_from_above(name, theory):
 @pytest.mark.parametrize("count", [2, 5, 49, 300])
 def test_where_shear_is_stiff_the_element_is_rayleighs(count):
     """The difference goes as one over kappa G A, down to rounding."""
-    stocky, modes = replace(STRIP, thickness=0.03, supports=("clamped", "guided")), min(3, 2 * count - 1)
+    stocky, modes = (
+        replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=0.03, supports=("clamped", "guided")),
+        min(3, 2 * count - 1),
+    )
     rayleigh = linear.solve_modes(stocky, modes, count, theory="rayleigh").frequencies_hz
     off = {}
     for stiff in (1e10, 1e12, 1e40):
@@ -137,7 +192,7 @@ def test_where_shear_is_stiff_the_element_is_rayleighs(count):
 @pytest.mark.parametrize("theory", ["rayleigh", "timoshenko"])
 def test_a_slender_beam_is_euler_bernoullis_less_its_two_small_terms(theory):
     """Omega falls by k^2 (I/A) / 2, and under shear by k^2 EI / (kappa G A) / 2 more."""
-    beam = replace(STRIP, thickness=0.00013)
+    beam = replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=0.00013)
     plain = linear.solve_modes(beam, 3, 40).frequencies_hz
     found = linear.solve_modes(beam, 3, 40, theory=theory).frequencies_hz / plain - 1
     own, k = beam.own, np.arange(1, 4) * np.pi / L
@@ -182,8 +237,16 @@ PLAIN = Beam(length=L, bending_stiffness=EI, mass_per_length=MASS / L)
     [
         (PLAIN, "rayleigh", "beam.rotary_inertia is missing"),
         (replace(PLAIN, rotary_inertia=1e-5), "timoshenko", "beam.shear_stiffness is missing"),
-        (replace(STRIP, tension=12.0), "rayleigh", "beam.tension = 12.0 N with theory = 'rayleigh'"),
-        (replace(STRIP, tension=-12.0), "timoshenko", "beam.tension = -12.0 N with theory = 'timoshenko'"),
+        (
+            replace(STRIP_TIMOSHENKO_ELEMENTS, tension=12.0),
+            "rayleigh",
+            "beam.tension = 12.0 N with theory = 'rayleigh'",
+        ),
+        (
+            replace(STRIP_TIMOSHENKO_ELEMENTS, tension=-12.0),
+            "timoshenko",
+            "beam.tension = -12.0 N with theory = 'timoshenko'",
+        ),
     ],
 )
 def test_what_a_theory_lacks_is_refused_by_name(beam, theory, message):

@@ -1,4 +1,4 @@
-"""Plain data (TOML tables, command-line words) converted to types: all errors at once, one sentence each."""
+"""Plain data (TOML tables, command-line words) converted to types, and what a type says about itself."""
 
 import re
 from collections.abc import Iterator
@@ -119,6 +119,28 @@ def entry_of(kind: Any) -> Any:
     return parts[0] if len(parts) == 2 and parts[1] is Ellipsis else None
 
 
+def extra_of(kind: Any, key: str) -> Any:
+    """What the annotations of a type hold under `key` of their `extra`; None where they have no such key."""
+    return next((meta.extra[key] for meta in metas_of(kind) if meta.extra and key in meta.extra), None)
+
+
+def description_of(kind: Any) -> str:
+    """The description in the annotations of a type, the outermost where there are several."""
+    return next((meta.description for meta in reversed(metas_of(kind)) if meta.description), "")
+
+
+def type_name(kind: Any) -> str:
+    """'number', 'list of whole numbers', 'tanh | coulomb': a type as a listing shows it."""
+    arm = next(arm for arm in arms_of(kind) if arm is not type(None))
+    if get_origin(arm) is Literal:
+        return " | ".join(map(str, get_args(arm)))
+    if get_origin(arm) is tuple:
+        parts = get_args(arm)
+        return f"list of {type_name(parts[0])}s" if parts[-1] is Ellipsis else f"{len(parts)} {type_name(parts[0])}s"
+    name: str = arm.__name__
+    return _PLAIN.get(name, name).removeprefix("a ")
+
+
 def literal(text: str, field: str) -> Any:
     """A TOML literal; a bare word is a string, values with commas between them are a list. Raises InputError."""
     import tomllib
@@ -146,8 +168,7 @@ def typed(text: str, kind: Any, field: str) -> Any:
     if entry is not None and int in arms_of(entry):
         parts = value if isinstance(value, list) else [value]
         return [one for part in parts for one in _spelt_out(part, field)]
-    relative = any((meta.extra or {}).get(RELATIVE) for meta in metas_of(kind))
-    if relative and isinstance(value, str) and value.endswith("%"):
+    if extra_of(kind, RELATIVE) and isinstance(value, str) and value.endswith("%"):
         number = literal(value[:-1].strip(), field)
         return number / 100.0 if isinstance(number, float | int) else value
     return value

@@ -1,0 +1,414 @@
+"""Figures of a motor against closed forms of the driving layer, means of bouncing and creeping sliders, refusals."""
+
+from math import acos, cos, exp, pi, sin, sqrt
+
+import numpy as np
+import pytest
+from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive
+from msgspec.structs import replace
+from reference.motor import bounces
+from scipy.integrate import solve_ivp
+
+from verify import Beam, Contact, Foot, InputError, PointForce, Slider, run_motor, run_motors, simulate
+from verify.contact import layer
+from verify.motor import figures, settling
+from verify.motor.case import MotorCase
+from verify.motor.figures import at_speed, comes_to_speed, crest_speed, mean_speed, no_load, started, stopped
+from verify.motor.on_wave import over_a_wave
+from verify.motor.settling import dragged_at
+from verify.motor.shooting import periodic
+
+HEIGHT, KAPPA, MU = 1e-8, 2e9, 0.2
+FORCES, WAVE = drive(HEIGHT)
+CRESTS = HALF * WAVE.k * OMEGA * HEIGHT
+
+
+def case_of(slider, forces, **given):
+    return MotorCase(
+        beam=STRIP, forces=forces, frequency_hz=HERTZ, slider=slider, model="analytic", count=None, **given
+    )
+
+
+def motor(phi, epsilon=0.0, mass=4.0, steps=127):
+    """(case, normal force) of an upright foot of one wavelength; 50 g of it move across."""
+    load = 2.0 * KAPPA * HEIGHT * layer.pressed(phi, phi) / WAVE.k
+    give = 2.0 * MU * KAPPA / (epsilon * WAVE.k * 2.0 * HALF) if epsilon else None
+    own = {"mass": mass, "mu": MU, "law": "coulomb", "gravity": 0.0, "preload": load, "position": MIDDLE}
+    contact = Contact(layer_stiffness=KAPPA, layer_tangential_stiffness=give)
+    feet = (Foot(length=2.0 * pi / WAVE.k, points=61, pitches=False, mass=0.05),)
+    slider = Slider(coupling="one-way", contact=contact, foot=feet, **own)
+    return case_of(slider, FORCES, start="steady", steps_per_period=steps), load
+
+
+@pytest.mark.parametrize(
+    ("epsilon", "speed", "force"), [(0.0, 0.942089316298, 1.0), (0.1, 0.8875898055, 1.0), (3.0, sin(1.0), 0.6524603173)]
+)
+def test_no_load_speed_and_stall_force_are_the_layers(epsilon, speed, force):
+    case, load = motor(1.0, epsilon)
+    assert -no_load(case).speed / CRESTS == pytest.approx(speed, abs=2e-3)
+    assert -at_speed(case, 0.0).force / (MU * load) == pytest.approx(force, abs=2e-3)
+
+
+@pytest.mark.parametrize(("phi", "epsilon", "ratio"), [(1.0, 0.0, 0.71), (1.3, 0.4, -0.6), (1.0, 0.0, 0.68561)])
+def test_force_power_and_efficiency_at_a_speed_are_the_layers(phi, epsilon, ratio):
+    case, load = motor(phi, epsilon)
+    found = at_speed(case, -ratio * CRESTS)
+    assert -found.force / (MU * load) == pytest.approx(layer.force(phi, ratio, epsilon), abs=3e-3)
+    assert found.normal_force == pytest.approx(load, rel=1e-3)
+    assert found.contact_share == pytest.approx(phi / pi, abs=2e-3)
+    assert found.given == pytest.approx(found.power + found.rubbed, rel=1e-6)
+    if not epsilon:
+        assert found.efficiency == pytest.approx(layer.efficiency(phi, ratio), abs=3e-3)
+
+
+@pytest.mark.parametrize(("phi", "ratio"), [(0.8, 0.83), (2.3, 0.61), (3.0, -0.3)])
+def test_friction_of_two_points_reverses_within_the_step(phi, ratio):
+    """A step is 2/61 = 0.033 of the force."""
+    wrong = []
+    for steps in (61, 488):
+        given = {"speed_ratio": ratio, "contact_half_angle": phi, "points": 2, "steps_per_period": steps, "mu": MU}
+        found, _ = over_a_wave(STRIP, HERTZ, **given)
+        assert found.given == pytest.approx(found.power + found.rubbed, rel=1e-9)
+        wrong.append(found.force / (MU * found.normal_force) + layer.force(phi, ratio))
+    assert abs(wrong[0]) < 6e-3
+    assert abs(wrong[1]) < 6e-5
+
+
+def one_point(**given):
+    """A motor of one contact point on the wave of two unequal forces."""
+    case, _ = motor(1.0)
+    forces = (PointForce(position=0.012, amplitude=6.0), PointForce(position=0.25, amplitude=9.0, phase_deg=70.0))
+    beam = Beam(length=0.26, width=0.012, thickness=0.0014, youngs_modulus=200e9, density=7850.0)
+    own = {"mu": 0.25, "preload": 8.0, "position": 0.115, "contact": Contact(stiffness=2e5, damping=40.0)}
+    slider = replace(case.slider, foot=(Foot(points=1, mass=0.02),), **own, **given.pop("slider", {}))
+    return replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider, **given)
+
+
+@pytest.mark.parametrize(
+    ("law", "slope", "mass"), [("coulomb", None, 0.04), ("tanh", 1e5, 0.04), ("coulomb", None, 8e-3)]
+)
+def test_a_motor_of_one_point_gives_the_same_in_the_default_steps_and_in_many(law, slope, mass):
+    few, many = (
+        one_point(steps_per_period=steps, slider={"law": law, "slope": slope, "mass": mass}) for steps in (61, 700)
+    )
+    speeds = [mean_speed(one.run(300 * one.period, samples=301), 100)[0] / crest_speed(one) for one in (few, many)]
+    assert at_speed(few, 0.0).force == pytest.approx(at_speed(many, 0.0).force, rel=0.01)
+    assert speeds[0] == pytest.approx(speeds[1], abs=0.006)
+
+
+@pytest.mark.parametrize("steps", [61, 64])
+def test_friction_that_the_beam_feels_is_that_of_many_steps_in_the_default_ones(steps):
+    felt = {"model": "fem", "count": 9, "slider": {"coupling": "two-way"}}
+    coarse, fine = (
+        at_speed(one_point(steps_per_period=n, **felt | {"slider": dict(felt["slider"])}), 0.0).force
+        for n in (steps, 900)
+    )
+    assert coarse == pytest.approx(fine, abs=2e-4 * 0.25 * 8.0)
+    assert abs(fine) > 0.02 * 0.25 * 8.0
+
+
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
+def test_the_crest_speed_is_what_the_slider_sees_with_damping(model, count):
+    slow, damped = (one_point(model=model, count=count, modal_damping=zeta) for zeta in (None, 0.05))
+    seen = damped.run(damped.period, held_speed=0.0, frozen=True, samples=62).surface_speed
+    assert crest_speed(damped) == pytest.approx(np.nanmax(abs(seen)), rel=3e-3)
+    assert crest_speed(slow) < 0.9 * crest_speed(damped)
+
+
+@pytest.mark.parametrize(("tension", "foundation"), [(0.0, 0.0), (4300.0, 0.0), (0.0, 2.6e6), (-700.0, 1.1e6)])
+def test_epsilon_is_over_a_wavelength_of_the_beam_under_tension_and_on_a_foundation(tension, foundation):
+    case = one_point(model="fem", count=40)
+    stiffness, mass = case.beam.pieces[0].bending_stiffness, case.beam.pieces[0].mass_per_length
+    load = mass * (2.0 * pi * 7300.0) ** 2 - foundation
+    k = sqrt((sqrt(tension**2 + 4.0 * stiffness * load) - tension) / (2.0 * stiffness))
+    beam = replace(case.beam, tension=tension, foundation=foundation)
+    give = Contact(stiffness=2e5, damping=40.0, tangential_stiffness=9e4)
+    case = replace(case, beam=beam, slider=replace(case.slider, contact=give))
+    found = case.run(case.period, samples=2).motor_margins
+    assert found.epsilon == pytest.approx(2.0 * 0.25 * 2e5 / (9e4 * k * 0.0014), rel=1e-12)
+    evanescent = replace(case, beam=replace(beam, foundation=foundation + 1.4 * load))
+    assert evanescent.run(case.period, samples=2).motor_margins.epsilon is None
+
+
+def test_a_motor_starts_by_the_layers_force_over_its_mass():
+    """M dv/dt = mu N F(v/V): to 1 - 1/e of the no-load speed; near that with a time constant in closed form."""
+    phi, mass = 1.0, 40.0
+    case, load = motor(phi, mass=mass)
+    speed, rate = layer.no_load_speed(phi), MU * load / (mass * CRESTS)
+
+    def reached(t, r):
+        return r[0] - (1.0 - exp(-1.0)) * speed
+
+    reached.terminal = True
+    span = (0.0, 5.0 / rate)
+    wanted = solve_ivp(
+        lambda t, r: [rate * layer.force(phi, r[0])], span, [0.0], events=reached, rtol=1e-9, max_step=0.01
+    )
+    found = started(case, -speed * CRESTS, periods=300)
+    assert found.time == pytest.approx(wanted.t_events[0][0], rel=5e-3)
+    psi, left = acos(speed), speed + found.run.speed / CRESTS
+    constant = mass * CRESTS * sin(psi) * 2.0 * layer.pressed(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    last = (left > 0.005) & (left < 0.02)
+    assert -1.0 / np.polyfit(found.run.times[last], np.log(left[last]), 1)[0] == pytest.approx(constant, rel=0.08)
+
+
+def test_a_motor_stops_by_friction_alone():
+    """1/e of the speed is left after (1 - 1/e) m v/(mu N)."""
+    case, load = motor(1.0, mass=40.0)
+    found = stopped(case, case.run(3.0 * PERIOD, held_speed=-0.8 * CRESTS, samples=4), periods=200)
+    assert found.time == pytest.approx((1.0 - exp(-1.0)) * 40.0 * 0.8 * CRESTS / (MU * load), rel=2e-2)
+    assert abs(found.end_speed) < 1e-6 * CRESTS
+
+
+@pytest.mark.parametrize(("ratio", "zeta"), [(0.6, 0.07), (1.9, 0.2)])
+def test_a_periodic_motion_has_the_multipliers_of_its_spring(ratio, zeta):
+    """exp(omega_c T (-zeta +- i sqrt(1 - zeta^2))) over a period."""
+    mass, own = 2e-3, OMEGA / ratio
+    contact = Contact(stiffness=mass * own**2, damping=2.0 * zeta * mass * own)
+    given = {"mu": MU, "gravity": 0.0, "preload": 30.0 * mass * HEIGHT * OMEGA**2, "position": MIDDLE}
+    slider = Slider(mass=mass, coupling="one-way", contact=contact, **given)
+    found = periodic(case_of(slider, FORCES, steps_per_period=400))
+    wanted = np.exp(own * PERIOD * (-zeta + 1j * sqrt(1.0 - zeta**2) * np.array([1.0, -1.0])))
+    assert found.stable
+    assert np.sort_complex(np.array(found.multipliers)) == pytest.approx(np.sort_complex(wanted), abs=2e-3)
+
+
+# --- means of a slider that bounces
+
+MASS, PRELOAD, RATIO = 2.3e-3, 2.3e-5, 150.0
+GRAVITY = PRELOAD / MASS
+"""Acceleration of the surface over that of the fall: a flight lasts up to 48 periods, four blocks of means."""
+SPRING = Contact(stiffness=MASS * (0.31 * OMEGA) ** 2, damping=0.02 * MASS * OMEGA)
+
+
+def bouncing(ratio=RATIO, **given):
+    """A point pressed on a place that a wave to the right shakes."""
+    pressed = {"gravity": 0.0, "preload": PRELOAD, **given}
+    slider = Slider(mass=MASS, mu=MU, law="coulomb", position=MIDDLE, coupling="one-way", **pressed)
+    return case_of(slider, drive(ratio * GRAVITY / OMEGA**2)[0])
+
+
+BOUNCING = {
+    "plastic": bouncing(contact=Contact(restitution=0.0)),
+    "restitution 0.5": bouncing(contact=Contact(restitution=0.5)),
+    "spring": bouncing(contact=SPRING),
+    "spring without loss": bouncing(contact=Contact(stiffness=SPRING.stiffness)),
+    "clasp": bouncing(
+        contact=SPRING, foot=(Foot(length=0.04, points=3), Foot(length=0.03, points=2, face="lower", offset=0.004))
+    ),
+    "below, with a weight": bouncing(
+        contact=SPRING, gravity=9.81, preload=MASS * 9.81 + PRELOAD, foot=(Foot(face="lower"),)
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BOUNCING)
+def test_the_mean_normal_force_of_a_bouncing_slider_balances_what_presses_it_on(name):
+    """To a few flights in the window of a chaotic one; the reported spread covers what is missing."""
+    one = at_speed(BOUNCING[name], 0.4 * crest_speed(BOUNCING[name]), periods=11_520)
+    missing = abs(one.normal_force - PRELOAD)
+    assert missing < (0.03 if name.startswith("restitution") else 0.01) * PRELOAD
+    assert missing <= one.normal_spread + 1e-3 * PRELOAD
+    assert one.settled("normal force") == (one.normal_spread <= 0.01 * one.normal_force)
+    assert abs(one.force) <= MU * one.normal_force * (1.0 + 1e-9)
+    assert one.rubbed >= 0.0
+
+
+def parabolas(ratio, restitution, turns, after):
+    """(normal force over the preload, friction over mu times it) of a point in parabolas, after so many turns.
+
+    The surface is A sin theta and runs against the wave on its crests: along +x where sin theta < 0.
+    """
+    landed = [one for one in bounces(ratio, restitution, turns) if one.phase >= 2.0 * pi * after]
+    pushed = rubbed = 0.0
+    for one in landed[1:]:
+        blow = ratio * one.closing * (1.0 if one.left > one.phase else 1.0 + restitution)
+        theta = np.linspace(one.phase, one.left, 4001)
+        rides = np.maximum(1.0 - ratio * np.sin(theta), 0.0) * (one.left > one.phase)
+        pushed += blow + np.trapezoid(rides, theta)
+        rubbed -= blow * np.sign(np.sin(one.phase)) + np.trapezoid(rides * np.sign(np.sin(theta)), theta)
+    span = landed[-1].phase - landed[0].phase
+    return pushed / span, rubbed / span
+
+
+@pytest.mark.parametrize(("ratio", "restitution"), [(RATIO, 0.3), (31.0, 0.0)])
+def test_means_of_a_hard_point_are_those_of_parabolas(ratio, restitution):
+    one = at_speed(bouncing(ratio, contact=Contact(restitution=restitution)), 0.0)
+    push, rub = parabolas(ratio, restitution, 6000, 700)
+    assert push == pytest.approx(1.0, abs=0.02)
+    assert one.force / (MU * PRELOAD) == pytest.approx(rub, abs=0.03 + one.spread / (MU * PRELOAD))
+
+
+def test_spreads_cover_the_mean_of_independent_draws_in_nineteen_of_twenty():
+    draws, covered, known = np.random.default_rng(7), 0, 0
+    for _ in range(400):
+        rows = draws.normal(3.0, 1.0, (1440, 6))
+        covered += abs(rows[:, 0].mean() - 3.0) <= settling.spread_of(rows, 0.0, False).force
+        rows[:, 0] = 0.2 * rows[:, 1] + 0.01 * rows[:, 2]
+        balanced = settling.spread_of(rows, abs(rows[:, 1].mean() - 3.0), True)
+        known += abs(rows[:, 0].mean() - 0.63) <= balanced.force
+        assert balanced.normal_force == abs(rows[:, 1].mean() - 3.0)
+    assert covered > 370
+    assert known > 370
+
+
+def test_means_that_have_not_converged_say_so():
+    few = at_speed(bouncing(contact=Contact(restitution=0.5)), 0.0, periods=48)
+    assert not few.settled()
+    assert few.spread >= 0.5 * MU * PRELOAD
+    assert few.way == 0.0
+    assert "has not converged, give more periods" in figures.not_converged(few, 48)
+    with pytest.raises(InputError, match="not converged"):
+        no_load(bouncing(contact=Contact(restitution=0.9)), periods=1440)
+    repeats = at_speed(bouncing(0.4, contact=SPRING), 0.0)
+    assert repeats.settled()
+    assert repeats.window == settling.BLOCK
+    assert repeats.normal_force == pytest.approx(PRELOAD, rel=settling.BALANCED)
+
+
+def test_a_free_run_in_flight_at_its_end_has_come_to_no_speed():
+    case = bouncing(contact=Contact(restitution=0.5))
+    run = case.run(40 * case.period, samples=41)
+    assert float(run.normal_force[-20:].mean()) == 0.0
+    assert not comes_to_speed(run, 20, crest_speed(case))
+    still = replace(case, forces=drive(0.4 * GRAVITY / OMEGA**2)[0])
+    assert comes_to_speed(still.run(60 * case.period, samples=61), 20, 1e3 * HALF)
+
+
+@pytest.mark.parametrize("feet", [(Foot(face="lower"),), (Foot(), Foot(face="lower"))], ids=["below", "clasp"])
+def test_a_free_run_on_the_lower_face_carries_the_preload_less_the_weight(feet):
+    case = bouncing(0.4, contact=SPRING, gravity=0.1 * PRELOAD / MASS, foot=feet)
+    run = case.run(200 * case.period, samples=201)
+    presses = (0.9 if len(feet) == 1 else 1.0) * PRELOAD
+    assert case.slider.normal_force == pytest.approx(presses, rel=1e-12)
+    assert run.normal_force[0] == pytest.approx(presses, rel=1e-12)
+    assert float(run.normal_force[-20:].mean()) == pytest.approx(presses, rel=0.01)
+
+
+# --- a slider held at a speed so small that what gives way under it takes long to slip
+
+STIFF, DASHPOT, GRIP, PLACE = 6.1e4, 8.0, 3.3e5, MIDDLE + 0.0061
+CREEPING = case_of(
+    Slider(
+        mass=0.015,
+        mu=0.23,
+        law="coulomb",
+        position=PLACE,
+        coupling="one-way",
+        gravity=0.0,
+        preload=0.31,
+        contact=Contact(stiffness=STIFF, damping=DASHPOT, tangential_stiffness=GRIP),
+    ),
+    drive(2.6e-7, backward=1.0)[0],
+    steps_per_period=244,
+)
+
+
+def played(speed, steps=2000, turns=2):
+    """Mean friction of a point that has slipped: its stretch follows the surface as far as friction lets it."""
+    lift, _, rise, *_ = drive(2.6e-7, backward=1.0)[1].at(PLACE, 0.0)
+    theta = 2.0 * np.pi * np.arange(turns * steps) / steps
+    held = STIFF + 1j * OMEGA * DASHPOT
+    pressed = held * (-0.015 * OMEGA**2) / (held - 0.015 * OMEGA**2) * lift
+    most = 0.23 * (0.31 + (pressed * np.exp(1j * theta)).real) / GRIP
+    assert most.min() > 0.0, "it leaves the surface"
+    along = -HALF * rise * np.cos(theta) - speed * theta / OMEGA
+    stretch, found = -most[0] * np.sign(speed), []
+    for gone, limit in zip(np.diff(along).tolist(), most[1:].tolist(), strict=True):
+        stretch = max(-limit, min(stretch + gone, limit))
+        found.append(stretch)
+    return GRIP * float(np.mean(found[-steps:]))
+
+
+@pytest.mark.parametrize("speed", [1e-9, -1e-8, 2e-7])
+def test_a_creeping_slider_has_the_force_of_one_that_slips(speed):
+    """At 1e-9 m/s it takes 680 000 periods to slip: two blocks of them differ by 1e-5 of mu N until then."""
+    found = at_speed(CREEPING, speed)
+    assert not found.unsettled
+    assert found.taken_up < 1e-4
+    assert found.force == pytest.approx(played(speed), rel=4e-3)
+
+
+def test_a_slider_that_has_not_slipped_has_no_mean(monkeypatch):
+    monkeypatch.setattr(figures, "dragged_at", lambda slider, speed, seconds: None)
+    found = at_speed(CREEPING, 1e-9, periods=96)
+    assert found.taken_up == pytest.approx(1.0, rel=1e-3)
+    assert found.crept
+    assert "force" in found.unsettled
+    assert found.spread >= 0.99 * 0.23 * 0.31 > abs(played(1e-9) - found.force)
+
+
+def test_a_slider_is_dragged_until_the_softest_of_unlike_points_slips():
+    """Under one force a foot of 0.4 mm of a layer is stretched 17 times as far as a third of one of 20 mm."""
+    feet = (Foot(length=0.02, points=3), Foot(length=4e-4, offset=0.017))
+    contact = Contact(layer_stiffness=3.1e6, layer_tangential_stiffness=1.65e7)
+    slider, seconds, full = replace(CREEPING.slider, contact=contact, foot=feet), 12.0 / HERTZ, 0.0713 / (1.65e7 * 4e-4)
+    for speed in (1e-9, -1e-9):
+        assert abs(dragged_at(slider, speed, seconds)) * seconds > 2.0 * full
+        assert dragged_at(slider, speed, seconds) * speed > 0.0
+    assert dragged_at(slider, 2.0 * full / seconds, seconds) is None
+
+
+# --- refusals
+
+BAR = Beam(length=0.31, width=0.013, thickness=0.0012, youngs_modulus=68e9, density=2650.0, loss_factor=0.01)
+TWO = [PointForce(position=0.021, amplitude=0.4), PointForce(position=0.27, amplitude=0.3, phase_deg=70.0)]
+
+
+def light(**given):
+    own = {"mass": 0.003, "mu": 0.23, "law": "coulomb", "preload": 0.05, "coupling": "one-way"}
+    return Slider(**{**own, "contact": Contact(stiffness=6e4), **given})
+
+
+def moved(slider, **given):
+    return run_motor(BAR, TWO, 3130.0, 6e-4, slider=slider, **{"model": "fem", "count": 17, "samples": 3, **given})
+
+
+@pytest.mark.parametrize(
+    ("slider", "given", "said"),
+    [
+        ({"contact": None}, {}, "slider.contact is missing"),
+        ({"foot": (Foot(length=0.5, points=3),)}, {}, "slider.foot.length = 0.5"),
+        ({"foot": (Foot(length=0.1, points=3),), "position": 0.03}, {}, "slider.position = 0.03"),
+        ({"preload": 0.0, "foot": (Foot(face="lower"),)}, {}, "slider.preload"),
+        ({"contact": Contact(stiffness=6e7)}, {"step": 3e-5}, "step = 3e-05"),
+        ({}, {"links": "stretching"}, "links = 'stretching'"),
+        ({}, {"held_speed": float("nan")}, "held_speed"),
+        ({"coupling": "auto"}, {"model": "chain", "count": 9}, "slider.coupling = 'auto'"),
+        ({}, {"model": "chain", "count": 9}, "start = 'steady'"),
+        ({}, {"model": "chain", "count": 9, "start": "rest"}, "modal_damping = 0.005"),
+        ({}, {"model": "chain", "count": None}, "count = None"),
+        ({"contact": Contact(), "coupling": "two-way"}, {}, "slider.coupling = 'two-way'"),
+        ({"contact": Contact(), "foot": (Foot(offset=0.003),)}, {}, "slider.foot.offset = 0.003"),
+        ({"law": "tanh", "contact": Contact(stiffness=6e4, tangential_stiffness=3e4)}, {}, "slider.law = 'tanh'"),
+        ({"contact": Contact(), "preload_stiffness": 3.0}, {}, "slider.preload_stiffness = 3.0"),
+        ({"foot": (Foot(mirrored=True),), "coupling": "two-way"}, {}, "slider.gravity = 9.81"),
+    ],
+)
+def test_a_motor_that_cannot_run_is_refused_by_name(slider, given, said):
+    with pytest.raises(InputError) as refused:
+        moved(light(**slider), **given)
+    assert said in str(refused.value)
+
+
+def test_sliders_on_one_beam_must_rub_and_be_coupled_alike():
+    one, smooth = light(position=0.1), light(position=0.1, law="tanh", slope=3.0)
+    for first, other, field in (
+        (one, {"law": "tanh"}, "law"),
+        (one, {"coupling": "two-way"}, "coupling"),
+        (smooth, {"law": "tanh", "slope": 2.0}, "slope"),
+    ):
+        with pytest.raises(InputError, match=rf"slider\.{field} differs"):
+            run_motors(BAR, TWO, 3130.0, 1e-4, sliders=[first, light(position=0.2, **other)], model="fem", count=9)
+    with pytest.raises(InputError, match="slider"):
+        simulate(BAR, TWO, 3130.0, 1e-4, slider=light(law="tanh"), model="fem", count=9)
+    with pytest.raises(InputError, match=r"beam\.tension"):
+        run_motor(replace(BAR, tension=-1e6), TWO, 3130.0, 6e-4, slider=light(), model="fem", count=17)
+
+
+@pytest.mark.parametrize("links", ["rigid", "stretching"])
+def test_a_motor_on_a_chain_whose_motion_is_not_resolved_is_refused(links):
+    asked = {"model": "chain", "count": 9, "start": "rest", "modal_damping": 0.0, "links": links}
+    strong = [replace(one, amplitude=1e5) for one in TWO]
+    with pytest.raises(InputError, match=r"tolerance|step"):
+        run_motor(replace(BAR, loss_factor=0.0), strong, 3130.0, 3e-3, slider=light(), **asked)
