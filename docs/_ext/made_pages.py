@@ -49,7 +49,7 @@ def quantities():
 
     families = {}
     for one in REGISTERED.values():
-        row = (f"`{one.name}`", one.unit, one.summary, " ".join(f"`{argument.name}`" for argument in one.arguments))
+        row = (f"`{one.name}`", one.unit, one.summary, " ".join(f"`{argument['name']}`" for argument in one.arguments))
         families.setdefault(one.name.partition(".")[0], []).append(row)
     yield QUANTITIES
     for name, rows in families.items():
