@@ -68,7 +68,12 @@ def gates():
         svg = "".join(figure_svg(replace(beam_figure(scene), id=scene.name)).splitlines())
         arguments = [" ".join(f"{key}={value}" for key, value in gate.arguments.items()) for gate in scene.gate]
         rows = [
-            (f"`{gate.id}`", f"{gate.quantity} {words}", GateResult(gate=gate).expected, f"{gate.reference}: {gate.why}")
+            (
+                f"`{gate.id}`",
+                f"{gate.quantity} {words}",
+                GateResult(gate=gate).expected,
+                f"{gate.reference}: {gate.why}",
+            )
             for gate, words in zip(scene.gate, arguments, strict=True)
         ]
         yield f'## {scene.name}\n\n{scene.title}. {scene.description}\n\n<div class="beam-drawing">{svg}</div>\n'
