@@ -48,8 +48,6 @@ LINES: tuple[str, ...] = get_args(Line)
 Links = Literal["rigid", "stretching"]
 LINKS: tuple[str, ...] = get_args(Links)
 """Links of a nonlinear chain. rigid: the paper's. stretching: with the beam's EA / l."""
-OF_THE_CHAIN = ("chain", "chain_force", "links", "places")
-"""Keys of [motor] that its runs on the nonlinear chain alone have."""
 
 Inertia = Literal["full", "transverse", "elastic"]
 """Axial inertia of links. full: rigid links. transverse: rigid links without it. elastic: stretching links."""

@@ -1,6 +1,5 @@
 """Rotary inertia and shear: exact beams and chains."""
 
-from itertools import product
 from math import pi
 
 import mpmath
@@ -12,18 +11,13 @@ from msgspec.structs import replace
 from tests.reference import dense
 from tests.reference.transfer import frequency_near
 from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
+from verify.beam import Beam
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact.modes import exact_frequency_hz, solve_modes
-from verify.models.catalogue import MODELS
-from verify.options import SUPPORTS
 from verify.section import Section
 from verify.segments import linear as chains
 
-# --- Thick beams ---
-
-PAIRS = list(product(SUPPORTS, SUPPORTS))
 BLOCK = Beam(length=0.43, width=0.019, thickness=0.061, youngs_modulus=113e9, density=4470.0, poissons_ratio=0.31)
 OWN = BLOCK.own
 CUT_OFF = np.sqrt(OWN.shear_stiffness / OWN.rotary_inertia) / (2 * np.pi)
@@ -266,21 +260,3 @@ def test_stiff_shear_is_rayleighs_chain_and_no_thickness_is_euler_bernoullis(sup
 def test_ground_under_a_beam_that_shears_keeps_order_two():
     beam = replace(THICK, supports=ENDS["CF"], foundation=900.0)
     assert order(beam, 1, (160, 320), "timoshenko") == pytest.approx(2.0, abs=0.03)
-
-
-REFUSED = (
-    ("segment", "chains.solve_modes", (THICK, 2, 5), {"theory": "timoshenko", "joints": "tensioned"}),
-    ("segment", "chains.solve_modes", (THICK, 9, 8), {}),
-    ("segment", "solve_harmonic", (THICK, (PointForce(position=0.1),), 90.0, 1), {}),
-    ("fem", "chains.solve_modes", (THICK, 2, 0), {}),
-    ("fem", "chains.solve_modes", (THICK, 40, 7), {}),
-)
-
-
-@pytest.mark.parametrize(("model", "verb", "given", "settings"), REFUSED)
-def test_a_refusal_of_a_size_names_count_to_who_wrote_count(model, verb, given, settings):
-    """As scenes, the command line and all verbs over models say it; `n_segments` is what a model's own page says."""
-    with pytest.raises(InputError, match=r"\bcount\b") as told:
-        getattr(MODELS[model], verb)(*given, **settings)
-    assert "n_segments" not in str(told.value)
-    assert "n_elements" not in str(told.value)

@@ -15,17 +15,6 @@ def rows_of(table, **wanted):
     return [row for row in table.records() if all(row[key] == value for key, value in wanted.items())]
 
 
-def test_spectrum_tabulates_direct_solves(run):
-    result = run("paper", Spectrum(modes=7, count=13))
-    table = result.tables[0].records()
-    for model, title in (("segment", "segments"), ("fem", "Hermite elements")):
-        modes = MODELS[model].solve_modes(PAPER.beam, 7, 13)
-        for row in table:
-            exact = frequency_hz(PAPER.beam, row["mode"])
-            assert row["exact Euler-Bernoulli"] == pytest.approx(exact, rel=1e-14)
-            assert row[title] == pytest.approx(modes.frequencies_hz[row["mode"] - 1] / exact - 1.0, abs=1e-13)
-
-
 def test_spectrum_states_the_published_error(run):
     result = run("paper", Spectrum(modes=22, count=49))
     row = result.tables[0].records()[-1]
@@ -73,12 +62,6 @@ def test_two_sided_bound_contains_the_exact_frequency(run):
         assert abs(row["error of the mean"]) < row["width"]
 
 
-def test_no_bound_on_a_clamped_beam(run):
-    result = run("steel-cantilever", Convergence(modes=(3,), counts=(12, 24)))
-    assert any("No two-sided bound" in warning for warning in result.warnings)
-    assert "bracket" not in {figure.id for figure in result.figures}
-
-
 def test_orders_outside_the_asymptotic_range_void_the_summary(run):
     result = run("paper", Convergence(modes=(9,), counts=(10, 11)))
     assert "segments" not in result.summary
@@ -93,10 +76,3 @@ def test_variants_stand_side_by_side(run, renders):
     axes = renders(result)
     guides = [line for line in axes["errors-over-size"].lines if line.get_gid() == "guide"]
     assert len(guides) == 2
-
-
-def test_convergence_charts_of_the_paper(run, renders):
-    axes = renders(run("paper", Convergence(modes=(2, 5), counts=(11, 23, 46))))
-    assert axes["bracket"].get_ylabel() == "against the exact frequency, %"
-    labels = [text.get_text() for text in axes["errors-over-size"].get_legend().get_texts()]
-    assert {"segments", "Hermite elements", "mean of both", "mode 2", "mode 5"} == set(labels)

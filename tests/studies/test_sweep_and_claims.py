@@ -3,16 +3,15 @@
 import pytest
 from msgspec.structs import replace
 
-from verify import parallel
 from verify.analytic_modes import frequency_hz
 from verify.errors import InputError
 from verify.judge.cache import SolutionCache
 from verify.quantities.base import evaluate
 from verify.scene.load import load_scene
 from verify.scene.model import Claim
-from verify.studies.base import STUDIES, Study, studies_of
+from verify.studies.base import studies_of
 from verify.studies.claims import Claims
-from verify.studies.sweep import Sweep, run_sweep
+from verify.studies.sweep import run_sweep
 
 
 def column(table, name):
@@ -36,16 +35,6 @@ def test_rows_follow_the_lists_with_the_first_key_slowest():
     for row in table.records():
         beam = replace(PAPER.beam, density=row["beam.density"], length=row["beam.length"])
         assert row["mode.frequency"] == pytest.approx(frequency_hz(beam, 3), rel=1e-13)
-
-
-def test_several_processes_return_the_same_rows(monkeypatch):
-    over = {"count": [9, 17, 33], "mode": [2, 5]}
-    results = []
-    for jobs in ("1", "2"):
-        monkeypatch.setenv(parallel.VARIABLE, jobs)
-        results.append(run_sweep(PAPER, ["mode.frequency_error"], over, arguments={"model": "segment"}).data["rows"])
-    assert results[0] == results[1]
-    assert len(results[0]) == 6
 
 
 def test_failed_combinations_are_rows_with_the_reason():
@@ -81,10 +70,7 @@ def test_sweeps_render(renders):
         (["mode.frequencey"], {"mode": [1]}, "mode.frequency"),
         (["mode.frequency"], {"mod": [1]}, "'mode'"),
         (["mode.frequency"], {"beam.lenght": [1.0]}, "'length'"),
-        (["mode.frequency"], {"beem.length": [1.0]}, "'beam'"),
         (["mode.frequency"], {"drive.force.7.amplitude": [1.0]}, "7 is not known"),
-        (["mode.frequency"], {"mode": []}, "sweep.over.mode"),
-        (["mode.frequency"], {"beam.length,beam.width": [1.0]}, "lists of 2"),
         (["mode.frequency"], {"mode": list(range(1, 1000)), "count": list(range(1, 1000))}, "combinations"),
     ],
 )
@@ -93,26 +79,9 @@ def test_wrong_sweeps_are_refused_before_they_run(quantities, over, word):
         run_sweep(PAPER, quantities, over, arguments={"model": "segment"})
 
 
-def test_ctrl_c_ends_a_sweep():
-    def interrupt(step):
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        run_sweep(PAPER, ["mode.frequency"], {"mode": [1, 2]}, arguments={"model": "analytic"}, progress=interrupt)
-
-
 def claim(**other):
     own = {"id": "a", "source": "somebody", "quantity": "mode.frequency", "arguments": FREQUENCY, "read": "stated"}
     return Claim(**own | other)
-
-
-def test_claims_are_counted_in_every_combination(run):
-    claims = (claim(at_least=83.0), claim(id="b", at_most=80.0))
-    sweep = Sweep(quantities=("mode.frequency",), over={"beam.length": [0.5, 0.53]}, arguments=FREQUENCY, claims=True)
-    result = run(replace(PAPER.bare, claim=claims), sweep)
-    assert column(result.tables[0], "claims that agree") == [1, 1]
-    with pytest.raises(InputError, match="claim"):
-        sweep.check(PAPER.bare)
 
 
 def test_claims_equal_the_quantities(run, renders):
@@ -144,14 +113,3 @@ def test_sections_and_what_they_imply():
     assert [name for name, _ in studies_of(load_scene("paper-slider"))] == ["wave", "motion", "claims", "sweep"]
     assert "motion" not in dict(studies_of(replace(load_scene("paper-slider").bare, slider=None)))
     assert [name for name, _ in studies_of(load_scene("taut-strip"))] == ["spectrum", "convergence"]
-
-
-def test_a_registered_study_has_a_section():
-    class Mine(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
-        name = "mine"
-        width: float = 2.0
-
-    with STUDIES.registered(Mine):
-        assert STUDIES.named("mine")(width=3.0).width == 3.0
-    with pytest.raises(InputError, match="spectrum"):
-        STUDIES.named("spectrun")

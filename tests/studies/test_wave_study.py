@@ -8,11 +8,6 @@ from verify.quantities.base import evaluate
 from verify.scene.load import load_scene
 from verify.studies.wave import Wave
 
-
-def column(table, name):
-    return [record[name] for record in table.records()]
-
-
 SMALL = Wave(count=49, counts=(49, 98))
 
 
@@ -44,7 +39,6 @@ def test_wave_renders(run, renders):
     [
         ("stepped-beam", Wave(), "wave"),
         ("paper-wave", Wave(counts=(7,)), "count"),
-        ("stick-slip-belt", Wave(), "two forces"),
     ],
 )
 def test_refusals_name_the_field(scene, study, word):

@@ -11,14 +11,13 @@ from msgspec.structs import replace
 
 from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, segment_model, travelling_wave
 from verify.device import Device, of_impedance
-from verify.errors import InputError, ResonanceError
+from verify.errors import InputError
 from verify.judge.cache import SolutionCache
 from verify.models.fields import phasor
 from verify.waves.absorber import beam_impedance, best_dashpot, ending, matched_device, matched_impedance, reflection
 from verify.waves.case import DrivenCase
 from verify.waves.devices import DevicesResonanceError, field_with_devices, powers
 from verify.waves.driven import driven
-from verify.waves.imposed import HeldResonanceError, driven_field
 
 # --- Devices ---
 
@@ -573,23 +572,3 @@ def test_every_model_with_a_light_dashpot_is_right_at_its_own_resonance(model, p
         pull = complex(1j * float(system.omega) * dashpot * wanted[1])
         assert field.forces[1].amplitude == pytest.approx(abs(pull), rel=within)
         assert field.frequency_hz == hertz
-
-
-@pytest.mark.parametrize("model", MODELS_POLES)
-def test_a_node_of_the_resonance_is_refused_for_devices_and_displacements(model):
-    hertz, node = resonance(model, 7), 2 * STRIP_POLES.length / 7  # a joint of 14 links
-    force, solve = [PointForce(position=0.0099)], solving(model)
-    for device in (Device(position=node, dashpot=3.0), Device(position=0.03, mass=1e-13)):
-        with pytest.raises(DevicesResonanceError, match=r"undamped resonance of the beam with devices at \[0\.0"):
-            field_with_devices(solve, STRIP_POLES, force, hertz * (1.0 + 2e-10), [device])
-        beside = field_with_devices(solve, STRIP_POLES, force, hertz * (1.0 + 2e-9), [device])
-        assert abs(beside.deflection(JOINTS)).max() > 1.0
-    with pytest.raises(HeldResonanceError, match=r"held at its actuators \[0\.0685"):
-        driven_field(
-            lambda acting, f: solve(STRIP_POLES, acting, f), [PointForce(position=node)], hertz, "displacement"
-        )
-    for nothing in ([PointForce(position=STRIP.length)], [PointForce(position=0.1), PointForce(position=0.1)]):
-        with pytest.raises(InputError, match="cannot be imposed at a held end or twice"):
-            driven_field(lambda acting, f: solve(STRIP_POLES, acting, f), nothing, hertz, "displacement")
-    with pytest.raises(ResonanceError, match=f"mode 7 of the {model} model"):
-        field_with_devices(solve, STRIP_POLES, [], hertz, [Device(position=0.03, amplitude=1.0)])
