@@ -10,10 +10,9 @@ from verify import Beam, PointForce, PointMass, analytic_modes, travelling_wave
 from verify.errors import InputError, ResonanceError
 from verify.models.catalogue import MODELS
 from verify.waves.best_phase import TRIED, phases_to_try
-from verify.waves.case import DrivenCase
 from verify.waves.driven import own_wavenumber
 from verify.waves.lumped import TwoModes, local_swr, local_waves
-from verify.waves.operating_point import Landscape, driven_point, fastest_point
+from verify.waves.operating_point import Landscape
 
 # --- Operating point ---
 
@@ -127,18 +126,6 @@ def test_a_point_that_resonates_or_whose_neighbour_does_says_so(titanium_strip, 
         with pytest.raises(ResonanceError, match="undamped resonance"):
             here.point(resonance + away, 77.0, "there")
     assert here.point(resonance + 0.7, 77.0, "there").per_hertz > 0.0
-
-
-@pytest.mark.parametrize("lead", [270.0, -90.0, 630.0])
-def test_a_lead_and_that_lead_less_a_turn_are_one_drive(titanium_strip, lead):
-    """Crests run the same way, whatever turns a phase is told with."""
-    forces = tuple(
-        PointForce(position=x, amplitude=1.3, phase_deg=11.0 + more) for x, more in ((0.041, 0.0), (0.673, lead))
-    )
-    lossy = replace(titanium_strip, loss_factor=0.02)
-    case = DrivenCase(beam=lossy, model="analytic", count=None, forces=forces, frequency_hz=900.0)
-    assert driven_point(case).phase_deg == -90.0
-    assert fastest_point(case, 0.9).phase_deg < 0.0
 
 
 # --- Best phase ---
