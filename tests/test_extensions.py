@@ -11,7 +11,6 @@ import pytest
 from verify import load_scene, run_scene, segment_model
 from verify.cli import status_of
 from verify.engines import ENGINES, chain_of
-from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities.base import QUANTITIES
 from verify.studies.base import STUDIES
@@ -91,11 +90,6 @@ def test_engine_has_the_frequencies_of_the_chain(toys, scene):
     chain = chain_of(load_scene(scene).beam, 13, (), 120.0)
     solved = segment_model.solve_modes(load_scene(scene).beam, n_modes=4, n_segments=13).frequencies_hz
     assert toys["Dispersion"]().frequencies(chain)[3] == pytest.approx(solved[3], rel=1e-12)
-
-
-def test_unregistered_study_is_bad_input(scene):
-    with pytest.raises(InputError, match="load"):
-        load_scene(scene)
 
 
 def test_entry_points_extend_the_command_line(scene, tmp_path, monkeypatch):

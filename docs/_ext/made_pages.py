@@ -1,4 +1,4 @@
-"""Pages made from the package into `docs/made` (scene reference, quantities, gates), and its docstrings as plain text."""
+"""Pages made from the package into `docs/made` (scenes, quantities, gates), and its docstrings as plain text."""
 
 import re
 from dataclasses import replace
@@ -49,7 +49,7 @@ def quantities():
 
     families = {}
     for one in REGISTERED.values():
-        row = (f"`{one.name}`", one.unit, one.summary, " ".join(f"`{argument.name}`" for argument in one.arguments))
+        row = (f"`{one.name}`", one.unit, one.summary, " ".join(f"`{argument['name']}`" for argument in one.arguments))
         families.setdefault(one.name.partition(".")[0], []).append(row)
     yield QUANTITIES
     for name, rows in families.items():
@@ -68,13 +68,8 @@ def gates():
         svg = "".join(figure_svg(replace(beam_figure(scene), id=scene.name)).splitlines())
         arguments = [" ".join(f"{key}={value}" for key, value in gate.arguments.items()) for gate in scene.gate]
         rows = [
-            (
-                f"`{gate.id}`",
-                f"{gate.quantity} {words}",
-                GateResult(gate=gate).expected,
-                f"{gate.reference}: {gate.why}",
-            )
-            for gate, words in zip(scene.gate, arguments, strict=True)
+            (f"`{one.id}`", f"{one.quantity} {words}", GateResult(gate=one).expected, f"{one.reference}: {one.why}")
+            for one, words in zip(scene.gate, arguments, strict=True)
         ]
         yield f'## {scene.name}\n\n{scene.title}. {scene.description}\n\n<div class="beam-drawing">{svg}</div>\n'
         yield table(("gate", "quantity", "expected", "reference and why"), rows)

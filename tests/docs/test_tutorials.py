@@ -4,8 +4,6 @@ A `console` box holds commands after `$`, each followed by its output; `…` sta
 files. A command without `$ echo $?` below it ends with status 0.
 """
 
-import contextlib
-import io
 import re
 import runpy
 import shlex
@@ -68,9 +66,8 @@ def ran(line, capsys, monkeypatch):
     program, *words = shlex.split(line)
     if program == "python":
         monkeypatch.setattr(sys, "argv", words)
-        with contextlib.redirect_stdout(io.StringIO()) as printed:
-            runpy.run_path(words[0], run_name="__main__")
-        return 0, printed.getvalue()
+        runpy.run_path(words[0], run_name="__main__")
+        return 0, capsys.readouterr().out
     capsys.readouterr()
     status = status_of(words)
     out, err = capsys.readouterr()
