@@ -40,8 +40,3 @@ def in_words(value: float, symbol: str = "m", form: str = ".3g") -> str:
     rounded = float(format(value, form))
     unit = unit_of(rounded, symbol)
     return f"{unit.factor * rounded:{'+' if form.startswith('+') else ''}g} {unit.name}"
-
-
-def time_in_words(seconds: float) -> str:
-    """'0.5 ms', at most six digits."""
-    return in_words(seconds, "s", "g")

@@ -14,14 +14,12 @@ from verify.compare.shapes import compare_shapes
 from verify.errors import InputError
 
 LAYOUTS = {
-    "column": ("9.2\n36.9\n82.8\n", "Hz", None),
     "decimal commas": ("9,2\n36,9\n82,8\n", "Hz", None),
     "semicolons": ("mode;f/Hz\n1;9,2\n2;36,9\n5;82,8\n", "Hz", (1, 2, 5)),
     "header in rad/s": ("mode\tomega [rad/s]\n1\t57.8053\n2\t231.8495\n3\t520.2477\n", "rad/s", (1, 2, 3)),
     "numpy header": ("# mode frequency_hz\n0 9.2\n1 36.9\n2 82.8\n", "Hz", (1, 2, 3)),
     "named column": ("mode,damping,freq_hz\n1,0.01,9.2\n2,0.02,36.9\n3,0.01,82.8\n", "Hz", (1, 2, 3)),
-    "Fortran": ("9.2D0\n3.69D1\n8.28D1\n", "Hz", None),
-    "kHz": ("f [kHz]\n0.0092\n0.0369\n0.0828\n", "kHz", None),
+    "Fortran": ("f [kHz]\n9.2D-3\n3.69D-2\n8.28D-2\n", "kHz", None),
 }
 
 
@@ -46,7 +44,6 @@ def test_rounding_is_half_the_last_digit(tmp_path):
         ("9.2\nabc\n", "row 2: 'abc' is not a number"),
         ("9.2 1\n36.9\n", "of the same length"),
         ("9.2 1.5\n36.9 2.5\n", "2 columns that may be frequencies"),
-        ("9.2\nnan\n", "entry 2 is nan"),
         ("mode;hz\n2;9.2\n1;36.9\n", "do not count upwards"),
     ],
 )
@@ -58,12 +55,7 @@ def test_bad_list_is_one_sentence(tmp_path, text, message):
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [
-        ("0.1;1\n0.2;2\n", "2 places"),
-        ("0.2;1\n0.1;2\n0.3;1\n", "rising places"),
-        ("0.1;1\n0.2;2\n0.4;1\n", "between 0 and 0.3 m"),
-        ("0.1;0\n0.2;0\n0.3;0\n", "zero or not finite"),
-    ],
+    [("0.2;1\n0.1;2\n0.3;1\n", "rising places"), ("0.1;0\n0.2;0\n0.3;0\n", "zero or not finite")],
 )
 def test_bad_shapes_are_one_sentence(tmp_path, text, message):
     (tmp_path / "shapes.csv").write_text(text)
@@ -72,114 +64,84 @@ def test_bad_shapes_are_one_sentence(tmp_path, text, message):
 
 
 MODEL = """
-import numpy as np
 from verify.segment_model import solve_modes
 
 def function(beam, n_modes, count):
-    print("progress")
     return solve_modes(beam, n_modes, count, wall="third-order").frequencies_hz
 
 class Model:
-    def solve_modes(self, beam, n_modes, count):
-        return solve_modes(beam, n_modes, count, wall="half")
+    solve_modes = staticmethod(solve_modes)
 
 def broken(beam, n_modes, count):
     raise ZeroDivisionError("no stiffness")
 """
 
 
-class TestPythonModel:
-    """Functions and classes of a user's module."""
-
-    @pytest.fixture(autouse=True)
-    def module(self, tmp_path, monkeypatch):
-        (tmp_path / "user_models.py").write_text(MODEL)
-        monkeypatch.chdir(tmp_path)
-
-    @pytest.mark.parametrize("name", ["function", "Model"])
-    def test_model_is_solved(self, name):
+def test_python_models(tmp_path, monkeypatch):
+    (tmp_path / "user_models.py").write_text(MODEL)
+    monkeypatch.chdir(tmp_path)
+    for name in ("function", "Model"):
         given = solve_model(f"user_models:{name}", CANTILEVER, 25, 6)
-        assert len(given.hertz) == 6
-        assert given.hertz[0] == pytest.approx(27.58, rel=5e-3)
-
-    @pytest.mark.parametrize(
-        ("name", "message"),
-        [
-            ("user_models:broken", "ZeroDivisionError: no stiffness"),
-            ("user_models:absent", "AttributeError"),
-            ("no_such_module:f", "ModuleNotFoundError"),
-            ("user_models", "AttributeError"),
-        ],
-    )
-    def test_broken_model_is_one_sentence(self, name, message):
+        assert (len(given.hertz), given.hertz[0]) == (6, pytest.approx(27.58, rel=5e-3))
+    for name, message in {"user_models:broken": "no stiffness", "absent:f": "ModuleNotFoundError"}.items():
         with pytest.raises(InputError, match=message):
             solve_model(name, CANTILEVER, 25, 6)
 
 
 def solid(path, scale=1000.0, order=range(8)):
-    """Write the Exudyn shapes on a hexahedral mesh of the strip in millimetres, points at the links' middles and ends."""
+    """Write the Exudyn shapes on a hexahedral mesh of the strip in millimetres and return the path."""
     _, x, shapes = exudyn()
     x = np.concatenate([[0.0], x, [0.3]])
     ends = 2.0 * shapes[:, -1:] - shapes[:, -2:-1]
     shapes = np.concatenate([0.0 * ends, shapes, ends], axis=1)[list(order)]
-    across, up = np.array([0.0, 0.025, 0.025, 0.0]), np.array([0.0, 0.0, 0.003, 0.003])
-    points = np.array([[place, a, u] for place in x for a, u in zip(across, up, strict=True)])
-    cells = [[*range(4 * i, 4 * i + 4), *range(4 * i + 4, 4 * i + 8)] for i in range(len(x) - 1)]
+    corners = ((0.0, 0.0), (0.025, 0.0), (0.025, 0.003), (0.0, 0.003))
+    points = np.array([[place, *corner] for place in x for corner in corners])
+    cells = [list(range(4 * i, 4 * i + 8)) for i in range(len(x) - 1)]
     data = {f"mode_{i}": np.outer(np.repeat(shape, 4), [0.0, 0.0, 1.0]) for i, shape in enumerate(shapes, start=1)}
     data["sideways"] = np.outer(np.repeat(shapes[0], 4), [0.0, 1.0, 0.0])
     meshio.Mesh(points * scale, [("hexahedron", cells)], point_data=data).write(path)
+    return path
 
 
 class TestMesh:
-    """Shapes on solid meshes."""
+    """Shapes on meshes."""
 
     scene = type("Scene", (), {"name": "beam", "beam": CANTILEVER})
 
     def test_shapes_on_a_solid_are_paired(self, tmp_path):
-        solid(tmp_path / "modes.vtu")
-        mesh = read_mesh(tmp_path / "modes.vtu", 0.3)
+        mesh = read_mesh(solid(tmp_path / "modes.vtu"), 0.3)
         assert "in mm, 32 cross-sections along x" in mesh.notes[0]
         assert "sideways does not bend the beam across its thickness" in mesh.notes[1]
         result = compare_shapes(self.scene, mesh)
-        rows = table(result, "Shapes")
-        assert [row["mode"] for row in rows] == list(range(1, 9))
-        assert min(row["MAC"] for row in rows) > 0.99
+        assert [row["mode"] for row in table(result, "Shapes")] == list(range(1, 9))
+        assert min(row["MAC"] for row in table(result, "Shapes")) > 0.99
         assert result.data["passed"]
         assert table(result, "Models by the form of their shapes")[0]["model"] == "segments, raw joints"
 
     def test_exchanged_shapes_fail(self, tmp_path):
-        solid(tmp_path / "modes.vtu", scale=1.0, order=[0, 2, 1, 3])
-        result = compare_shapes(self.scene, read_mesh(tmp_path / "modes.vtu", 0.3))
+        result = compare_shapes(self.scene, read_mesh(solid(tmp_path / "modes.vtu", 1.0, [0, 2, 1, 3]), 0.3))
         assert [row["mode"] for row in table(result, "Shapes")] == [1, 2, 3, 4]
-        assert "not in the order" in result.warnings[0]
         assert not result.data["passed"]
 
-    def test_series_gives_frequencies(self, tmp_path):
+    def test_series_gives_frequencies(self, tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
         hertz, x, shapes = exudyn()
-        points = np.array([[place, 0.0] for place in x])
+        points = np.stack([x, 0.0 * x], axis=1)
         points[[0, -1], 0] = 0.0, 0.3
         cells = [("line", np.array([[i, i + 1] for i in range(len(x) - 1)]))]
-        with meshio.xdmf.TimeSeriesWriter(str(tmp_path / "modes.xdmf"), data_format="XML") as writer:
+        with meshio.xdmf.TimeSeriesWriter("modes.xdmf", data_format="XML") as writer:
             writer.write_points_cells(points, cells)
             for f, shape in zip(hertz, shapes, strict=True):
                 writer.write_data(f, point_data={"u": np.stack([0.0 * shape, shape], axis=1)})
-        mesh = read_mesh(tmp_path / "modes.xdmf", 0.3)
-        assert mesh.frequencies.hertz == pytest.approx(hertz)
+        assert read_mesh(tmp_path / "modes.xdmf", 0.3).frequencies.hertz == pytest.approx(hertz)
 
-    @pytest.mark.parametrize(
-        ("scale", "length", "message"), [(1.7, 0.3, "set beam.length"), (1000.0, 0.29, "set beam.length")]
-    )
-    def test_another_length_is_refused(self, tmp_path, scale, length, message):
-        solid(tmp_path / "modes.vtu", scale=scale)
-        with pytest.raises(InputError, match=message):
-            read_mesh(tmp_path / "modes.vtu", length)
-
-    def test_no_mesh_is_one_sentence(self, tmp_path):
+    def test_bad_meshes_are_one_sentence(self, tmp_path):
         (tmp_path / "text.vtu").write_text("no mesh")
-        with pytest.raises(InputError, match="cannot be read by meshio"):
-            read_mesh(tmp_path / "text.vtu", 0.3)
-        with pytest.raises(InputError, match="does not exist"):
-            read_mesh(tmp_path / "absent.vtu", 0.3)
+        wrong = {tmp_path / "text.vtu": "cannot be read by meshio", tmp_path / "absent.vtu": "does not exist"}
+        wrong[solid(tmp_path / "long.vtu", scale=1.7)] = "set beam.length"
+        for path, message in wrong.items():
+            with pytest.raises(InputError, match=message):
+                read_mesh(path, 0.3)
 
 
 class TestCommand:
@@ -189,27 +151,21 @@ class TestCommand:
         status = status_of(["compare", "steel-cantilever", *map(str, words)])
         return status, *capsys.readouterr()
 
-    def test_list_prints_the_candidate_first(self, capsys):
-        status, out, err = self.run(capsys, DATA / "exudyn-cantilever.csv", "--count", 30)
-        assert (status, err) == (0, "")
-        assert out.startswith("Identified: rigid links, 2EI/l at the wall, N = 30")
-
     @pytest.mark.parametrize(("within", "status"), [("1%", 0), ("0.005", 1)])
     def test_accuracy_decides_the_exit_status(self, capsys, within, status):
         words = (DATA / "exudyn-cantilever.csv", "--count", 30, "--within", within, "--json")
-        code, out, _ = self.run(capsys, *words)
-        assert (code, json.loads(out)["passed"]) == (status, status == 0)
+        code, out, err = self.run(capsys, *words)
+        assert (code, json.loads(out)["passed"], err) == (status, status == 0, "")
 
     def test_typed_frequencies(self, capsys):
         status, out, _ = self.run(capsys, "27.570", "172.56", "482.63", "944.65", "1559.74", "2327.2", "--count", 30)
         assert status == 0
-        assert "2EI/l at the wall, N = 30" in out
+        assert out.startswith("Identified: rigid links, 2EI/l at the wall, N = 30")
 
     @pytest.mark.parametrize(
         ("words", "message"),
         [
             ((), "Give either FILE or FREQUENCIES, or --model."),
-            (("absent.csv",), "does not exist"),
             (("27.6", "absent.csv"), "give one file, or numbers alone"),
             (("27.6", "--within", "x"), "give a relative error"),
         ],

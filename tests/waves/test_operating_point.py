@@ -10,10 +10,9 @@ from verify import Beam, PointForce, PointMass, analytic_modes, travelling_wave
 from verify.errors import InputError, ResonanceError
 from verify.models.catalogue import MODELS
 from verify.waves.best_phase import TRIED, phases_to_try
-from verify.waves.case import DrivenCase
 from verify.waves.driven import own_wavenumber
 from verify.waves.lumped import TwoModes, local_swr, local_waves
-from verify.waves.operating_point import Landscape, driven_point, fastest_point
+from verify.waves.operating_point import Landscape
 
 # --- Operating point ---
 
@@ -57,28 +56,13 @@ def test_sensitivities_are_the_mean_changes_of_the_closed_form(titanium_strip, t
     assert (found.frequency_hz, found.phase_deg, found.what, found.note) == (frequency, phase, "here", "")
 
 
-def test_a_pure_wave_is_spoilt_by_half_a_degree_as_by_half_its_sine(titanium_strip):
-    """Where kL = 17.5 pi, phi = 90 degrees: Gamma = |tan(delta/2)| for a phase or a turn kL that is off by delta."""
-    frequency = (17.5 * np.pi / 0.73) ** 2 * titanium_strip.wave_constant / (2 * np.pi)
-    least = land(titanium_strip).quiet_point(np.linspace(0.98, 1.02, 101) * frequency, 90.0)
-    assert least.reflection < 1e-5
-    assert least.frequency_hz == pytest.approx(frequency, rel=1e-7)
-    assert least.per_degree == pytest.approx(2 * np.tan(np.pi / 720), rel=1e-4)
-    off = 17.5 * np.pi * 0.5 / (2 * frequency)
-    assert least.per_hertz == pytest.approx(2 * np.tan(off / 2), rel=1e-3)
-
-
-@pytest.mark.parametrize("least", [False, True], ids=["on a slope", "at the least reflection"])
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("fem", 60), ("segment", 75)])
-def test_a_point_reads_what_the_field_itself_measures(titanium_strip, model, count, least):
-    """The sum over unit forces against one field solved directly, with losses and unequal forces.
-
-    Least reflection is no zero with losses: there the change over half a hertz is not that over one and a half.
-    """
+def test_a_point_reads_what_the_field_itself_measures(titanium_strip, model, count):
+    """The sum over unit forces against one field solved directly, with losses and unequal forces."""
     beam = replace(titanium_strip, loss_factor=0.013)
     drives = (PointForce(position=0.021, amplitude=1.3, phase_deg=0.0), PointForce(position=0.66, amplitude=0.9))
     here = Landscape(beam=beam, forces=drives, model=model, count=count)
-    frequency = here.quiet_point(np.linspace(1400.0, 1600.0, 41), 68.0).frequency_hz if least else 1510.0
+    frequency = 1510.0
     found = here.point(frequency, 68.0, "here")
 
     def measured(frequency, phase):
@@ -127,18 +111,6 @@ def test_a_point_that_resonates_or_whose_neighbour_does_says_so(titanium_strip, 
         with pytest.raises(ResonanceError, match="undamped resonance"):
             here.point(resonance + away, 77.0, "there")
     assert here.point(resonance + 0.7, 77.0, "there").per_hertz > 0.0
-
-
-@pytest.mark.parametrize("lead", [270.0, -90.0, 630.0])
-def test_a_lead_and_that_lead_less_a_turn_are_one_drive(titanium_strip, lead):
-    """Crests run the same way, whatever turns a phase is told with."""
-    forces = tuple(
-        PointForce(position=x, amplitude=1.3, phase_deg=11.0 + more) for x, more in ((0.041, 0.0), (0.673, lead))
-    )
-    lossy = replace(titanium_strip, loss_factor=0.02)
-    case = DrivenCase(beam=lossy, model="analytic", count=None, forces=forces, frequency_hz=900.0)
-    assert driven_point(case).phase_deg == -90.0
-    assert fastest_point(case, 0.9).phase_deg < 0.0
 
 
 # --- Best phase ---

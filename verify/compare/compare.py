@@ -191,17 +191,17 @@ def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tupl
             return len(hertz) >= mode and abs(float(hertz[mode - 1]) / exact - 1.0) <= error
 
         failing = np.flatnonzero(~(abs(np.expm1(logs[:, mode - 1] - np.log(exact))) <= error))
-        low, high = (int(sizes[failing[-1]]), failing[-1] + 1) if len(failing) else (0, 0)
-        if high == len(sizes):
+        if len(failing) and failing[-1] + 1 == len(sizes):
             counts.append(None)
             continue
-        size = int(sizes[high])
-        while size - low > 1:
-            middle = (size + low) // 2
-            size, low = (middle, low) if within(middle) else (size, middle)
-        while not within(size):
-            size += 1
-        while size > 1 and within(size - 1):
-            size -= 1
-        counts.append(size)
+        low, high = (int(sizes[failing[-1]]), int(sizes[failing[-1] + 1])) if len(failing) else (0, int(sizes[0]))
+        step = 1
+        while not within(high):
+            low, high, step = high, high + step, 2 * step
+        while low > 0 and within(low):
+            high, low, step = low, max(low - step, 0), 2 * step
+        while high - low > 1:
+            middle = (high + low) // 2
+            high, low = (middle, low) if within(middle) else (high, middle)
+        counts.append(high)
     return tuple(counts)

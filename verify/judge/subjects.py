@@ -198,7 +198,6 @@ class Segments(Discrete):
     size_settings = ("theory", "attachment")
     modal_settings = ("wall", "joints", "grading", "theory", "attachment")
     field_settings = ("modal_damping", "joint_dashpot", "load", "reading", "wall", "joints", "theory", "attachment")
-    buckling_settings = ("wall", "joints", "grading", "attachment")
     lines = ("spline", "raw")
 
     @named_count
@@ -218,12 +217,6 @@ class Segments(Discrete):
 
         return order_of(beam, **settings)
 
-    def field_order(self, beam: "Beam") -> float | None:
-        """As its frequencies, but for the links at clamped walls, forces and what turns."""
-        from verify.segments.orders import field_order_of
-
-        return field_order_of(beam)
-
     @named_count
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """All its modes."""
@@ -242,7 +235,6 @@ class Elements(Discrete):
     bounds = "above"
     modal_settings = ("grading", "theory")
     field_settings = ("modal_damping", "theory")
-    buckling_settings = ("grading",)
     unknowns_per_part = 2
     size_settings = ("theory",)
     library = "scikit-fem"
@@ -258,10 +250,6 @@ class Elements(Discrete):
     def order(self, beam: "Beam", **settings: Any) -> int | None:
         """4: nodes stand on the steps."""
         return 4
-
-    def field_order(self, beam: "Beam") -> float | None:
-        """7/2: a cubic is off by h^3 in the element that a force stands in, and over a length h."""
-        return 3.5
 
     @named_count
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":

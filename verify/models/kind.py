@@ -41,8 +41,6 @@ class Model:
     """Keywords of its `solve_modes`: of wall, joints, grading."""
     field_settings: tuple[str, ...] = ()
     """Keywords of its `solve_harmonic`: of modal_damping, joint_dashpot, load, reading."""
-    buckling_settings: tuple[str, ...] = ()
-    """Keywords of its `buckling_load`: of wall, joints, grading, attachment."""
     lines: tuple[str, ...] = ("spline",)
     """Contact lines that a slider may run on."""
     unknowns_per_part: int = 1
@@ -81,10 +79,6 @@ class Model:
     def order(self, beam: "Beam", **settings: Any) -> int | None:
         """The order in the number of parts at which its frequencies converge on a beam; None where nobody says."""
         return None
-
-    def field_order(self, beam: "Beam") -> float | None:
-        """The order at which driven fields fall in the end, rms over the beam; that of frequencies unless it says."""
-        return self.order(beam)
 
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes. Raises InputError."""

@@ -89,14 +89,6 @@ def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:
     return basis.ratios
 
 
-def damping_in_words(damping: Ratio, beam: Beam) -> str:
-    """A ratio of every mode, or those that the beam's loss factor comes to."""
-    if isinstance(damping, np.ndarray):
-        ends = dict.fromkeys(f"{one:.3g}" for one in (damping.min(), damping.max()))
-        return f"what the loss factor {beam.loss_factor:g} comes to in each mode, a ratio of {' to '.join(ends)}"
-    return f"a ratio {damping:g} of every mode"
-
-
 def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:
     """Coefficients in xi = (x - edge) / length of pieces first..last-1, (pieces, degree + 1, rows).
 

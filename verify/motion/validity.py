@@ -13,7 +13,6 @@ from verify.motion.contact import Margins
 from verify.slider import GRAVITY
 
 if TYPE_CHECKING:
-    from verify.models.fields import HarmonicField
     from verify.motion.request import Request
     from verify.motion.surface import Stage
 
@@ -30,12 +29,6 @@ def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float
     tenths of the beam that end lies between 0.4 and 3.8 (the study of axial inertia).
     """
     return float(abs(lossless_wavenumber(beam, frequency_hz)) ** 2 * beam.length**2 * mean_square_slope)
-
-
-def field_size(field: "HarmonicField") -> float:
-    """The same of a steady field, averaged over the beam and a period."""
-    slopes = abs(field.slope(np.linspace(0.0, field.beam.length, 400)))
-    return axial_inertia_size(field.beam, field.frequency_hz, 0.5 * float((slopes**2).mean()))
 
 
 def nearest_mode(beam: Beam, drive_hz: float) -> int:

@@ -66,17 +66,6 @@ def order_of(
     return told if told <= lowest else None
 
 
-def field_order_of(beam: "Beam") -> float | None:
-    """The order due of a driven field, rms over the beam; None where that of the frequencies hangs on their number.
-
-    Between two joints a field is off by h^3 under a force, whose moments have a kink there, and by h^2 at a clamped
-    wall and at what turns inside, where they jump: over a length h, which is half an order of the rms.
-    """
-    order = order_of(beam)
-    local = 2.5 if "clamped" in beam.supports or _standing(beam).turns_inside else 3.5
-    return None if order is None else min(float(order), local)
-
-
 def _of_rules(beam: "Beam", here: _Standing, joints: str, graded: bool, theory: str) -> list[int]:
     """What steps, joints and theories leave."""
     thick, moments = theory != "euler-bernoulli", _steps(beam, ("second_moment",))

@@ -8,7 +8,6 @@ from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.waves.best_phase import TRIED, phases_to_try
 from verify.waves.case import DrivenCase
-from verify.waves.driven import quietest
 from verify.waves.measures import middle_half
 from verify.waves.unit_waves import Gaps, UnitDrive, figures_of, superposed
 
@@ -119,14 +118,6 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
             note=note,
         )
 
-    def quiet_point(self, frequencies: Array, phase_deg: float) -> OperatingPoint:
-        """Least reflection at one phase. Raises InputError where the wave stands at every frequency."""
-        least = quietest(lambda f: self.over(f, np.array([phase_deg]))[0][:, 0], frequencies)
-        if not least.at_edge:
-            return self.point(least.x, phase_deg, "least reflection at the scene's phase")
-        note = edge_note("the reflection falls off", least.x)
-        return self.point(least.x, phase_deg, f"reflection at the scene's phase, falls {OFF}", note)
-
     def fast_point(self, frequencies: Array, phase_deg: float, limit: float) -> OperatingPoint:
         """Largest crest speed with a reflection up to `limit`. Raises InputError where no point keeps it."""
         frequency, phase = fastest(self, frequencies, phase_deg, limit)
@@ -135,11 +126,6 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
         if inside:
             return self.point(frequency, phase, f"largest {within}")
         return self.point(frequency, phase, f"{within}, grows {OFF}", edge_note("the crest speed grows off", frequency))
-
-
-def driven_point(case: DrivenCase) -> OperatingPoint:
-    """The point at which a case drives. Raises InputError without two forces."""
-    return landscape(case).point(case.frequency_hz, _between(case), "as driven")
 
 
 def check_two(case: DrivenCase) -> None:
@@ -168,23 +154,6 @@ def landscape(case: DrivenCase) -> Landscape:
 def edge_note(what: str, frequency: float) -> str:
     """A sentence about what is at the edge of its search, Hz, instead of an optimum."""
     return f"{what} the search, at its edge, {frequency:.6g} Hz: no optimum but where the search ends"
-
-
-def operating_points(case: DrivenCase, limit: float = 0.1) -> tuple[tuple[OperatingPoint, ...], tuple[InputError, ...]]:
-    """(least reflection at the case's phase; largest crest speed with a reflection up to `limit` over both).
-
-    Within 1.5 % of its frequency and phases of 5 to 175 degrees in size; beside them the reasons for those that do
-    not exist. Raises InputError for a case without two forces.
-    """
-    land = landscape(case)
-    phase, frequencies = _around(case)
-    points, problems = [], []
-    for find in (land.quiet_point, lambda f, p: land.fast_point(f, p, limit)):
-        try:
-            points.append(find(frequencies, phase))
-        except InputError as error:
-            problems.append(error)
-    return tuple(points), tuple(problems)
 
 
 def fastest_point(case: DrivenCase, limit: float) -> OperatingPoint:

@@ -1,0 +1,235 @@
+"""Studies against direct calls of the public verbs; every chart draws."""
+
+import pytest
+from msgspec.structs import replace
+
+from verify.analytic_modes import frequency_hz
+from verify.errors import InputError
+from verify.judge.cache import SolutionCache
+from verify.models.catalogue import MODELS
+from verify.quantities.base import evaluate
+from verify.scene.load import load_scene
+from verify.studies.axial_inertia import AxialInertia
+from verify.studies.convergence import Convergence
+from verify.studies.motion import Motion
+from verify.studies.motor import Motor
+from verify.studies.spectrum import Spectrum
+from verify.studies.wave import Wave
+
+# --- Modes studies ---
+
+PAPER = load_scene("paper")
+
+
+def rows_of(table, **wanted):
+    return [row for row in table.records() if all(row[key] == value for key, value in wanted.items())]
+
+
+def test_spectrum_states_the_published_error(run):
+    result = run("paper", Spectrum(modes=22, count=49))
+    row = result.tables[0].records()[-1]
+    assert row["segments"] == pytest.approx(-0.0042802, abs=1e-7)
+    assert row["Hermite elements"] == pytest.approx(0.0026000, abs=1e-6)
+    assert "-0.428 %" in result.summary
+    assert "Mode 22, N = 49" in result.summary
+    assert any("Euler-Bernoulli theory neglects" in warning for warning in result.warnings)
+
+
+def test_missing_modes_are_gaps_with_a_reason(run):
+    result = run("paper", Spectrum(modes=13, count=11))
+    assert result.tables[0].records()[-1]["segments"] is None
+    assert result.tables[0].records()[-1]["Hermite elements"] is not None
+    assert any("segments" in warning and "raise count" in warning for warning in result.warnings)
+    assert "segments" not in result.summary
+
+
+def test_spectrum_of_a_thick_beam_compares_with_its_own_theory(run, renders):
+    result = run("thick-bar", Spectrum(modes=4, count=24, theory="timoshenko"))
+    assert "exact Timoshenko" in result.tables[0].records()[0]
+    assert not any("theory neglects" in warning for warning in result.warnings)
+    axes = renders(result)
+    assert axes["mode-errors"].get_ylabel() == "frequency error, %"
+    assert axes["model-form"].get_yscale() == "log"
+    assert len(axes["mode-shapes"].get_yticks()) == 3
+
+
+def test_convergence_tabulates_direct_solves(run):
+    result = run("paper", Convergence(modes=(2, 5), counts=(11, 23, 46)))
+    for model, title in (("segment", "segments"), ("fem", "Hermite elements")):
+        for row in rows_of(result.tables[0], model=title):
+            found = MODELS[model].solve_modes(PAPER.beam, 5, row["N"]).frequencies_hz[row["mode"] - 1]
+            assert row["frequency"] == pytest.approx(found, rel=1e-12)
+            assert row["error"] == pytest.approx(found / frequency_hz(PAPER.beam, row["mode"]) - 1.0, rel=1e-6)
+            assert row["solve time"] > 0.0
+            assert row["order"] is None if row["N"] == 11 else 3.7 < row["order"] < 4.6
+
+
+def test_two_sided_bound_contains_the_exact_frequency(run):
+    table = run("paper", Convergence(modes=(2, 5), counts=(11, 23, 46))).tables[1]
+    assert "bound" in table.title
+    for row in table.records():
+        assert row["lower"] < frequency_hz(PAPER.beam, row["mode"]) < row["upper"]
+        assert abs(row["error of the mean"]) < row["width"]
+
+
+def test_orders_outside_the_asymptotic_range_void_the_summary(run):
+    result = run("paper", Convergence(modes=(9,), counts=(10, 11)))
+    assert "segments" not in result.summary
+    assert any("order not converged" in warning for warning in result.warnings)
+
+
+def test_variants_stand_side_by_side(run, renders):
+    result = run("taut-strip", Convergence(modes=(3,), counts=(10, 20, 40), joints=("series", "tensioned")))
+    last = {row["model"]: row["order"] for row in rows_of(result.tables[0], N=40)}
+    assert last["segments"] == pytest.approx(2.0, abs=0.1)
+    assert last["segments, joints tensioned"] == pytest.approx(4.0, abs=0.2)
+    axes = renders(result)
+    guides = [line for line in axes["errors-over-size"].lines if line.get_gid() == "guide"]
+    assert len(guides) == 2
+
+
+# --- Wave study ---
+
+SMALL = Wave(count=49, counts=(49, 98))
+
+
+def test_ratios_equal_the_quantities(run):
+    scene = load_scene("paper-wave")
+    cache, table = SolutionCache(scene.beam), run("paper-wave", SMALL).tables[0]
+    names = {"exact beam": "analytic", "segments": "segment", "Hermite elements": "fem"}
+    assert len(table.rows) == 5
+    for row in table.records():
+        arguments = {"model": names[row["model"]]} | ({"count": row["N"]} if row["N"] else {})
+        for name, heading in (
+            ("standing_wave_ratio", "SWR"),
+            ("axis_ratio", "axis ratio"),
+            ("crest_speed", "crest speed"),
+        ):
+            expected = evaluate(f"wave.{name}", arguments, scene, cache)
+            assert row[heading] == pytest.approx(expected, rel=1e-9)
+        assert row["SWR there"] < row["SWR"]
+
+
+def test_wave_renders(run, renders):
+    axes = renders(run("paper-wave", SMALL))
+    assert axes["wave-envelopes"].get_ylabel() == "amplitude, µm"
+    assert len(axes["wave-ellipses"].lines) == 14
+
+
+@pytest.mark.parametrize(
+    ("scene", "study", "word"),
+    [
+        ("stepped-beam", Wave(), "wave"),
+        ("paper-wave", Wave(counts=(7,)), "count"),
+    ],
+)
+def test_refusals_name_the_field(scene, study, word):
+    with pytest.raises(InputError, match=word):
+        study.check(load_scene(scene))
+
+
+# --- Time studies ---
+
+
+def column(table, name):
+    return [record[name] for record in table.records()]
+
+
+SHORT = Motion(duration=8e-4, soft_start_periods=1.0, count=21, steps_per_period=32)
+CHAIN = AxialInertia(forces=(0.5, 40.0), shown=20.0, count=12, duration=6e-4)
+QUICK = Motor(models=("fem",), count=49, speeds=3, periods=20)
+
+
+@pytest.fixture(scope="module")
+def slider():
+    """The paper's slider under a preload that keeps it on the surface."""
+    scene = load_scene("paper-slider")
+    return replace(scene.bare, slider=replace(scene.slider, preload=2.7, coupling="one-way"), studies={"motion": SHORT})
+
+
+def test_displacements_equal_the_quantity(run, slider):
+    cache, table = SolutionCache(slider.beam), run(slider, SHORT).tables[0]
+    for row, arguments in zip(
+        table.records(),
+        ({"model": "analytic"}, {"model": "segment", "count": 21}, {"model": "fem", "count": 21}),
+        strict=True,
+    ):
+        expected = evaluate("slider.displacement", arguments, slider, cache)
+        assert row["displacement"] == pytest.approx(expected, rel=1e-3)  # samples cut its steps
+        assert row["mean speed"] == pytest.approx(row["displacement"] / 8e-4, rel=1e-9)
+
+
+def test_lift_off_voids_the_summary(run):
+    free = load_scene("paper-slider")
+    result = run(replace(free.bare, studies={"motion": SHORT}), SHORT)
+    assert result.summary == ""
+    assert "Lift-off" in result.warnings[0]
+    assert "Coupling" in result.warnings[1]
+
+
+def test_slider_renders(run, slider, renders):
+    axes = renders(run(slider, SHORT))
+    assert axes["slider-displacement"].get_xlabel() == "time, µs"
+    assert axes["slider-friction"].get_ylabel().startswith("friction force, ")
+    assert {line.get_label() for line in axes["slider-velocity"].lines} == {"surface under the slider", "slider"}
+
+
+def test_wrong_options_are_refused():
+    for study, change, word in (
+        (Motion, {"duration": 0.0}, "motion.duration"),
+        (Motion, {"start": "steady", "soft_start_periods": 1.0}, "soft_start_periods"),
+        (Motion, {"modal_damping": 1.5}, "modal_damping"),
+        (Motor, {"models": ("segmen",)}, "'segment'"),
+        (AxialInertia, {"forces": (1.0, -1.0)}, "forces"),
+    ):
+        with pytest.raises(InputError, match=word):
+            study(**change)
+
+
+def test_departures_grow_with_the_square_of_the_force(run):
+    scene = load_scene("chain")
+    rows = run("chain", CHAIN).tables[0].records()
+    assert [row["chain"] for row in rows[:3]] == ["rigid links", "without axial inertia", "stretching links"]
+    arguments = {"force": 40.0, "segments": 12, "time": 6e-4, "inertia": "full"}
+    expected = evaluate("chain.axial_departure", arguments, scene, SolutionCache(scene.beam))
+    assert rows[3]["departure at the end"] == pytest.approx(expected, rel=1e-6)
+    growth = (40.0 / 0.5) ** 2
+    assert rows[3]["(kL)² ⟨θ²⟩"] / rows[0]["(kL)² ⟨θ²⟩"] == pytest.approx(growth, rel=0.05)
+    assert rows[3]["departure, rms"] / rows[0]["departure, rms"] == pytest.approx(growth, rel=0.2)
+    assert [row["linear"] for row in rows[::3]] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("study", "scene", "word"),
+    [
+        (AxialInertia(), "free-free-bar", "supports"),
+        (AxialInertia(), "stick-slip-belt", "drive"),
+        (Motor(), "paper-slider", "contact"),
+        (Motion(), "stick-slip-belt", "drive"),
+        (Motion(steps_per_period=99), "paper", "steps_per_period"),
+    ],
+)
+def test_scenes_without_what_a_study_needs_are_refused(study, scene, word):
+    with pytest.raises(InputError, match=word):
+        study.check(load_scene(scene))
+
+
+def test_motor_figures_equal_the_quantities(run):
+    scene = load_scene("preloaded-motor")
+    overview, held, _ = run("preloaded-motor", QUICK).tables
+    cache = SolutionCache(scene.beam)
+    first, arguments = overview.records()[0], {"model": "fem", "count": 49}
+    for name, heading in (("stall_force", "stall force"), ("no_load_speed", "no-load speed")):
+        expected = evaluate(f"slider.{name}", arguments, scene, cache)
+        assert first[heading] == pytest.approx(expected, rel=1e-3)
+    assert column(held, "speed") == pytest.approx([0.0, -0.5 * first["crest speed"], -first["crest speed"]])
+
+
+def test_a_free_run_that_is_too_short_is_not_converged(run, renders):
+    result = run("preloaded-motor", QUICK)
+    assert result.summary == ""
+    assert any("free run has no steady end" in warning for warning in result.warnings)
+    assert column(result.tables[0], "free speed") == [None]
+    axes = renders(result)
+    assert axes["motor-force"].get_xlabel() == "speed, mm/s"
+    assert "mu N" in [line.get_label() for line in axes["motor-force"].lines]
