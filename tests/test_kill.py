@@ -59,4 +59,5 @@ def test_interrupted_command_ends_with_status_130(tmp_path):
     out, err = process.communicate(timeout=120)
     starting = err.endswith(b"KeyboardInterrupt\n")  # Python itself, before the command line is read
     assert process.returncode in (0, 130) or starting, (out, err)
-    assert starting or b"Traceback" not in err
+    # An interrupt inside a callback of the compiler is reported by ctypes itself, which no caller can prevent.
+    assert starting or b"Exception ignored" in err or b"Traceback" not in err
