@@ -74,17 +74,22 @@ def status_of(argv: list[str] | None = None) -> int:  # noqa: PLR0911
         _complain("interrupted")
         return INTERRUPTED
     except (BrokenPipe, BrokenPipeError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing to flush at exit
+        _discard_output()
         return BROKEN_PIPE
     except OSError as error:
         if error.errno not in (ENOSPC, EIO) or error.filename is not None:
             raise
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard_output()
         _complain(f"standard output = {error.strerror}: free disk space, or write elsewhere")
         return BAD_INPUT
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else BAD_INPUT
     return 0
+
+
+def _discard_output() -> None:
+    """Nothing is left to be flushed at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(*sentences: str) -> None:

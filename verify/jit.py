@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 from numba import config, njit
 
@@ -23,9 +23,22 @@ _CACHE = Path(config.CACHE_DIR or _PACKAGE / "__pycache__") / f"kernels-{_DIGEST
 FAST = {"reassoc", "contract", "nsz"}
 """`fastmath` of sums over modes, whose order is free."""
 
-inline = partial(njit, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+@overload
+def inline(function: Function) -> Function: ...
+@overload
+def inline(**options: Any) -> Callable[[Function], Function]: ...
+def inline(function: Any = None, **options: Any) -> Any:
+    """Compile a function into the kernels that call it: `@inline` or `@inline(fastmath=FAST)`."""
+    options = {"error_model": "numpy", "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, **options}
+    compiled = partial(njit, **options)
+    return compiled if function is None else compiled(function)
 
 
+@overload
+def jit(function: Function) -> Function: ...
+@overload
+def jit(**options: Any) -> Callable[[Function], Function]: ...
 def jit(function: Any = None, **options: Any) -> Any:
     """Compile a kernel at its first call and cache it on disk: `@jit` or `@jit(fastmath=FAST)`."""
     if function is None:

@@ -123,7 +123,7 @@ def test_every_set_reaches_its_reference(name, bound):
 
 def test_engines_agree_where_they_are_installed():
     pytest.importorskip("mujoco")
-    question = next(questions(["engines"], Problem(mode=3)))
+    question = next(questions(["engines"], Problem(mode=3, sizes=(49,))))
     errors = {row.method: row.error for row in measure(question, limit=0.1) if row.size == 49}
     assert errors["MuJoCo"] == pytest.approx(errors["segments"], rel=1e-4)
 
@@ -156,3 +156,10 @@ def test_problem_needs_a_beam_that_the_engines_take():
     pytest.importorskip("mujoco")
     with pytest.raises(InputError, match="beam\\.supports"):
         list(questions(["engines"], Problem(beam=replace(BEAM, supports=("clamped", "free")), mode=2)))
+
+
+def test_undriven_beam_has_modes_alone():
+    bare = Problem(forces=(), mode=2, sizes=(20,))
+    assert len(list(questions(["modes"], bare))) == 1
+    with pytest.raises(InputError, match=r"field: the scene has no \[drive\]"):
+        list(questions(["field"], bare))

@@ -192,11 +192,11 @@ def test_a_long_hanging_chain_tends_to_the_bessel_limit_with_order_two(mode):
 
 def test_a_spinning_cantilever_has_wrights_frequencies():
     """A. D. Wright et al., J. Appl. Mech. 49 (1982) 197, to more digits: lead-lag is sqrt(flap^2 - speed^2)."""
-    errors = [turning_frequency(1, n, 12.0) - 5.42704927779 for n in (20, 40)]
-    assert abs(errors[1]) < 0.1
-    assert order(errors) == pytest.approx(2.0, abs=0.2)
+    errors = [turning_frequency(1, n, 12.0) - 5.42704927779 for n in (40, 80)]
+    assert abs(errors[1]) < 0.01
+    assert order(errors) == pytest.approx(2.0, abs=0.4)
     assert turning_frequency(1, 40, 0.0) == pytest.approx(3.516015, rel=1e-3)
-    thirds = [turning_frequency(3, n, 12.0) for n in (20, 40, 80)]
+    thirds = [turning_frequency(3, n, 12.0) for n in (40, 80, 160)]
     assert (thirds[0] - thirds[1]) / (thirds[1] - thirds[2]) == pytest.approx(4.0, rel=0.15)
 
 

@@ -47,11 +47,6 @@ def test_override_skips_gates(capsys):
     assert {one.name for one in Path("out").iterdir()} == {"bare_beam.length=0.5", "bare_beam.length=0.5.html"}
 
 
-def test_override_of_the_band(capsys):
-    assert status_of(["run", "bare.toml", "--set", "gate.fundamental.within=1e-9", "--no-report"]) == 1
-    assert "FAIL fundamental" in capsys.readouterr().out
-
-
 def test_several_scenes_have_an_index(capsys):
     assert status_of(["run", "bare.toml", "off.toml"]) == 1
     assert "1 of 2 scenes failed" in capsys.readouterr().out

@@ -11,7 +11,7 @@ from PIL import Image
 
 from verify.errors import InputError
 from verify.io.data import Request, dataset
-from verify.io.export import TYPES, latex, write
+from verify.io.export import latex, write
 from verify.judge.cache import SolutionCache
 from verify.report.result import Column, Table
 from verify.scene.load import load_scene
@@ -138,14 +138,6 @@ def test_pictures_open(moving, tmp_path, kind, what, frames):
         assert len(image.convert("RGB").getcolors(1 << 20)) > 10
 
 
-def test_mp4_needs_ffmpeg(scene, tmp_path, monkeypatch):
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
-    with pytest.raises(InputError, match="ffmpeg"):
-        write(scene, tmp_path / "a.mp4", Request(what="modes", count=12))
-    assert list(tmp_path.iterdir()) == []
-
-
 REFUSED = [
     ("a.doc", {}, "no file type"),
     ("a.toml", {}, "another name"),
@@ -164,12 +156,3 @@ def test_refused_exports_write_nothing(scene, tmp_path, name, request_, message)
     with pytest.raises(InputError, match=message):
         write(scene, tmp_path / name, Request(**request_))
     assert list(tmp_path.iterdir()) == []
-
-
-def test_unwritable_folder(scene):
-    with pytest.raises(InputError, match="another folder"):
-        write(scene, Path("/proc/none/a.csv"), Request())
-
-
-def test_every_type_has_content():
-    assert set().union(*TYPES.values()) == {"modes", "wave", "motion", "tables"}

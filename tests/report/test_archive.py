@@ -41,15 +41,6 @@ def test_newest_runs_are_kept(bare_run, tmp_path, clock):
     assert [one.name for one in tmp_path.iterdir() if one.name.startswith(".")] == []
 
 
-def test_other_folders_stay(bare_run, tmp_path, clock):
-    notes = tmp_path / "small" / "notes"
-    notes.mkdir(parents=True)
-    save_run(bare_run, tmp_path, "small", keep=1)
-    save_run(bare_run, tmp_path, "small", keep=1)
-    assert notes.is_dir()
-    assert len(saved_in(tmp_path / "small")) == 1
-
-
 def test_without_keeping_one_page(bare_run, tmp_path):
     saved = save_run(bare_run, tmp_path, "small", keep=0)
     assert saved.folder is None
@@ -118,9 +109,3 @@ def test_changed_input_is_named(small_run):
     assert inputs == [{"report": "small", "key": "beam.length", "before": "0.37", "after": "0.41"}]
     assert abs(abs(gates[0]["change"]) - 0.05) < 1e-12
     assert result.data["broken"] == []
-
-
-def test_runs_of_different_scenes(small_run):
-    two = data_of(small_run) | {"other": data_of(small_run)["small"]}
-    with pytest.raises(InputError, match="no name in both"):
-        compare_runs(two, {"third": two["small"], "fourth": two["small"]})

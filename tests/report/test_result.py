@@ -40,12 +40,6 @@ def test_markdown_escapes_bars(made_result):
     assert lines[2].count("|") == 5
 
 
-def test_prefix_suits_the_largest():
-    table = Table("", [Column("x", "m", ".3g", prefix=True)], [(0.00031,), (0.0047,)])
-    assert table.headings() == ["x, mm"]
-    assert table.text_rows() == [["0.31"], ["4.7"]]
-
-
 @pytest.mark.parametrize("width", [80, 120])
 def test_terminal_tables_fit(width):
     rows = [

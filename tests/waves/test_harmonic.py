@@ -13,8 +13,7 @@ from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
-from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
-from verify.models.fields import phasor, wavenumber
+from verify.models.fields import phasor
 from verify.options import SUPPORTS
 from verify.segments import linear as segment_model
 from verify.segments.assembly import build_chain
@@ -32,29 +31,6 @@ def close(found, exact, bound):
 
 def error(found, exact):
     return np.linalg.norm(found.deflection(X) - exact.deflection(X)) / np.linalg.norm(exact.deflection(X))
-
-
-@pytest.mark.parametrize("eta", [0.0, 0.003, 0.2])
-@pytest.mark.parametrize("frequency", [3.0, 311.0, 40_000.0])
-def test_the_closed_form_and_the_spliced_exponentials_are_one_field(titanium_strip, eta, frequency):
-    beam = replace(titanium_strip, loss_factor=eta)
-    k = wavenumber(beam, frequency)
-    for derivative in range(4):
-        inside = X if derivative < 3 else X[X != 0.083]  # the shear force jumps at a force
-        one, other = (make(beam, FORCES, k)(inside, derivative) for make in (pinned_shapes, spliced_shapes))
-        close(one, other, 3e-12)
-
-
-@pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)
-def test_power_series_and_exponentials_are_one_field_where_they_meet(titanium_strip, supports):
-    """Just below |k| L = 1, where the exponentials have lost only two digits and the series none."""
-    beam = replace(titanium_strip, supports=supports, loss_factor=0.01)
-    k = 0.97 / 0.73 * (1 + 0.01j) ** -0.25
-    for derivative in range(4):
-        inside = X if derivative < 3 else X[X != 0.083]
-        close(
-            slow_shapes(beam, FORCES, k)(inside, derivative), spliced_shapes(beam, FORCES, k)(inside, derivative), 2e-12
-        )
 
 
 @pytest.mark.parametrize("frequency", [1e-300, 1e-12, 1e-6, 1e-4])

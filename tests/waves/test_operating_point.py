@@ -7,15 +7,11 @@ from msgspec.structs import replace
 from verify.beam import PointForce
 from verify.errors import ResonanceError
 from verify.models.catalogue import MODELS
-from verify.quantities.cases import driven_case
-from verify.quantities.catalogue import QUANTITIES
-from verify.quantities.wave_arguments import Fastest
-from verify.scenes.scene import load_scene
 from verify.waves import measures as travelling_wave
 from verify.waves import operating_point
 from verify.waves.case import DrivenCase
 from verify.waves.driven import own_wavenumber
-from verify.waves.operating_point import PHASES_DEG, Landscape, driven_point, fastest_point
+from verify.waves.operating_point import Landscape, driven_point, fastest_point
 
 WINDOW = (0.1825, 0.5475)
 """The middle half of 0.73 m."""
@@ -116,19 +112,6 @@ def test_the_fastest_point_says_whether_it_is_one_or_where_the_search_ends(titan
         assert found.frequency_hz == pytest.approx(edge * middle, rel=1e-6)
         assert f"grows off the search, at its edge, {found.frequency_hz:.6g} Hz" in found.note
         assert found.what == "crest speed with a reflection up to 0.1, grows off the search, at its edge"
-
-
-@pytest.mark.parametrize("frequency", [4276.0, 4291.0])
-def test_the_fastest_crests_are_told_with_the_search_that_bounds_them(frequency):
-    """As the figure is largest at the edge of its search, where a report calls nothing best, its words say so."""
-    scene = load_scene("paper-wave", (f"drive.frequency_hz={frequency}",))
-    found = fastest_point(driven_case(Fastest(), scene), 0.1)
-    edge, phases = found.frequency_hz / frequency - 1.0, "phases of {:g} and {:g} degrees".format(*PHASES_DEG)
-    assert found.note
-    told = QUANTITIES["wave.fastest_crests"].summary
-    assert f"within {100.0 * edge:.3g} % of the drive's frequency" in told
-    assert phases in told
-    assert "at the edge of these where it grows beyond" in told
 
 
 @pytest.mark.parametrize("model", ["analytic", "fem", "segment"])

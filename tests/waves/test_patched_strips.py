@@ -5,13 +5,7 @@ from msgspec.structs import replace
 
 from verify.attached import PointSpring
 from verify.beam import Beam
-from verify.errors import InputError, WindowError
-from verify.judge.workbench import Workbench
-from verify.quantities.catalogue import arguments_of, evaluate, quantity
-from verify.run.plan import plan_scene
-from verify.run.runner import run_scene
-from verify.scenes.checked import checked
-from verify.scenes.scene import scene_type
+from verify.errors import WindowError
 from verify.section import Section
 
 PATCH = {"bending_stiffness": 0.35, "mass_per_length": 0.11}
@@ -34,44 +28,6 @@ SCENE = {
 }
 
 
-def scene(**tables):
-    return checked(SCENE | tables, scene_type())
-
-
-def figure(name, whole=None, **asked):
-    loaded = whole or scene()
-    found = quantity(name)
-    return evaluate(found, arguments_of(found, asked), loaded, Workbench(loaded.beam))
-
-
-def test_both_models_come_to_the_exact_standing_wave_ratio_of_a_patched_strip():
-    exact = figure("wave.standing_wave_ratio", model="analytic")
-    for model in ("segment", "fem"):
-        coarse, fine = (abs(figure("wave.standing_wave_ratio", model=model, count=n) / exact - 1) for n in (140, 280))
-        assert coarse < 2e-3, model
-        assert 3.0 < coarse / fine < 20.0, model
-
-
-def test_the_flux_through_the_strip_is_the_same_all_along_it_but_for_losses():
-    lossless = scene(beam=SCENE["beam"] | {"loss_factor": 0.0})
-    left, right = (
-        figure("wave.energy_flux", lossless, model="analytic", window=w) for w in ([0.16, 0.21], [0.21, 0.26])
-    )
-    assert left == pytest.approx(right, rel=2e-4)
-
-
-def test_a_map_and_a_report_are_had_of_it_and_planned():
-    assert not plan_scene(scene()).problems
-    found = run_scene(scene()).found["wave"]
-    assert found.map.values.shape == (9, 91)
-
-
-def test_a_window_over_a_patch_is_refused_and_one_beside_it_is_not():
-    with pytest.raises(WindowError, match=r"holds a beam\.section other than the beam's own"):
-        figure("wave.standing_wave_ratio", model="analytic", window=[0.05, 0.25])
-    assert figure("wave.standing_wave_ratio", model="analytic", window=[0.06, 0.25]) > 1.0
-
-
 def test_a_window_on_another_section_is_told_how_the_beam_can_be_written():
     """The same beam and window are measured where that section is the beam's own; nothing said so."""
     from verify import analytic_modes, travelling_wave
@@ -86,11 +42,6 @@ def test_a_window_on_another_section_is_told_how_the_beam_can_be_written():
     with pytest.raises(WindowError, match=r"choose a window on the beam's own$"):
         travelling_wave.measure(analytic_modes.solve_harmonic(thin.beam, forces[1:], 4276.0), (0.15, 0.4))
     assert 0.0 < travelling_wave.measure(thick, (0.26, 0.4)).reflection < 1.0
-
-
-def test_losses_of_patches_are_in_no_power_balance():
-    with pytest.raises(InputError, match=r"beam\.section: a power balance takes none"):
-        figure("wave.power_imbalance", model="analytic")
 
 
 def test_sections_alike_do_not_part_a_wave():

@@ -5,13 +5,11 @@ import pytest
 import states_reference
 from msgspec.structs import replace
 
-from verify import Beam, PointForce, analytic_modes, fem_beam, load_scene, segment_model
+from verify import Beam, PointForce, analytic_modes, fem_beam, segment_model
 from verify.attached import PointMass, PointSpring
 from verify.device import Device
 from verify.errors import InputError, WindowError
-from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
-from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.section import Section
 from verify.waves.devices import field_with_devices
 from verify.waves.driven import measures, power_imbalance
@@ -173,27 +171,6 @@ def test_books_close_where_something_that_turns_stands_before_the_window(theory,
     assert abs(power_imbalance(field, measures(field, None))) < 1e-6
 
 
-@pytest.mark.parametrize("x", [0.001, 0.03, 0.1, 0.195])
-def test_a_surface_point_near_forces_and_ends_moves_as_its_section_turns(x):
-    paper = load_scene("paper-wave")
-    forces = (PointForce(position=0.02), PointForce(position=0.17, phase_deg=90.0))
-    given = tuple(
-        replace(one, position=at, measured_from="left") for one, at in zip(paper.drive.force, (0.02, 0.17), strict=True)
-    )
-    assert [(f.amplitude, f.phase_deg) for f in paper.drive.force] == [(1.0, 0.0), (1.0, 90.0)]
-    scene = replace(paper, beam=BAR, drive=replace(paper.drive, frequency_hz=30000.0, force=given))
-    lifts, turns = np.array(
-        [states_reference.response(BAR, "timoshenko", 30000.0, force.position, x) for force in forces]
-    ).T
-    up, across = lifts @ [1.0, 1j], -0.009 * (turns @ [1.0, 1j])
-    area = 2.0 * (np.conj(across) * up).imag / (abs(across) ** 2 + abs(up) ** 2)
-    exact = np.tan(0.5 * np.arcsin(area))
-    ratio = QUANTITIES["wave.axis_ratio"]
-    for given, within in (({"model": "analytic"}, 1e-10), ({"model": "fem", "count": 100}, 1e-3)):
-        asked = arguments_of(ratio, given | {"theory": "timoshenko", "x": x})
-        assert evaluate(ratio, asked, scene, Workbench(BAR)) == pytest.approx(exact, rel=within)
-
-
 class Untold(type(MODELS["analytic"])):
     """The exact beam, that does not say how its sections turn."""
 
@@ -210,15 +187,6 @@ def test_a_timoshenko_field_without_a_turn_has_deflections_and_no_surface():
     with pytest.raises(InputError, match="fields of model = 'untold' tell no turn of the section"):
         field.turn(0.1)
     assert Untold().solve_harmonic(BAR, FORCE, 23000.0, None).turn(0.1)
-
-
-@pytest.mark.parametrize("theory", ["rayleigh", "timoshenko"])
-def test_a_chains_field_tends_to_the_exact_one_of_its_own_theory(theory):
-    """What rotary inertia and shear do to a thick bar is no error of its segments: by 40 of them it is far more."""
-    scene, of = load_scene("thick-bar"), QUANTITIES["wave.order"]
-    given = {"model": "segment", "counts": [40, 80, 160], "of": "deflection", "window": [0.12, 0.21]}
-    asked = arguments_of(of, given | {"theory": theory})
-    assert evaluate(of, asked, scene, Workbench(scene.beam)) == pytest.approx(2.0, abs=0.1)
 
 
 def test_two_waves_are_not_told_of_a_field_of_four():
@@ -253,20 +221,3 @@ def test_a_window_lies_on_the_beams_own_section_in_all_that_a_theory_makes_waves
         measures(there, (0.2, 0.7))
     plain = analytic_modes.solve_harmonic(replace(owned, **outer), forces, 23000.0)
     assert measures(plain, (0.2, 0.7)).window == (0.2, 0.7)
-
-
-@pytest.mark.parametrize("of", ["wave.reflection_per_hertz", "wave.reflection_per_degree"])
-def test_a_window_of_half_a_wave_by_timoshenkos_theory_is_one_to_what_changes_as_well(of):
-    """By Euler-Bernoulli's the same window of 0.15 m is 0.998 of half a wave, by Timoshenko's 1.021."""
-    scene = load_scene("thick-bar")
-    forces = tuple(replace(one, position=at) for one, at in zip(scene.drive.force, (0.02, 0.28), strict=True))
-    drive = replace(scene.drive, frequency_hz=2596.0, force=forces)
-    scene = replace(scene, beam=replace(scene.beam, supports=("free", "free")), drive=drive)
-
-    def told(theory):
-        asked = arguments_of(QUANTITIES[of], {"model": "analytic", "theory": theory})
-        return evaluate(QUANTITIES[of], asked, scene, Workbench(scene.beam))
-
-    assert 0.0 < abs(told("timoshenko")) < 1.0
-    with pytest.raises(WindowError, match="shorter than half a wavelength"):
-        told("euler-bernoulli")

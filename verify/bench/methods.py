@@ -1,5 +1,6 @@
 """The sets: questions with their methods and references, on the paper's beam or that of a scene."""
 
+import dataclasses
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil
@@ -44,13 +45,11 @@ class Problem:
 
 
 def problem_of(scene: Any) -> Problem:
-    """The beam, drive and slider of a scene, those of the paper where it has none."""
-    own = Problem(beam=scene.beam)
+    """The beam, drive and slider of a scene, the paper's slider where it has none; no forces without a drive."""
     if scene.drive is None:
-        return own
+        return Problem(beam=scene.beam, forces=())
     duration = scene.motion.duration if scene.motion else 4.0 / scene.drive.frequency_hz
-    slider = scene.slider or own.slider
-    return Problem(scene.beam, tuple(scene.forces), scene.drive.frequency_hz, slider, duration)
+    return Problem(scene.beam, tuple(scene.forces), scene.drive.frequency_hz, scene.slider or SLIDER, duration)
 
 
 def rms(values: Any, exact: Any) -> float:
@@ -159,70 +158,51 @@ def ride(problem: Problem) -> Iterator[Question]:
     yield Question("ride", title, "2048 steps a period", max(u for _, u in pairs), float, [one for one, _ in pairs])
 
 
-def chain_in_time(problem: Problem) -> tuple[Any, Any, Array]:
-    """(system, start, times) of the nonlinear chain from rest under a step load, in a twentieth of a period."""
+def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], float]:
+    """(settings -> times and mid-span deflections of the nonlinear chain from rest, the step limit of RK4)."""
     from verify.chain.dynamics import at_rest
+    from verify.chain.stepping import simulate, step_limit
     from verify.chain.system import build_system
 
     system = build_system(problem.beam, LINKS, problem.forces, problem.frequency_hz)
-    count = ceil(20.0 * problem.duration * problem.frequency_hz)
-    return system, at_rest(system), np.linspace(problem.duration / count, problem.duration, count)
+    start, x = at_rest(system), 0.5 * problem.beam.length
+
+    def run(samples: int = 200, **how: Any) -> tuple[Array, Array]:
+        times = np.linspace(0.0, problem.duration, samples + 1)[1:]
+        return times, simulate(system, start, times, ledger=False, **how).deflection([x])[:, 0]
+
+    return run, step_limit(system, start)
 
 
-def kicks(problem: Problem, number: int) -> Callable[[float], tuple[Array, Array]]:
-    """Step -> (times, mid-span deflection) by exact linear flow with so many kicks a step."""
-    from verify.chain.splitting import modal_basis, simulate_modal
-
-    system, start, times = chain_in_time(problem)
-
-    def run(step: float) -> tuple[Array, Array]:
-        motion = simulate_modal(modal_basis(system), start, times, step=step, kicks=number)
-        return times, motion.deflection([0.5 * problem.beam.length])[:, 0]
-
-    return run
-
-
-def converged(problem: Problem) -> tuple[Callable[[tuple[Array, Array]], float], float]:
-    """(error of times and mid-span deflections against adaptive steps at 1e-10, what 1e-9 changes)."""
+def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array, Array]], float], float]:
+    """(RK4 and adaptive steps, error against adaptive steps at 1e-10, what 1e-9 changes)."""
     from scipy.interpolate import CubicSpline
 
-    from verify.chain.stepping import simulate
-
-    system, start, _ = chain_in_time(problem)
-    times = np.linspace(0.0, problem.duration, 4001)[1:]
-
-    def solve(tolerance: float) -> Array:
-        motion = simulate(system, start, times, tolerance=tolerance, ledger=False)
-        return np.asarray(motion.deflection([0.5 * problem.beam.length])[:, 0])
-
-    exact = solve(1e-10)
+    run, limit = chain_solver(problem)
+    times, exact = run(4000, tolerance=1e-10)
     spline = CubicSpline(np.append(0.0, times), np.append(0.0, exact))
-    return lambda found: rms(found[1], spline(found[0])), max(rms(solve(1e-9), exact), 1e-10)
+    least = ceil(problem.duration / (0.97 * limit))
+    steps = [least * 2**k for k in range(5)]
+    rk4 = Method("RK4", lambda n: run(method="rk4", step=problem.duration / n), steps, "steps", "segment")
+    adaptive = Method("adaptive", lambda size: run(tolerance=size), (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), "tolerance")
+    uncertainty = max(rms(run(4000, tolerance=1e-9)[1], exact), 1e-10)
+    return [rk4, adaptive], lambda found: rms(found[1], spline(found[0])), uncertainty
 
 
 def chain(problem: Problem) -> Iterator[Question]:
-    """The nonlinear chain over the step or the tolerance."""
-    from verify.chain.stepping import simulate, step_limit
+    """The nonlinear chain over the step or the tolerance, and the linear one, exact in time."""
+    from verify.chain.departure import linear_deflection
+    from verify.chain.system import build_system
 
-    system, start, times = chain_in_time(problem)
-    limit, first = step_limit(system, start), 1.0 / (3.0 * problem.frequency_hz)
+    methods, error, uncertainty = chain_methods(problem)
+    times, x = np.linspace(0.0, problem.duration, 201)[1:], 0.5 * problem.beam.length
 
-    def solver(method: str) -> Callable[[float], tuple[Array, Array]]:
-        def run(size: float) -> tuple[Array, Array]:
-            how = {"step": size, "limit": limit} if method == "rk4" else {"tolerance": size}
-            motion = simulate(system, start, times, method=method, ledger=False, **how)  # type: ignore[arg-type]
-            return times, motion.deflection([0.5 * problem.beam.length])[:, 0]
+    def linear(_: int) -> tuple[Array, Array]:
+        system = build_system(problem.beam, LINKS, problem.forces, problem.frequency_hz)
+        return times, linear_deflection(system, times, x)
 
-        return run
-
-    error, uncertainty = converged(problem)
-    methods = [
-        Method("2 kicks", kicks(problem, 2), [first / 2**k for k in range(6)], "dt", "segment"),
-        Method("1 kick", kicks(problem, 1), [first / 2**k for k in range(6)], "dt"),
-        Method("RK4", solver("rk4"), [0.97 * limit / 2**k for k in range(4)], "dt"),
-        Method("adaptive", solver("adaptive"), (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), "tolerance"),
-    ]
     title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}"
+    methods.append(Method("linear chain, exact in time", linear, (0,), ""))
     yield Question("chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
 
 
@@ -241,11 +221,13 @@ def engines(problem: Problem) -> Iterator[Question]:
         return lambda n: float(adapter.frequencies(chain_of(beam, n, (), hertz))[mode - 1])
 
     ours = Method(
-        "segments", lambda n: float(MODELS["segment"].solve_modes(beam, mode, n).frequencies_hz[mode - 1]), SIZES[:4]
+        "segments",
+        lambda n: float(MODELS["segment"].solve_modes(beam, mode, n).frequencies_hz[mode - 1]),
+        problem.sizes[:4],
     )
-    theirs = [Method(name, frequency(adapter), SIZES[:4]) for name, adapter in adapters.items()]
-    title, error = f"frequency of mode {mode}", lambda hertz: hertz / exact - 1.0
-    yield Question("engines-modes", title, "exact frequency", 1e-14, error, [ours, *theirs])
+    theirs = [Method(name, frequency(adapter), problem.sizes[:4]) for name, adapter in adapters.items()]
+    title = f"frequency of mode {mode}"
+    yield Question("engines-modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, [ours, *theirs])
 
     links = chain_of(beam, LINKS, problem.forces, hertz)
     limit = references.stability_limit(links)
@@ -263,17 +245,8 @@ def engines(problem: Problem) -> Iterator[Question]:
 
         return run
 
-    error, uncertainty = converged(problem)
-    own = kicks(problem, 2)
-    methods = [
-        Method(
-            "segments, 2 kicks",
-            lambda count: own(end / count),
-            [ceil(end * hertz * 3) * 2**k for k in range(6)],
-            "steps",
-            "segment",
-        )
-    ]
+    methods, error, uncertainty = chain_methods(problem)
+    methods = [dataclasses.replace(one, name=f"segments, {one.name}") for one in methods]
     methods += [Method(name, motion(adapter), steps(name), "steps") for name, adapter in adapters.items()]
     title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}"
     yield Question("engines-chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
@@ -323,4 +296,6 @@ def questions(names: Sequence[str], problem: Problem) -> Iterator[Question]:
         if name not in SETS:
             raise InputError(f"set = {name!r} is unknown: {near_name(name, tuple(SETS))}")
     for name in names or SETS:
+        if name != "modes" and not problem.forces:
+            raise InputError(f"{name}: the scene has no [drive] with forces, add it or bench its modes alone")
         yield from SETS[name](problem)

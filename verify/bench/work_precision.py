@@ -90,7 +90,7 @@ def measure(question: Question, limit: float = 5.0) -> list[Row]:
             except InputError:
                 continue
             seconds = _timed(method, size, 1)
-            jobs.append((method, size, abs(error), min(max(round(TURN_S / max(seconds, 1e-9)), 1), 200)))
+            jobs.append((method, size, abs(error), min(max(round(TURN_S / max(seconds, 1e-9)), 1), 20)))
             spent += seconds
             if spent > limit:
                 break

@@ -90,7 +90,8 @@ def linear_deflection(system: ChainSystem, times: Array, x: float) -> Array:
     def reach(link: int, at: float) -> Array:
         """Derivatives of the y of a point by the relative angles, (N,), metres."""
         nodes = system.nodes
-        return np.maximum(nodes[link - 1] + at - nodes[:-1], 0.0) * (np.arange(system.n_links) < link)
+        reached: Array = np.maximum(nodes[link - 1] + at - nodes[:-1], 0.0) * (np.arange(system.n_links) < link)
+        return reached
 
     read, turn = modes.T @ reach(*link_at(system, x)), np.outer(times, omega)
     slow = omega == 0.0

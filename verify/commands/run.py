@@ -56,6 +56,7 @@ def run(
 
 
 def _run_one(task: Task, as_json: bool) -> None:
+    from verify.report.archive import report_name, save_run
     from verify.report.summary import run_data
     from verify.report.terminal import print_run
     from verify.scene.run import plan, run_scene
@@ -63,7 +64,8 @@ def _run_one(task: Task, as_json: bool) -> None:
     steps = sum(row.runs for row in plan(task.scene, task.overrides)) if not as_json else None
     with progress(steps, quiet=as_json) as step:
         result = run_scene(task.scene, step, task.overrides)
-        saved = _save(result, task)
+        name = report_name(result.scene.name, task.overrides)
+        saved = save_run(result, task.reports, name, task.command, task.keep) if task.reports else None
     if as_json:
         print_json(run_data(result, task.command) | {"page": str(saved.page) if saved else None})
     else:
@@ -98,24 +100,17 @@ def _run_several(tasks: list[Task], as_json: bool, command: str) -> None:
 def _line_of(task: Task) -> dict[str, Any]:
     """The line of one scene in the index; the work of one process."""
     from verify.errors import InputError
-    from verify.report.archive import report_name
+    from verify.report.archive import report_name, save_run
     from verify.report.index import failed_line, scene_line
     from verify.scene.run import run_scene
 
     try:
         result = run_scene(task.scene, overrides=task.overrides)
-        saved = _save(result, task)
+        name = report_name(result.scene.name, task.overrides)
+        saved = save_run(result, task.reports, name, task.command, task.keep) if task.reports else None
     except InputError as error:
         return failed_line(task.scene, error.sentences)
-    return scene_line(result, report_name(result.scene.name, task.overrides), saved)
-
-
-def _save(result: Any, task: Task) -> Any:
-    from verify.report.archive import report_name, save_run
-
-    if task.reports is None:
-        return None
-    return save_run(result, task.reports, report_name(result.scene.name, task.overrides), task.command, task.keep)
+    return scene_line(result, name, saved)
 
 
 def _command_line(scenes: tuple[str, ...], overrides: tuple[str, ...]) -> str:

@@ -14,23 +14,19 @@ from verify.errors import InputError, printable
 def scenes(context: click.Context, /, **formats: bool) -> None:
     """List the packaged scenes, show one, or write a new one."""
     if context.invoked_subcommand is None:
-        _list(**formats)
-
-
-def _list(**formats: bool) -> None:
-    from verify.report.result import Column, Result, Table
-    from verify.scene.load import load_scene, packaged_scenes
-
-    found = [load_scene(name) for name in packaged_scenes()]
-    rows = [(one.name, one.title, len(one.gate)) for one in found]
-    show(Result(tables=[Table("", [Column("scene"), Column("title"), Column("gates")], rows)]), **formats)
+        context.invoke(list_scenes, **formats)
 
 
 @scenes.command("list")
 @format_options
 def list_scenes(**formats: bool) -> None:
     """List the packaged scenes."""
-    _list(**formats)
+    from verify.report.result import Column, Result, Table
+    from verify.scene.load import load_scene, packaged_scenes
+
+    found = [load_scene(name) for name in packaged_scenes()]
+    rows = [(one.name, one.title, len(one.gate)) for one in found]
+    show(Result(tables=[Table("", [Column("scene"), Column("title"), Column("gates")], rows)]), **formats)
 
 
 @scenes.command("show")

@@ -38,7 +38,7 @@ def run_study(
     charts: str | None,
     formats: dict[str, bool],
 ) -> None:
-    """Run a study by its name, with the scene's section, or its defaults, and 'key=value' options."""
+    """Run a study with the scene's section, or its defaults, and 'key=value' options, and show its result."""
     from verify.judge.cache import SolutionCache
     from verify.scene.convert import convert
     from verify.scene.load import load_scene

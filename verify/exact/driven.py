@@ -5,6 +5,7 @@ foundation or axial force, which lose nothing.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from math import pi, sqrt
 from typing import TypeAlias
 
@@ -64,13 +65,14 @@ def _under_unit_forces(
     for i, position in enumerate(positions):
         at = int(np.searchsorted(spans.stretch, place_of(places, position / beam.length)))
         jumps[at, 3, i] = beam.length**3 / beam.bending_stiffness / spans.sizes[3]
-    try:
-        return spans, solver(spans)(jumps)
-    except np.linalg.LinAlgError:
-        raise InputError(
-            f"frequency_hz = {frequency_hz!r}: a beam that no support holds moves beyond floating point, give a higher "
-            "frequency_hz or other supports"
-        ) from None
+    with suppress(np.linalg.LinAlgError):
+        states = solver(spans)(jumps)
+        if np.isfinite(states).all():
+            return spans, states
+    raise InputError(
+        f"frequency_hz = {frequency_hz!r}: a beam that no support holds moves beyond floating point, give a higher "
+        "frequency_hz or other supports"
+    )
 
 
 def _refuse_resonance(beam: Beam, line: Lineup, beta_length: float, frequency_hz: float, theory: str) -> None:

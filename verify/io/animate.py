@@ -90,8 +90,8 @@ def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
             ]
             ax.plot([x], [y * HEIGHT * length], marker=marker, color=INK, markersize=9, clip_on=False)
         for force in scene.forces if data.what != "modes" else ():
-            tip = (force.position, 0.3 * HEIGHT * length)
-            ax.annotate("", tip, (force.position, 2.2 * HEIGHT * length), arrowprops={"color": "#cc3f76", "width": 1.0})
+            tip = (force.position, 1.2 * HEIGHT * length)
+            ax.annotate("", tip, (force.position, 2.1 * HEIGHT * length), arrowprops={"color": "#cc3f76", "width": 1.0})
         (line,) = ax.plot([], [], "-o" if data.links else "-", color=color, linewidth=3.0, markersize=3.5)
         (slider,) = ax.plot([], [], "s", color=MODEL_COLORS["fem"], markersize=11)
         text = ax.text(0.5, 0.97, "", transform=ax.transAxes, ha="center", va="top")
@@ -146,7 +146,7 @@ def _solid(data: Dataset, frames: "dict[str, Array]") -> list[Any]:
     from PIL import Image
 
     length = float(data.x[-1])
-    half = 0.5 * min(data.beam.width or 0.06 * length, 0.2 * length)
+    half = min(max(0.5 * (data.beam.width or 0.0), 0.04 * length), 0.1 * length)
     scale = _scale(frames["deflection"], length)
     largest, pictures = float(abs(frames["deflection"]).max()), []
     plotter = pyvista.Plotter(off_screen=True, window_size=(1280, 720))
@@ -158,6 +158,7 @@ def _solid(data: Dataset, frames: "dict[str, Array]") -> list[Any]:
         plotter.add_mesh(grid, scalars="deflection", cmap="coolwarm", clim=(-largest, largest), show_edges=data.links)
         plotter.add_text(f"{data.title}\n{label}", font_size=10)
         plotter.camera_position = [(0.5 * length, -1.6 * length, 0.7 * length), (0.5 * length, 0, 0), (0, 0, 1)]
+        plotter.camera.zoom(1.4)
         pictures.append(Image.fromarray(np.asarray(plotter.screenshot(return_img=True))))
     plotter.close()
     return pictures

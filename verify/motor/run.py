@@ -160,9 +160,10 @@ def _run(
     if model == CHAIN:
         from verify.motor.on_chain import run_on_chain
 
-        for name, needed in (("start", "rest"), ("soft_start_periods", 0.0)):
-            if settings[name] != needed:
-                raise InputError(f"{name} = {settings[name]!r}: a nonlinear chain starts so: give {needed!r}")
+        starts: tuple[tuple[str, Any], ...] = (("start", "rest"), ("soft_start_periods", 0.0))
+        for name, wanted in starts:
+            if settings[name] != wanted:
+                raise InputError(f"{name} = {settings[name]!r}: a nonlinear chain starts so: give {wanted!r}")
         if request.damping:
             raise InputError(f"modal_damping = {request.damping!r}: a nonlinear chain is undamped, give 0.0")
         return run_on_chain(request, placed, links, began, progress)

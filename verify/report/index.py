@@ -33,29 +33,16 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
 
 def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
     """The same of a scene that cannot run."""
-    return {"scene": name, "title": name, "passed": None, "verdict": None, "failed": [], "worst": None} | {
-        "fraction": None,
-        "seconds": None,
-        "page": None,
-        "folder": None,
-        "errors": list(sentences),
-    }
+    return {"scene": name, "title": name, "passed": None, "failed": [], "errors": list(sentences)}
 
 
 def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     """All scenes as a result: those that fail first."""
     order = {None: 0, False: 1, True: 2}
     ordered = sorted(lines, key=lambda line: order[line["passed"]])
+    keys = ("scene", "verdict", "worst", "fraction", "seconds")
     rows = [
-        (
-            CANNOT if line["passed"] is None else VERDICTS[line["passed"]],
-            line["scene"],
-            line["verdict"],
-            line["worst"],
-            line["fraction"],
-            line["seconds"],
-        )
-        for line in ordered
+        (VERDICTS.get(one["passed"]) if one["passed"] is not None else CANNOT, *map(one.get, keys)) for one in ordered
     ]
     columns = [Column(name) for name in ("verdict", "scene", "gates", "worst gate")]
     columns += [Column("of tolerance", format=".3g", percent=True), Column("time", "s", ".3g")]
@@ -82,7 +69,7 @@ def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, secon
     from verify.files import write_whole
     from verify.report.page import Section, render
 
-    links = {line["scene"]: Path(relpath(line["page"], path.parent)).as_posix() for line in lines if line["page"]}
+    links = {line["scene"]: Path(relpath(line["page"], path.parent)).as_posix() for line in lines if line.get("page")}
     result = index_result(lines)
     sections = [Section(table.title.lower(), table.title, tables=[table], links=links) for table in result.tables]
     page = render(

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 from verify.report.plotting import figure_files, figure_svg, movie_image
 from verify.report.result import Figure, Movie, Result, Table
-from verify.report.summary import environment, expected, gates_table, skipped_table, value_text, verdict, worst_gate
+from verify.report.summary import (
+    environment,
+    expected,
+    gates_table,
+    skipped_table,
+    study_title,
+    value_text,
+    verdict,
+    void_results,
+    worst_gate,
+)
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -54,7 +64,8 @@ def run_page(run: "RunResult", command: str = "") -> str:
 
     scene = run.scene
     studies = [_study_section(run, name, result) for name, result in run.results.items()]
-    summaries = [(section.title, section.id, section.paragraphs[0]) for section in studies if section.paragraphs]
+    void = void_results(run)
+    summaries = [(section.title, section.id, " ".join(section.paragraphs)) for section in studies if section.paragraphs]
     sections = [Section("gates", "Gates", tables=[gates_table(run)])] if run.gates else []
     sections += studies
     if run.skipped:
@@ -68,7 +79,9 @@ def run_page(run: "RunResult", command: str = "") -> str:
         passed=run.passed,
         verdict=verdict(run),
         seconds=run.seconds,
-        problems=[f"{one.gate.id}: {one.reason}" for one in run.failed],
+        void=bool(void),
+        problems=[f"{study_title(run, name)}: {why}" for name, why in void.items()]
+        + [f"{one.gate.id}: {one.reason}" for one in run.failed],
         warnings=list(dict.fromkeys(getattr(run, "warnings", ()))),
         drawings=[figure_svg(beam_figure(scene, width)) for width in (8.4, 4.2)],
         drawing_caption=beam_figure(scene).caption,
@@ -80,12 +93,10 @@ def run_page(run: "RunResult", command: str = "") -> str:
 
 
 def _study_section(run: "RunResult", name: str, result: Result) -> Section:
-    study = run.scene.studies.get(name)
-    title = getattr(study, "title", "") or name.replace("_", " ").capitalize()
     figures = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.figures]
     movies = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.movies]
     summary = [result.summary] if result.summary else []
-    return Section(name, title, summary, result.warnings, figures, movies, result.tables)
+    return Section(name, study_title(run, name), summary, result.warnings, figures, movies, result.tables)
 
 
 def _inputs(scene: Any) -> str:

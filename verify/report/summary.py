@@ -13,12 +13,25 @@ if TYPE_CHECKING:
 VERDICTS = {True: "pass", False: "FAIL", None: "skipped"}
 
 
+def study_title(run: "RunResult", name: str) -> str:
+    """Heading of a study."""
+    from verify.studies.base import STUDIES
+
+    study = run.scene.studies.get(name) or STUDIES.get(name)
+    return getattr(study, "title", "") or name.replace("_", " ").capitalize()
+
+
+def void_results(run: "RunResult") -> dict[str, str]:
+    """First warning, by name, of each study without a valid result: one with warnings and no summary."""
+    return {name: one.warnings[0] for name, one in run.results.items() if one.warnings and not one.summary}
+
+
 def verdict(run: "RunResult") -> str:
-    """One line: how many of the gates that apply pass."""
+    """One line: studies without a valid result, and how many of the gates that apply pass."""
     judged = [gate for gate in run.gates if gate.passed is not None]
-    if not judged:
-        return "No gate applies"
-    return f"{len(run.failed)} of {len(judged)} gates failed" if run.failed else f"All {len(judged)} gates passed"
+    text = f"{len(run.failed)} of {len(judged)} gates failed" if run.failed else f"All {len(judged)} gates passed"
+    void = ", ".join(study_title(run, name) for name in void_results(run))
+    return (f"No valid result: {void}. " if void else "") + (text if judged else "No gate applies")
 
 
 def worst_gate(run: "RunResult") -> "GateResult | None":

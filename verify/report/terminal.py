@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.report.result import MISSING, Column, Table
-from verify.report.summary import VERDICTS, expected, value_text, verdict, worst_gate
+from verify.report.summary import VERDICTS, expected, study_title, value_text, verdict, void_results, worst_gate
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,8 +21,7 @@ def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None
     console.print(scene.title or scene.name, style="bold")
     for name, result in run.results.items():
         console.print()
-        study = scene.studies.get(name)
-        console.print(getattr(study, "title", "") or name.replace("_", " ").capitalize(), style="bold")
+        console.print(study_title(run, name), style="bold")
         result.print(console, LONG)
     if run.gates:
         console.print()
@@ -34,7 +33,8 @@ def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None
         console.print(f"warning: {warning}", style="yellow")
     for one in run.failed:
         console.print(f"FAIL {one.gate.id}: {one.reason}", style="red")
-    console.print(f"{verdict(run)} ({run.seconds:.3g} s)", style="bold green" if run.passed else "bold red")
+    color = "red" if run.failed else "yellow" if void_results(run) else "green"
+    console.print(f"{verdict(run)} ({run.seconds:.3g} s)", style=f"bold {color}")
     worst = worst_gate(run)
     if worst is not None and run.passed:
         console.print(f"worst gate: {worst.gate.id}, {100 * (worst.fraction or 0.0):.3g} % of its tolerance")

@@ -1,6 +1,6 @@
-"""Checks of driven fields: close to resonance, damped, slow, of short waves, at the far end of long beams."""
+"""Checks of driven fields (close to resonance, damped, slow, short waves, long beams) and of free vibration."""
 
-from math import pi
+from math import atan, pi
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from verify.beam import Beam, PointForce
 from verify.device import Device
 from verify.models.catalogue import MODELS
 from verify.stress.engine import check, worst
-from verify.stress.reference import CANTILEVER, PI, STRIP, D, sin, sinh
+from verify.stress.reference import CANTILEVER, PI, STRIP, D, cos, sin, sinh
 
 N, MODE = 40, 3
 AT, FROM = 11, 17
@@ -175,3 +175,24 @@ def imposed_near_node(off: float) -> float:
         field = driven_field(lambda forces, f: solve_harmonic(STRIP, forces, f), drives, hertz, "displacement")
         errors.append(read(field) / exact - 1.0)
     return worst(errors)
+
+
+def newmark_error(periods: float) -> float:
+    """Relative frequency error of average acceleration in 64 steps a period, in closed form."""
+    return abs(2.0 * atan(pi / 64) * 64 / (2.0 * pi) - 1.0)
+
+
+_NEWMARK = ("average acceleration, 64 steps a period", newmark_error)
+
+
+@check("free-vibration", "periods", (1, 1e3, 1e5, 1e7, 1e9), 1e-15, baseline=_NEWMARK)
+def free_vibration_error(periods: float) -> float:
+    """Mode 1 released and read at a zero crossing: the frequency error that would explain its deflection."""
+    from verify.exact.closed_forms import frequency_hz
+    from verify.motion.free_vibration import free_vibration
+
+    hertz = frequency_hz(STRIP, 1)
+    time = (periods + 0.25) / hertz
+    run = free_vibration(STRIP, 1, time, amplitude=1e-3, model="analytic", modes=2, at=[0.5 * STRIP.length], samples=2)
+    angle = 2 * PI * D(hertz) * D(time)
+    return abs(float(D(float(run.deflection[-1, 0])) / D("1e-3") - cos(angle)) / float(angle))
