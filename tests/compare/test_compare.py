@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from dense_beams import links_without_inertia, lumped_elements, lumped_rod, printed_chain, rigid_links
+from reference.discrete_beams import links_without_inertia, lumped_elements, lumped_rod, printed_chain, rigid_links
 from shared_lists import CANTILEVER, FREE, HELD, PAPER, PROPPED, STEPPED, STRIP, compared, exudyn, recorded, table
 
 from verify.attached import PointMass
@@ -11,7 +11,6 @@ from verify.compare.candidates import EXACT, Candidate, candidates, frequencies_
 from verify.compare.clamp import softened
 from verify.compare.compare import Options, compare
 from verify.compare.reading import ModeShapes, listed
-from verify.compare.shapes import scale_free_error
 from verify.errors import InputError
 from verify.fem_beam import solve_modes as fem_modes
 from verify.segment_model import solve_modes as segment_modes
@@ -203,9 +202,7 @@ class TestCertainty:
         assert best(result, "mass", "rms") == ("joints", 0.0)
 
     def test_few_frequencies_identify_nothing(self):
-        result = compared(CANTILEVER, exudyn()[0][:1], digits=5)
-        assert result.data["status"] in ("few", "exact")
-        assert not result.data["passed"] or result.data["status"] == "exact"
+        assert compared(CANTILEVER, exudyn()[0][:1], digits=5).data["status"] == "few"
 
 
 class TestShapes:
@@ -232,11 +229,6 @@ class TestShapes:
         result = self.swapped([0, 1, 2, 4, 5, 6])
         assert [row["mode"] for row in table(result, "Modes")] == [1, 2, 3, 5, 6, 7]
         assert result.data["best"]["fault"]["kind"] == "none"
-
-    def test_error_is_free_of_scale(self):
-        _, _, shapes = exudyn()
-        assert scale_free_error(-3.7 * shapes[2], shapes[2]) < 1e-12
-        assert scale_free_error(shapes[2], shapes[3]) > 0.9
 
 
 def test_required_count_is_the_first():

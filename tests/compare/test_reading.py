@@ -32,17 +32,11 @@ def test_layout_is_read(tmp_path, name):
     assert (given.unit, given.numbers) == (unit, numbers)
 
 
-def test_rounding_is_half_the_last_digit(tmp_path):
-    (tmp_path / "list.txt").write_text("9.20\n369e-1\n")
-    assert read_frequencies(tmp_path / "list.txt").rounding == pytest.approx([0.005 / 9.2, 0.05 / 36.9])
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("", "0 rows of numbers"),
         ("9.2\nabc\n", "row 2: 'abc' is not a number"),
-        ("9.2 1\n36.9\n", "of the same length"),
         ("9.2 1.5\n36.9 2.5\n", "2 columns that may be frequencies"),
         ("mode;hz\n2;9.2\n1;36.9\n", "do not count upwards"),
     ],

@@ -153,18 +153,16 @@ def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
 
 
 def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
-    """Supports with which the exact beam has the lower half of the frequencies; empty if there are none."""
+    """Supports with which the exact beam has the lower half of the frequencies; empty if its own or none have them."""
     low = modes < max(len(logs) // 2, 2)
-    for supports in product(get_args(Support), repeat=2):
+    for supports in (beam.supports, *product(get_args(Support), repeat=2)):
         other = msgspec.structs.replace(beam, supports=supports)
-        if supports == beam.supports or low.sum() < 2:
-            continue
         try:
-            exact = np.log(frequencies_hz(Candidate(model=EXACT), other, None, int(modes[low].max()) + 1))
-        except InputError:
+            exact = np.log(frequencies_hz(Candidate(model=EXACT), other, None, int(modes[low].max(initial=0)) + 1))
+        except InputError:  # for example a beam that has buckled
             continue
-        if abs(logs[low] - exact[modes[low]]).max() < 20.0 * TOLERANCE:
-            return supports
+        if low.sum() > 1 and abs(logs[low] - exact[modes[low]]).max() < 20.0 * TOLERANCE:
+            return () if supports == beam.supports else supports
     return ()
 
 

@@ -21,7 +21,7 @@ EFFECT, FLAT = 0.02, 0.95
 """Largest rms over the effect of a fitted fault; ratio of rms above which neighbouring N are not tried further."""
 SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
 """N where the user does not give it; the last of the interpolated spectra."""
-FEWEST, REFINED = 3, 3
+FEWEST, REFINED = 3, 5
 """Entries for which a fault is fitted; candidates solved around their interpolated N."""
 UNITS = {"rad/s": 2 * pi, "mHz": 1e3, "1/min": 60.0, "divided by 2 pi": 0.5 / pi, "kHz": 1e-3, "1/60 Hz": 1 / 60}
 COST = {"none": 0.0, "unit": 5.0, "count": 5.0, "missing": 6.0, "extra": 6.0, "factor": 9.0, "clamp": 9.0}
@@ -149,8 +149,9 @@ def identify(data: Data) -> Identification:
     if tested["none"][0].rms > data.floor:
         faults = list(_faults(data))
         tested |= {kind: _best(data, [one for one in faults if one.kind == kind]) for kind in {f.kind for f in faults}}
-    accepted = [fits[0] for fits in tested.values() if fits and data.accepts(fits[0])]
-    likeliest = min(accepted or tested["none"][:1], key=data.score)
+    plain, firsts = tested["none"][0], [fits[0] for fits in tested.values() if fits]
+    accepted = [one for one in firsts if data.accepts(one) and data.score(one) <= data.score(plain)]
+    likeliest = min(accepted or [plain], key=data.score)
     best, *ranking = _best(data, [likeliest.fault], every=True)
     if data.count is not None and not any(one.candidate.sized for one in (best, *ranking)):
         raise InputError(f"count = {data.count}: no model of so few parts has {data.n_modes - 1} modes, raise count")
@@ -171,7 +172,7 @@ def identify(data: Data) -> Identification:
         ranking=(best, *ranking),
         equivalent=tuple(equal),
         alternatives=(*close, *rivals),
-        tested=tuple(sorted((fits[0] for fits in tested.values() if fits), key=data.score)),
+        tested=tuple(sorted(firsts, key=data.score)),
     )
 
 
@@ -257,7 +258,9 @@ def _refined(data: Data, fit: Fit) -> Fit | None:
     if best is None or best.count is None or data.count is not None:
         return best
     if falls_within(data.beam):
-        for size in range(SMALLEST, SEARCHED + 1):
+        whole = fit.fault.kind == "none"
+        sizes = range(SMALLEST, SEARCHED + 1) if whole else range(int(best.count / 1.2), int(1.2 * best.count) + 2)
+        for size in sizes:
             other = _solved(data, replace(fit, count=size))
             best = other if other is not None and other.rms < best.rms else best
             if best.rms <= data.floor:
