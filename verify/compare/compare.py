@@ -13,7 +13,7 @@ from verify.compare.fit import TOLERANCE, Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of, tables_of
 from verify.errors import InputError
-from verify.judge.compare import LIKENESS, mac, node_weights, pair_modes
+from verify.judge.compare import HARDLY, LIKENESS, mac, node_weights, pair_modes
 from verify.models.arrays import Array, Indices
 from verify.options import Support
 from verify.report.result import Result
@@ -88,14 +88,16 @@ def compare(
         warnings.append(f"The list starts with {rigid} rigid motions, the beam of the scene has {beam.rigid_motions}.")
     if (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any():
         warnings.append("Frequencies are not in the order of the modes: see the column entry.")
-    if len(entries) < len(kept):
-        warnings.append(f"{len(kept) - len(entries)} of the shapes are of no mode of the beam (MAC below {LIKENESS}).")
+    if likeness is not None and (unlike := len(kept) - int((likeness >= HARDLY).sum())):
+        warnings.append(
+            f"{unlike} of the shapes are hardly modes of the beam (MAC below {HARDLY}): check beam.supports."
+        )
     if found.status == "unknown" and (supports := _other_supports(beam, data.logs[entries], modes)):
         warnings.append(f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.")
     mode = options.mode or max(row.mode for row in rows)
     sized = [] if found.status == "unknown" else _worth_sizing(beam, found.best.candidate)
     required = [(one, mode, _required(beam, one, mode, max(mode, data.n_modes))) for one in sized]
-    tables, passed = tables_of(data, found, rows, required, options.within)
+    tables, passed = tables_of(data, found, rows, required, options.within, len(warnings))
     about = {"scene": scene.name, "source": given.source, "unit": given.unit, "passed": passed}
     return result_of(beam, found, rows, tables, warnings, **about)
 
