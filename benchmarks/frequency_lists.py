@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import eigh
 
-from verify.beam import Beam
 from verify.engines import ENGINES, chain_of
+from verify.problem.beam import Beam
 
 CANTILEVER = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850.0)
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)

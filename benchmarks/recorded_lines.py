@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-COMPILER = "verify.models.kernels"
+COMPILER = "verify.linear.kernels"
 TOLD = "GATES_SECONDS"
 """The variable of the environment that names the file to which times go."""
 ASKER = "GATES_ASKER"

@@ -4,9 +4,9 @@ from itertools import pairwise
 
 from msgspec.structs import replace
 
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
-from verify.section import Section
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 BAR = Beam(length=0.41, width=0.03, thickness=0.037, youngs_modulus=206e9, density=7850.0, poissons_ratio=0.29)

@@ -5,7 +5,7 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
-from verify.beam import Beam
+from verify.problem.beam import Beam
 
 pytest_plugins = ["pytester"]
 

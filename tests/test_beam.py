@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam
 from verify.errors import InputError
-from verify.section import Section
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 
 SIZES = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
 

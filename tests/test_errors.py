@@ -27,9 +27,9 @@ from verify import (
     simulate,
     travelling_wave,
 )
-from verify.device import of_impedance
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import NAMES, SENTENCE, near_name, one_line, shown
-from verify.judge.cache import SolutionCache
+from verify.problem.device import of_impedance
 from verify.quantities.base import evaluate
 
 TITANIUM = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}

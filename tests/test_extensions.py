@@ -11,7 +11,7 @@ import pytest
 from verify import load_scene, run_scene, segment_model
 from verify.cli import status_of
 from verify.engines import ENGINES, chain_of
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
 from verify.quantities.base import QUANTITIES
 from verify.studies.base import STUDIES
 

@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from verify import analytic_modes
-from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
-from verify.models.division import part_counts
+from verify.linear.mesh import part_counts
 from verify.options import SUPPORTS
-from verify.section import Section
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Section
 from verify.segments import linear as segment_model
 from verify.segments import links as chain_of_links
 
@@ -83,7 +83,7 @@ def test_elastic_eigenvalues_of_both_models_add_up_to_the_trace(ends, count):
         strain = pencil.strain(np.eye(pencil.n))
         stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
         trace = np.trace(np.linalg.solve(pencil.mass_matrix(), stiffness))
-        from verify.models.eigen import lowest
+        from verify.linear.eigen import lowest
 
         assert lowest(pencil, pencil.n - pencil.rigid_modes).values.sum() == pytest.approx(trace, rel=1e-11)
         if pencil.rigid_modes:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from verify import load_scene
-from verify.judge.cache import SolutionCache
+from verify.analysis.solution_cache import SolutionCache
 from verify.quantities.base import QUANTITIES, evaluate, parse_arguments
 from verify.scene.load import packaged_scenes
 

@@ -26,24 +26,24 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from verify import analytic_modes, fem_beam, segment_model, travelling_wave
-    from verify.attached import PointMass, PointSpring
-    from verify.beam import Beam, PointForce
     from verify.chain.bending import Bent, bend
-    from verify.device import Device
     from verify.errors import InputError
-    from verify.models.fields import HarmonicField
-    from verify.models.modes import Modes
-    from verify.models.sweeps import HarmonicSweep
+    from verify.linear.fields import HarmonicField
+    from verify.linear.modes import Modes
+    from verify.linear.sweeps import HarmonicSweep
     from verify.motion.free_vibration import FreeVibration, free_vibration
     from verify.motion.result import Motion
     from verify.motion.simulate import simulate
     from verify.motor.result import MotorRun
     from verify.motor.run import run_motor, run_motors
+    from verify.problem.beam import Beam, PointForce
+    from verify.problem.cross_section import Section
+    from verify.problem.device import Device
+    from verify.problem.point_attachments import PointMass, PointSpring
+    from verify.problem.slider import Contact, Foot, Slider
     from verify.scene.load import load_scene
     from verify.scene.run import run_scene
-    from verify.section import Section
-    from verify.slider import Contact, Foot, Slider
-    from verify.waves.found import WaveMeasures
+    from verify.waves.results import WaveMeasures
 
 __all__ = [
     "Beam",
@@ -81,23 +81,23 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "verify": ("analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"),
-    "verify.attached": ("PointMass", "PointSpring"),
-    "verify.beam": ("Beam", "PointForce"),
+    "verify.problem.point_attachments": ("PointMass", "PointSpring"),
+    "verify.problem.beam": ("Beam", "PointForce"),
     "verify.chain.bending": ("Bent", "bend"),
-    "verify.device": ("Device",),
+    "verify.problem.device": ("Device",),
     "verify.errors": ("InputError",),
-    "verify.models.fields": ("HarmonicField",),
-    "verify.models.modes": ("Modes",),
-    "verify.models.sweeps": ("HarmonicSweep",),
+    "verify.linear.fields": ("HarmonicField",),
+    "verify.linear.modes": ("Modes",),
+    "verify.linear.sweeps": ("HarmonicSweep",),
     "verify.motion.free_vibration": ("FreeVibration", "free_vibration"),
     "verify.motion.result": ("Motion",),
     "verify.motor.result": ("MotorRun",),
     "verify.motor.run": ("run_motor", "run_motors"),
     "verify.scene.load": ("load_scene",),
     "verify.scene.run": ("run_scene",),
-    "verify.section": ("Section",),
-    "verify.slider": ("Contact", "Foot", "Slider"),
-    "verify.waves.found": ("WaveMeasures",),
+    "verify.problem.cross_section": ("Section",),
+    "verify.problem.slider": ("Contact", "Foot", "Slider"),
+    "verify.waves.results": ("WaveMeasures",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

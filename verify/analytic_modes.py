@@ -13,7 +13,7 @@ from verify.exact.modes import (
     sweep_modes,
 )
 from verify.exact.roots import modes_below
-from verify.models.places import as_typed
+from verify.linear.places import as_typed
 
 __all__ = [
     "buckling_load",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.scene.model import Gate, Scene
 
 
@@ -48,8 +48,8 @@ class SceneFile(pytest.File):
 
     def collect(self) -> Iterable["GateItem"]:
         """One item for each gate. A scene with errors is a collection error with their sentences."""
+        from verify.analysis.solution_cache import SolutionCache
         from verify.errors import InputError
-        from verify.judge.cache import SolutionCache
         from verify.scene.load import load_scene
 
         try:

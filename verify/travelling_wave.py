@@ -1,9 +1,10 @@
 """A field in, wave measures and surface ellipses out; fields with devices. The room is `verify.waves`."""
 
-from verify.waves.absorber import matched_device
 from verify.waves.devices import field_with_devices
-from verify.waves.found import TwoWaves, WaveMeasures
-from verify.waves.measures import (
+from verify.waves.impedance_matching import matched_device
+from verify.waves.results import TwoWaves, WaveMeasures
+from verify.waves.series import measure_series, phasors
+from verify.waves.two_waves import (
     ellipse,
     fit_waves,
     measure,
@@ -11,7 +12,6 @@ from verify.waves.measures import (
     surface_motion,
     two_waves,
 )
-from verify.waves.series import measure_series, phasors
 
 __all__ = [
     "TwoWaves",

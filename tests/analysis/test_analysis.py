@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.attached import PointMass
+from verify.analysis import compare, sizing
+from verify.analysis.sizing import choose_of_all
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.variants import Rules, Variant, every_rule
 from verify.errors import InputError, NoBracketError, PairingError
 from verify.exact import error_laws
-from verify.judge import compare, sizing
-from verify.judge.cache import SolutionCache
-from verify.judge.sizing import choose_of_all
-from verify.judge.variants import Rules, Variant, every_rule
-from verify.models.modes import Modes
+from verify.linear.modes import Modes
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass
 from verify.scene.load import load_scene
-from verify.section import Section
 
 # --- Comparison ---
 

@@ -11,14 +11,14 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros
 
 from verify import bend, segment_model
-from verify.attached import PointMass
-from verify.beam import Beam
 from verify.chain.dynamics import accelerations, at_rest, linearise, positions, project
 from verify.chain.problems import cantilever_tip, hanging_frequency, rollup_gap, turning_frequency
 from verify.chain.statics import solve_static
 from verify.chain.system import Actuator, ChainState, LinkLoad, Rotation, build_system
 from verify.errors import InputError
-from verify.section import Section
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass
 
 ROD = Beam(
     length=0.83, width=0.013, thickness=0.0021, youngs_modulus=113e9, density=4470.0, supports=("clamped", "free")

@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference.multibody import by_multipliers, rigid_motion, woinowsky_krieger
 
-from verify.beam import Beam, PointForce
 from verify.chain.dynamics import accelerations, at_rest, energies, held_rows, keep_pivots, positions, project
 from verify.chain.problems import energy_drift, large_amplitude_frequency, shaken_imbalance, transient
 from verify.chain.small_motion import choose_pivots
 from verify.chain.stepping import simulate, step_limit
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
+from verify.problem.beam import Beam, PointForce
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0)
 

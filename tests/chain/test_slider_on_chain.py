@@ -7,7 +7,6 @@ import pytest
 from reference.multibody import ridden, rigid_motion, stretching_motion
 
 from verify import simulate
-from verify.beam import Beam, PointForce
 from verify.chain.departure import Driven, chain_deflection, departure, linear_chain, rms
 from verify.chain.dynamics import at_rest
 from verify.chain.problems import contact_line_error
@@ -15,8 +14,9 @@ from verify.chain.ride import half_steps, ride, ride_from_rest
 from verify.chain.stretching import elastic_step_limit, simulate_elastic
 from verify.chain.system import axial_stiffness, build_system
 from verify.errors import InputError
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 from verify.segment_model import solve_modes
-from verify.slider import Slider
 
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 HERTZ, STEP = 4276.0, 4e-6

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from verify.beam import Beam
 from verify.compare.compare import Options, compare
 from verify.compare.reading import listed, read_frequencies
-from verify.section import Section
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Section
 
 DATA = Path(__file__).parent / "data"
 STRIP = {"length": 0.3, "width": 0.025, "thickness": 0.003, "youngs_modulus": 206e9, "density": 7850.0}

@@ -5,14 +5,14 @@ import pytest
 from reference.discrete_beams import links_without_inertia, lumped_elements, lumped_rod, printed_chain, rigid_links
 from shared_lists import CANTILEVER, FREE, HELD, PAPER, PROPPED, STEPPED, STRIP, compared, exudyn, recorded, table
 
-from verify.attached import PointMass
-from verify.beam import Beam
 from verify.compare.candidates import EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.clamp import softened
 from verify.compare.compare import Options, compare
 from verify.compare.reading import ModeShapes, listed
 from verify.errors import InputError
 from verify.fem_beam import solve_modes as fem_modes
+from verify.problem.beam import Beam
+from verify.problem.point_attachments import PointMass
 from verify.segment_model import solve_modes as segment_modes
 
 LUMPED = tuple(lumped_rod(PAPER, 49)[:22])

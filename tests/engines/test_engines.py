@@ -5,14 +5,14 @@ import pytest
 from msgspec.structs import replace
 
 from verify import segment_model
-from verify.beam import Beam, PointForce
 from verify.chain.departure import linear_deflection
 from verify.chain.dynamics import at_rest
 from verify.chain.stepping import step_limit
 from verify.chain.system import build_system
 from verify.engines import ENGINES, chain_of, missing, references, rider_of
 from verify.errors import InputError
-from verify.slider import Slider, changed
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider, changed
 
 FORCES = (
     PointForce(position=0.0731, amplitude=0.013, phase_deg=-37.0),

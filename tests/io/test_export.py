@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.io.data import Request, dataset
 from verify.io.export import latex, write
-from verify.judge.cache import SolutionCache
 from verify.report.result import Column, Table
 from verify.scene.load import load_scene
 

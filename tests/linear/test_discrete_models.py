@@ -10,12 +10,12 @@ from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near
 from verify import analytic_modes
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.exact import closed_forms, error_laws
-from verify.models import catalogue, eigen
-from verify.section import Section
+from verify.linear import catalogue, eigen
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 from verify.segments import linear as segment_model
 
 # --- Discrete models ---

@@ -7,14 +7,14 @@ from msgspec.structs import replace
 from numpy.polynomial import Polynomial
 
 from tests.reference.transfer import frequency_near, state
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
 from verify.elements import linear
 from verify.elements.in_time import time_basis
 from verify.elements.stock import stock_frequency_hz
 from verify.errors import InputError
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 from verify.scene.load import load_scene
-from verify.section import Section
 
 # --- Scikit fem ---
 

@@ -9,12 +9,12 @@ from msgspec.structs import replace
 
 from tests.beams import PAIRED, cut
 from verify import analytic_modes
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.options import SUPPORTS
-from verify.section import Section
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 
 # --- Exact modes ---
 

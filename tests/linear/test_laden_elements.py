@@ -9,12 +9,12 @@ import pytest
 from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near, state
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
 from verify.elements import linear
 from verify.elements.in_time import time_basis
 from verify.errors import InputError
-from verify.section import Section
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.013, youngs_modulus=113e9, density=4470.0)
 PROPPED = replace(STRIP, supports=("clamped", "pinned"))

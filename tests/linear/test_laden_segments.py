@@ -8,11 +8,11 @@ from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near, state
 from verify import analytic_modes as exact_modes
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.exact.modes import mode_shapes
-from verify.section import Section
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 from verify.segments.attached import felt_at
 from verify.segments.buckling import buckling_load
 from verify.segments.crowded import _groups

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from verify.beam import Beam
 from verify.errors import InputError
 from verify.exact import plate_strip
-from verify.exact.plate_strip import plate_error, stiffening
+from verify.exact.plate import plate_error, stiffening
+from verify.problem.beam import Beam
 
 
 def by_ritz(half_width: float, nu: float, powers: int = 9) -> float:

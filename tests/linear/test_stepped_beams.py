@@ -7,12 +7,12 @@ from msgspec.structs import replace
 
 from tests.beams import PAIRED
 from verify import analytic_modes
-from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.models.division import divide, part_counts
-from verify.section import Section
+from verify.linear.mesh import divide, part_counts
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Section
 from verify.segments import linear as segment_model
 from verify.segments import links as chain
 

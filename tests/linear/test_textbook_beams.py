@@ -10,14 +10,14 @@ from scipy.optimize import brentq
 
 from tests.reference.transfer import has_frequency_within
 from verify import analytic_modes
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact.buckling import buckling_load, check_stable
 from verify.exact.modes import exact_frequency_hz
 from verify.options import SUPPORTS
-from verify.section import Section
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 
 # --- Textbook beams ---
 

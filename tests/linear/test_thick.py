@@ -10,12 +10,12 @@ from msgspec.structs import replace
 
 from tests.reference import dense
 from tests.reference.transfer import frequency_near
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact.modes import exact_frequency_hz, solve_modes
-from verify.section import Section
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 from verify.segments import linear as chains
 
 BLOCK = Beam(length=0.43, width=0.019, thickness=0.061, youngs_modulus=113e9, density=4470.0, poissons_ratio=0.31)

@@ -5,15 +5,15 @@ import pytest
 from msgspec.structs import replace
 
 from verify import analytic_modes
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError
-from verify.models.catalogue import MODELS
-from verify.models.fields import phasor
+from verify.linear.catalogue import MODELS
+from verify.linear.fields import phasor
 from verify.motion.free_vibration import free_vibration
 from verify.motion.surface import basis_of
-from verify.section import Section
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.analysis.solution_cache import SolutionCache
 from verify.elements import linear as fem_beam
 from verify.elements.linear import solve_modes as element_modes
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
-from verify.judge.cache import SolutionCache
 from verify.options import SUPPORTS, WALLS
+from verify.problem.beam import Beam
 from verify.segments import linear as segment_model
 from verify.segments.linear import solve_modes as segment_modes
 from verify.segments.walls import wall_factors

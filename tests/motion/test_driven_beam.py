@@ -5,9 +5,9 @@ import pytest
 from reference.slider import driven, hermite_modes, smooth
 
 from verify import free_vibration, simulate
-from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.motion.result import Motion
+from verify.problem.beam import Beam, PointForce
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
 HERTZ, DURATION, PARTS, PLACES = 1310.0, 3.3e-3, 5, (0.11, 0.297)

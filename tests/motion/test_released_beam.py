@@ -5,10 +5,10 @@ import pytest
 from reference.slider import hermite_modes
 
 from verify import free_vibration
-from verify.attached import PointMass
-from verify.beam import Beam
 from verify.errors import InputError
 from verify.motion.free_vibration import CORNERS
+from verify.problem.beam import Beam
+from verify.problem.point_attachments import PointMass
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
 ARM = Beam(

@@ -10,13 +10,13 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from verify import simulate
-from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.motion.contact import FELT
 from verify.motion.pure_wave import terminal_speed
 from verify.motion.result import Motion
-from verify.section import Section
-from verify.slider import Slider, changed
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.slider import Slider, changed
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)

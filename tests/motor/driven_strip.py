@@ -6,9 +6,9 @@ import numpy as np
 from msgspec.structs import replace
 from reference.motor import Waves, waves_of
 
-from verify.beam import Beam, PointForce
 from verify.exact.harmonic import solve_harmonic
 from verify.motor.run import run_motor
+from verify.problem.beam import Beam, PointForce
 
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 HERTZ = 4276.0

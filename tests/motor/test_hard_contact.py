@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from verify.contact import bouncing, landing
 from verify.motor import records
 from verify.motor.records import LANDS, LEAVES
-from verify.slider import Contact, Slider
+from verify.problem.slider import Contact, Slider
 
 GRAVITY, MASS = 9.81e-3, 2.3e-3
 """So little that the wave is 20 pm high: the material below a place moves along by nothing then."""

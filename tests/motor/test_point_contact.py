@@ -9,7 +9,7 @@ from reference.motor import DRAGGED, PRESSED, STUCK, TOUCHED, OneWay, Point, Rid
 
 from verify.contact.landing import lift_off_ratio
 from verify.motor.records import LANDS
-from verify.slider import Contact, Slider
+from verify.problem.slider import Contact, Slider
 
 AMPLITUDE, BACK, MASS, LOAD, STIFFNESS, PERIODS = 1e-6, 0.1, 2e-3, 2.0, 5e6, 5
 SPAN = PERIODS * PERIOD

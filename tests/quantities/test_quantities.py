@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify.analysis.bracket import Bracket
+from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import solve_harmonic
-from verify.attached import PointMass
-from verify.beam import Beam, PointForce
-from verify.device import Device
 from verify.errors import InputError
 from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import solve_modes
-from verify.judge.bracket import Bracket
-from verify.judge.cache import SolutionCache
 from verify.motion.simulate import simulate
+from verify.problem.beam import Beam, PointForce
+from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass
+from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
 from verify.quantities.base import as_plain, as_text
-from verify.slider import Contact, Slider
 from verify.travelling_wave import measure
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.linalg import eigh, null_space
 
-from verify.beam import Beam, PointForce
-from verify.section import Piece
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Piece
 
 Array: TypeAlias = Any
 

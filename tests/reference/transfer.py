@@ -11,7 +11,7 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointForce
 
 _FREE = {"clamped": (2, 3), "pinned": (1, 3), "guided": (0, 2), "free": (0, 1)}
 """Components of (w, psi, M, S) that a support leaves free."""

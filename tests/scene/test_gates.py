@@ -7,10 +7,10 @@ import pytest
 from msgspec.structs import replace
 
 from verify import Beam, load_scene, run_scene
+from verify.analysis.bracket import Bracket
+from verify.analysis.solution_cache import SolutionCache
 from verify.convert import convert
 from verify.errors import InputError
-from verify.judge.bracket import Bracket
-from verify.judge.cache import SolutionCache
 from verify.quantities.base import QUANTITIES, quantity
 from verify.scene.gates import run_gate
 from verify.scene.model import Complex, Gate, Scene

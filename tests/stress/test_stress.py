@@ -30,7 +30,7 @@ def test_standard_method_exceeds_the_tolerance(name):
 
 
 def test_a_lost_digit_fails_a_check(monkeypatch):
-    from verify.models.catalogue import MODELS
+    from verify.linear.catalogue import MODELS
 
     solve = type(MODELS["fem"]).solve_modes
 

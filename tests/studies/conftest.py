@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from verify.judge.cache import SolutionCache
+from verify.analysis.solution_cache import SolutionCache
 from verify.report.result import to_json
 from verify.scene.load import load_scene
 

@@ -3,10 +3,10 @@
 import pytest
 from msgspec.structs import replace
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import frequency_hz
 from verify.errors import InputError
-from verify.judge.cache import SolutionCache
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
 from verify.quantities.base import evaluate
 from verify.scene.load import load_scene
 from verify.studies.axial_inertia import AxialInertia

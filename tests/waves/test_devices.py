@@ -10,14 +10,21 @@ from mpmath import mp, mpf
 from msgspec.structs import replace
 
 from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, segment_model, travelling_wave
-from verify.device import Device, of_impedance
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
-from verify.judge.cache import SolutionCache
-from verify.models.fields import phasor
-from verify.waves.absorber import beam_impedance, best_dashpot, ending, matched_device, matched_impedance, reflection
+from verify.linear.fields import phasor
+from verify.problem.device import Device, of_impedance
 from verify.waves.case import DrivenCase
 from verify.waves.devices import DevicesResonanceError, field_with_devices, powers
 from verify.waves.driven import driven
+from verify.waves.impedance_matching import (
+    beam_impedance,
+    best_dashpot,
+    ending,
+    matched_device,
+    matched_impedance,
+    reflection,
+)
 
 # --- Devices ---
 

@@ -8,11 +8,11 @@ import pytest
 from msgspec.structs import replace
 
 from verify import analytic_modes
-from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.options import SUPPORTS
+from verify.problem.beam import PointForce
 from verify.segments import linear as segment_model
 from verify.segments.assembly import build_chain
 from verify.segments.loads import joint_weights

@@ -8,11 +8,11 @@ from msgspec.structs import replace
 
 from verify import Beam, PointForce, PointMass, analytic_modes, travelling_wave
 from verify.errors import InputError, ResonanceError
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
 from verify.waves.best_phase import TRIED, phases_to_try
 from verify.waves.driven import own_wavenumber
-from verify.waves.lumped import TwoModes, local_swr, local_waves
 from verify.waves.operating_point import Landscape
+from verify.waves.two_modes import TwoModes, local_swr, local_waves
 
 # --- Operating point ---
 

@@ -8,17 +8,17 @@ from msgspec.structs import replace
 
 from tests.reference import transfer
 from verify import Beam, PointForce, analytic_modes, fem_beam, load_scene, segment_model
-from verify.attached import PointMass
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import error_laws
-from verify.judge.cache import SolutionCache
-from verify.models.fields import HarmonicField, wavenumber
+from verify.linear.fields import HarmonicField, wavenumber
+from verify.problem.point_attachments import PointMass
 from verify.quantities.base import evaluate
 from verify.scene.load import scene_from
 from verify.waves.driven import measures, power_imbalance
-from verify.waves.measures import ellipse, fit_waves, fitted_wavenumber, measure, surface_motion
-from verify.waves.medium import Medium
 from verify.waves.series import measure_series, phasors
+from verify.waves.two_waves import ellipse, fit_waves, fitted_wavenumber, measure, surface_motion
+from verify.waves.waveguide import Medium
 
 # --- Travelling wave ---
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array
 from verify.bench.work_precision import Method, Question
 from verify.errors import InputError, near_name
-from verify.models.arrays import Array
-from verify.models.catalogue import MODELS
-from verify.slider import Slider
+from verify.linear.catalogue import MODELS
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 
 SIZES = (24, 49, 98, 196, 392)
 PARTS = {"segment": "segments", "fem": "elements"}

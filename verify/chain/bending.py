@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 from msgspec import Struct, structs
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.chain.statics import MAX_TURN, SETTLED, TOLERANCE, Forces, forces_at, solve_static
 from verify.chain.system import ChainSystem, LinkLoad, build_system
 from verify.checks import check_number, check_whole, check_word
 from verify.errors import InputError, shown
-from verify.models.arrays import Array
-from verify.models.places import Numbers, as_typed, in_a_row
+from verify.linear.places import Numbers, as_typed, in_a_row
 from verify.options import JOINTS, Joints, Wall
+from verify.problem.beam import Beam
 from verify.segments.linear import check
 
 SAFE = 0.9

@@ -10,6 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain.dynamics import at_rest
 from verify.chain.result import ChainMotion
 from verify.chain.stepping import simulate
@@ -17,7 +18,6 @@ from verify.chain.stretching import ElasticMotion, simulate_elastic
 from verify.chain.system import ChainSystem
 from verify.checks import check_word
 from verify.errors import InputError
-from verify.models.arrays import Array
 from verify.options import LINKS, Links
 
 Moved = TypeVar("Moved", ChainMotion, ElasticMotion)

@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array
 from verify.chain.confirmed import confirm_stretching
 from verify.chain.dynamics import at_rest, linearise
 from verify.chain.problems import transient
@@ -19,8 +19,8 @@ from verify.chain.result import ChainMotion
 from verify.chain.stretching import simulate_elastic
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, circular, link_at
 from verify.errors import InputError
-from verify.models.arrays import Array
 from verify.options import Inertia
+from verify.problem.beam import Beam, PointForce
 
 SAMPLES, SAMPLES_PER_PERIOD = 1001, 40
 """Least number of samples, and in a period of the drive."""

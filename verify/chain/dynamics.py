@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from verify.arrays import Array, Indices
 from verify.chain import kinematics, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular
 from verify.checks import check_unmasked
 from verify.errors import InputError
-from verify.models.arrays import Array, Indices
 
 PIVOT_LOSS = 0.1
 """A dependent angle is kept until its lever arm falls below this share of the longest."""

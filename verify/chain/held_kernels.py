@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from verify.arrays import Array, Indices
 from verify.chain.records import HALF, ROLLER, Flat
 from verify.chain.recursion_kernels import direction, hub_motion, solve
 from verify.jit import inline
-from verify.models.arrays import Array, Indices
 
 SETTLED = 1e-9
 """Radians: the change of an angle after which another would be below rounding."""

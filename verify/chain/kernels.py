@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain.held_kernels import hold, project, repivot
 from verify.chain.records import DIVERGED, DONE, ROLLER, RUNNING, TOO_SMALL, Flat, March
 from verify.chain.recursion_kernels import cosines, hub_motion, load_power, loads, moments, shortening, solve, weigh
 from verify.jit import inline, jit
-from verify.models.arrays import Array
 
 
 @inline(fastmath={"contract"})

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain.system import ChainSystem, Rotation, circular, held_points
-from verify.models.arrays import Array
 
 BLOCK = 1 << 18
 """So many angles are looked at in one piece where there are many times."""

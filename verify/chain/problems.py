@@ -6,7 +6,6 @@ from math import pi, sqrt
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
 from verify.chain.confirmed import refuse_unknown
 from verify.chain.dynamics import at_rest, linearise, positions, project
 from verify.chain.result import ChainMotion
@@ -16,6 +15,7 @@ from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rot
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
+from verify.problem.beam import Beam, PointForce
 from verify.segments.links import link_inertia
 
 Progress = Callable[[float], None]

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from verify.models.arrays import Array, Indices
+from verify.arrays import Array, Indices
 
 FREE, ROLLER = 0, 1
 """Kinds of tip."""

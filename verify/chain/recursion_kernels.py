@@ -13,9 +13,9 @@ Dynamics Algorithms, 2008, chapter 7; meeting in the middle is the twisted facto
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain.records import DASHPOT, FREE, HALF, MASS, MOBILITY, ROLLER, SPRING, Flat
 from verify.jit import inline
-from verify.models.arrays import Array
 
 Side = tuple[float, float, float, float, float]
 """A part of the chain seen from its end: mobility (xx, xy, yy) and its acceleration without a force there."""

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain.kinematics import energies, hub
 from verify.chain.system import ChainState, ChainSystem, link_at
 from verify.checks import check_number
 from verify.errors import InputError
-from verify.models.arrays import Array
 from verify.motion.result import Statistics
 
 

@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING
 import msgspec
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array
 from verify.chain.confirmed import from_rest
 from verify.chain.result import ChainMotion
 from verify.chain.stretching import ElasticMotion
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, written
-from verify.models.arrays import Array
-from verify.models.underfoot import standing_at
+from verify.linear.surface import standing_at
 from verify.motion.contact import Coupling, couple, coupling_of, law_of, surface_speed, turned_by
 from verify.motion.records import KEPT_FRICTION, Given, Rider
 from verify.motion.request import check_seen
@@ -28,11 +27,12 @@ from verify.motion.result import END, Slid, Statistics
 from verify.motion.slider_run import damped_field
 from verify.motion.stepping import contact_space, fresh_motion, of_all_steps
 from verify.options import Links
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 from verify.segments.reading import contact_line, contact_piece
-from verify.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.models.fields import HarmonicField
+    from verify.linear.fields import HarmonicField
 
 
 class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):

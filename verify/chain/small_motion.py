@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verify.arrays import Array, Indices
 from verify.errors import InputError
-from verify.models.arrays import Array, Indices
 
 STRAYED = 1e-6
 """A root of a turning chain is neither oscillation nor growth where both its parts are larger than this share of it."""

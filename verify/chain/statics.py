@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain.system import ChainState, ChainSystem, held_points
 from verify.errors import InputError
-from verify.models.arrays import Array
 
 TOLERANCE = 1e-9
 """Residual moment, relative to the largest moment in the chain."""

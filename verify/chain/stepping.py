@@ -7,6 +7,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain import records
 from verify.chain.dynamics import PIVOT_LOSS, accelerated, flatten, held_rows, keep_pivots, project, workspace
 from verify.chain.result import ChainMotion, ChainStatistics
@@ -14,7 +15,6 @@ from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError, near_name
-from verify.models.arrays import Array
 from verify.motion.result import END
 
 Method = Literal["rk4", "adaptive"]

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain import records
 from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
-from verify.models.arrays import Array
 from verify.motion.result import END, Statistics
 from verify.segments.links import joint_masses
 

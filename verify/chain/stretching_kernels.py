@@ -7,9 +7,9 @@ straight chain are the state, so that small stretches keep their digits.
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.chain.records import Elastic
 from verify.jit import inline, jit
-from verify.models.arrays import Array
 
 
 @inline(fastmath={"contract"})

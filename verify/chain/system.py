@@ -10,12 +10,12 @@ from math import pi, radians, sin
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
-from verify.models.arrays import Array
-from verify.models.division import divide
+from verify.linear.mesh import divide
 from verify.options import TIPS, Joints, Load, Tip, Wall
+from verify.problem.beam import Beam, PointForce
 from verify.segments.assembly import build_chain
 from verify.segments.links import Chain
 from verify.segments.loads import joint_weights

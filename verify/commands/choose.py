@@ -23,8 +23,8 @@ def choose(
     RULE=VALUE sets up the models: wall=half,gregory joints=printed theory=timoshenko grading=2 attachment=lever.
     Example: `verify choose steel-cantilever --mode 5 --error 0.1%`
     """
-    from verify.judge.cache import SolutionCache
-    from verify.judge.sizing import choose_of_all
+    from verify.analysis.sizing import choose_of_all
+    from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Column, Result, Table
     from verify.scene.load import load_scene
 
@@ -73,8 +73,8 @@ def _error(text: str) -> float:
 
 
 def _rules(words: tuple[str, ...]) -> Any:
+    from verify.analysis.variants import Rules
     from verify.convert import convert, literal
-    from verify.judge.variants import Rules
 
     pairs = [word.partition("=") for word in words]
     for key, equals, _ in pairs:

@@ -16,7 +16,7 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
 
     Example: `verify measure paper mode.frequency_error model=segment mode=22 count=49`
     """
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate, parse_arguments
     from verify.scene.load import load_scene
 

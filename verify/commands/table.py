@@ -39,8 +39,8 @@ def run_study(
     formats: dict[str, bool],
 ) -> None:
     """Run a study with the scene's section, or its defaults, and 'key=value' options, and show its result."""
+    from verify.analysis.solution_cache import SolutionCache
     from verify.convert import convert
-    from verify.judge.cache import SolutionCache
     from verify.scene.load import load_scene
     from verify.studies.base import STUDIES, studies_of
 

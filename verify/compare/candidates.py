@@ -7,12 +7,12 @@ from itertools import product
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
+from verify.analysis.variants import has_wall, told_by_lever
+from verify.arrays import Array
 from verify.compare.discrete import DiscreteBeam
-from verify.judge.variants import has_wall, told_by_lever
-from verify.models.arrays import Array
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
 from verify.options import THEORIES, WALLS
+from verify.problem.beam import Beam
 
 EXACT, CHAIN, ELEMENTS = "analytic", "segment", "fem"
 EULER = "euler-bernoulli"

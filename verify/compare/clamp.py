@@ -5,10 +5,10 @@ from functools import lru_cache
 import msgspec
 import numpy as np
 
-from verify.attached import PointSpring
-from verify.beam import Beam
+from verify.arrays import Array, Indices
 from verify.compare.candidates import EXACT, Candidate, frequencies_hz
-from verify.models.arrays import Array, Indices
+from verify.problem.beam import Beam
+from verify.problem.point_attachments import PointSpring
 
 SOFTEST, STIFFEST = 0.3, 1e4
 """Range of k_r L/EI: softer is a hinge, stiffer changes nothing that a list shows."""

@@ -6,16 +6,16 @@ from typing import Any, get_args
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
+from verify.analysis.compare import HARDLY, LIKENESS, mac, node_weights, pair_modes
+from verify.arrays import Array, Indices
 from verify.checks import check_whole
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.fit import TOLERANCE, Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of, tables_of
 from verify.errors import InputError
-from verify.judge.compare import HARDLY, LIKENESS, mac, node_weights, pair_modes
-from verify.models.arrays import Array, Indices
 from verify.options import Support
+from verify.problem.beam import Beam
 from verify.report.result import Result
 
 RIGID = 3e-3
@@ -143,7 +143,7 @@ def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
 
 def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
     """Mode shapes of the exact beam at x, (n_modes, len(x)); of fine elements where no exact ones are known."""
-    from verify.models.catalogue import MODELS
+    from verify.linear.catalogue import MODELS
 
     try:
         return np.asarray(MODELS[EXACT].solve_modes(beam, n_modes, None).deflection(x))  # type: ignore[arg-type]

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.errors import InputError
-from verify.models.arrays import Array
-from verify.models.division import divide
-from verify.models.eigen import lowest
-from verify.models.inverse import first_bending
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.linear.eigen import lowest
+from verify.linear.inverse import first_bending
+from verify.linear.mesh import divide
+from verify.linear.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import WALLS
+from verify.problem.beam import Beam
 
 WALL_COMPLIANCE = {"full": 1.0, "rigid": 0.0, "stiff": 0.25}
 """Of the joint at a clamped end, l/EI: EI/l, first link fixed to the wall, 4EI/l."""

@@ -8,12 +8,12 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.analysis.variants import falls_within
+from verify.arrays import Array, Indices
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.clamp import clamp_effect, clamped_ends, fit_clamp
 from verify.errors import InputError
-from verify.judge.variants import falls_within
-from verify.models.arrays import Array, Indices
+from verify.problem.beam import Beam
 
 FLOOR, TOLERANCE, AMBIGUOUS = 1e-9, 1e-3, 2.0
 """Relative differences that solvers leave, and those up to which a candidate agrees; factor of rms of alternatives."""

@@ -9,10 +9,10 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from verify.arrays import Array
 from verify.compare.reading import FrequencyList, ModeShapes, checked_shapes, listed
 from verify.errors import InputError, one_line
 from verify.files import exists
-from verify.models.arrays import Array
 
 UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}
 """Of length, in a metre."""

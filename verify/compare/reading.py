@@ -12,10 +12,10 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.errors import InputError, shown
 from verify.files import exists
-from verify.models.arrays import Array
+from verify.problem.beam import Beam
 
 HERTZ = {"Hz": 1.0, "kHz": 1e3, "rad/s": 0.5 / pi}
 """In one of a unit."""

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
+from verify.analysis.variants import falls_within
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import TOLERANCE, Data, Fit, Identification
-from verify.judge.variants import falls_within
+from verify.problem.beam import Beam
 from verify.report.result import Column, Figure, Result, Table
 
 if TYPE_CHECKING:

@@ -10,15 +10,15 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
+from verify.analysis.compare import HARDLY, node_weights
+from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS
 from verify.compare.compare import Options, compare, exact_shapes, pair_shapes
 from verify.compare.meshes import MeshShapes
 from verify.compare.reading import ModeShapes
 from verify.errors import InputError
-from verify.judge.compare import HARDLY, node_weights
-from verify.models.arrays import Array, Indices
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
+from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 
 STRAIGHT, TURNED = 1e-6, 0.1

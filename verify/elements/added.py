@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
+from verify.arrays import Array
 from verify.elements.curvatures import axial_weights, curvature_matrix, element_curvatures
 from verify.elements.mesh import Elements
-from verify.models.arrays import Array
-from verify.models.pencil import FactoredPencil
+from verify.linear.pencil import FactoredPencil
 
 SAME_PLACE = 1e-9
 """Of a mean element: what stands so near to a node stands on it."""

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.arrays import Array
 
 
 def curvature_weights(lengths: Array, stiffness: Any) -> Array:

@@ -17,8 +17,8 @@ from skfem.mesh import MeshLine1
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
+from verify.arrays import Array, Indices
 from verify.elements.mesh import KEPT
-from verify.models.arrays import Array, Indices
 
 _RULES = {
     "gauss": get_quadrature(RefLine, 6),

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.elements.linear import check, leading_sign
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import damped_stiffness, element_pencil
-from verify.models.arrays import Array
-from verify.models.driven_pencil import check_dense
-from verify.models.eigen import modal_basis
-from verify.models.places import as_typed
-from verify.models.time_basis import TimeBasis, check_held, own_ratios
+from verify.linear.driven_pencil import check_dense
+from verify.linear.eigen import modal_basis
+from verify.linear.places import as_typed
+from verify.linear.time_basis import TimeBasis, check_held, own_ratios
+from verify.problem.beam import Beam
 
 
 @as_typed

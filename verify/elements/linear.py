@@ -7,23 +7,23 @@ from math import pi, sqrt
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.checks import MOST_PARTS, check_number, check_whole, check_word
 from verify.elements.mesh import HELD, KEPT, Elements, build_elements, check_cuts, point_loads
 from verify.elements.pencil import check_unbuckled, damped_stiffness, element_pencil, mesh_buckling_load
-from verify.models.arrays import Array, ComplexArray
-from verify.models.division import Parts
-from verify.models.driven_pencil import check_dampings, harmonic_response, modal_receptance, name_resonance
-from verify.models.eigen import Eigenpairs, check_size, lowest
-from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, unit_drives
-from verify.models.modes import Modes
-from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed, within
-from verify.models.response import forced_response, resonance_distance
-from verify.models.sweeps import FIELD as FREQUENCIES
-from verify.models.sweeps import HarmonicSweep, swept_frequencies, swept_modes
-from verify.models.theory import check_theory
+from verify.linear.driven_pencil import check_dampings, harmonic_response, modal_receptance, name_resonance
+from verify.linear.eigen import Eigenpairs, check_size, lowest
+from verify.linear.fields import RESONANCE, HarmonicField, check_drive, phasor, unit_drives
+from verify.linear.mesh import Parts
+from verify.linear.modes import Modes
+from verify.linear.pencil import FactoredPencil
+from verify.linear.places import Forces, Numbers, as_forces, as_typed, within
+from verify.linear.response import forced_response, resonance_distance
+from verify.linear.sweeps import FIELD as FREQUENCIES
+from verify.linear.sweeps import HarmonicSweep, swept_frequencies, swept_modes
+from verify.linear.theory import check_theory
 from verify.options import THEORIES, Theory
+from verify.problem.beam import Beam, PointForce
 
 FIELD = "n_elements"
 

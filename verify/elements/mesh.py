@@ -17,13 +17,13 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import SHORTEST_SECTION, Beam
+from verify.arrays import Array, Indices
 from verify.errors import InputError
-from verify.models.arrays import Array, Indices
-from verify.models.division import Parts, check_division, divide
-from verify.models.theory import check_theory
+from verify.linear.mesh import Parts, check_division, divide
+from verify.linear.theory import check_theory
 from verify.options import Theory
-from verify.section import Piece
+from verify.problem.beam import SHORTEST_SECTION, Beam
+from verify.problem.cross_section import Piece
 
 KEPT = 4000
 """Nodes up to which a basis is cached: about a kilobyte each."""

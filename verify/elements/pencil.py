@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.arrays import Array, ComplexArray
 from verify.elements.added import added_mass, added_strains, stiffest
 from verify.elements.curvatures import (
     curvature_matrix,
@@ -21,11 +21,11 @@ from verify.elements.curvatures import (
 )
 from verify.elements.mesh import Elements
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.compression import buckling_ratio
-from verify.models.inverse import first_bending
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.linear.compression import buckling_ratio
+from verify.linear.inverse import first_bending
+from verify.linear.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Theory
+from verify.problem.beam import Beam
 
 
 def element_pencil(elements: Elements) -> FactoredPencil:

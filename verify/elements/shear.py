@@ -16,8 +16,8 @@ from skfem.element import DiscreteField
 from skfem.element.element import Element
 from skfem.refdom import RefLine
 
+from verify.arrays import Array, Indices
 from verify.elements.element import _MIDDLE, Line, LineBasis, cubics
-from verify.models.arrays import Array, Indices
 
 
 def sheared(xi: Array, derivative: int = 0) -> tuple[Array, Array]:

@@ -8,9 +8,9 @@ from math import pi, sqrt
 
 import numpy as np
 
-from verify.beam import Beam
 from verify.elements.linear import check, unknowns
 from verify.errors import InputError
+from verify.problem.beam import Beam
 
 _HELD: dict[str, list[str]] = {"pinned": ["u"], "clamped": ["u", "u_x"], "guided": ["u_x"], "free": []}
 

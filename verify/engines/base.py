@@ -8,12 +8,12 @@ from typing import Protocol
 
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_frequency
+from verify.arrays import Array
 from verify.checks import check_whole
 from verify.errors import InputError
-from verify.models.arrays import Array
+from verify.problem.beam import Beam, PointForce, check_frequency
+from verify.problem.slider import Slider
 from verify.registry import Registry
-from verify.slider import Slider
 
 SAMPLES = 200
 """Kept of a run, or every step of a shorter one."""

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.engines.base import SAMPLES, Chain, Rider, Run, near
-from verify.models.arrays import Array
 
 TOLERANCE, WITH_RIDER = 1e-7, 1e-9
 """Relative, of Newton's residual: friction is not part of the Jacobian and needs the second."""

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.engines.base import Chain, Recorder, Rider, Run, near, tree_frequencies
 from verify.errors import one_line
-from verify.models.arrays import Array
 
 
 class Mujoco:

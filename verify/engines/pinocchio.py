@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.engines.base import Chain, Recorder, Rider, Run, near, tree_frequencies
-from verify.models.arrays import Array
 
 Acceleration = Callable[[float, Array, Array], Array]
 

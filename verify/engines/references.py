@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.engines.base import Chain, Rider
-from verify.models.arrays import Array
 
 
 def frequencies(chain: Chain) -> Array:

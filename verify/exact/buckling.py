@@ -4,12 +4,12 @@ from functools import lru_cache
 
 from msgspec.structs import replace
 
-from verify.beam import Beam
 from verify.errors import InputError
-from verify.exact.lineup import line_up
-from verify.exact.minors import Found, trial
+from verify.exact.characteristic import Found, trial
+from verify.exact.layout import line_up
 from verify.exact.roots import nth_root
-from verify.models.places import as_typed
+from verify.linear.places import as_typed
+from verify.problem.beam import Beam
 
 
 @as_typed

@@ -6,10 +6,10 @@ pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model fo
 
 from math import atan, exp, pi, sqrt
 
-from verify.beam import Beam
 from verify.checks import check_word, whole_number
 from verify.errors import InputError, shown
 from verify.options import THEORIES
+from verify.problem.beam import Beam
 
 HIGHEST = 10**30
 """Mode of which there is a frequency."""

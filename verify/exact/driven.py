@@ -11,14 +11,14 @@ from typing import TypeAlias
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 from verify.exact.buckling import check_stable
-from verify.exact.lineup import Lineup, line_up, place_of
+from verify.exact.layout import Lineup, line_up, place_of
 from verify.exact.roots import general_frequency_hz, trials
-from verify.exact.spans import TURN, Spans, solver, spans_of
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, check_drive, phasor, refuse_resonance
+from verify.exact.transfer import TURN, Spans, solver, spans_of
+from verify.linear.fields import RESONANCE, check_drive, phasor, refuse_resonance
+from verify.problem.beam import Beam, PointForce
 
 Read: TypeAlias = Callable[[Array, int], ComplexArray]
 """(x, derivative of any order) -> (len(x),) complex, SI."""

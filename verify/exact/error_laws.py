@@ -12,9 +12,9 @@ from math import ceil, cos, exp, factorial, pi, sin, sqrt
 
 import msgspec
 
-from verify.beam import Beam
 from verify.errors import CutOffError, InputError
 from verify.exact.closed_forms import check_mode, check_uniform, wavenumber_length
+from verify.problem.beam import Beam
 
 MEAN_LIMIT = 2.187653657707005
 """mu at which the error of segments is -3 times that of Hermite elements, so that their mean has the elements' size."""

@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray, Indices
 from verify.checks import check_word
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.exact.lineup import HELD
-from verify.models.arrays import Array, ComplexArray, Indices
-from verify.models.fields import (
+from verify.exact.layout import HELD
+from verify.linear.fields import (
     RESONANCE,
     HarmonicField,
     check_drive,
@@ -22,9 +21,10 @@ from verify.models.fields import (
     unit_drives,
     wavenumber,
 )
-from verify.models.places import Forces, Numbers, as_forces, as_typed
-from verify.models.sweeps import FIELD, HarmonicSweep, one_by_one, swept_frequencies
+from verify.linear.places import Forces, Numbers, as_forces, as_typed
+from verify.linear.sweeps import FIELD, HarmonicSweep, one_by_one, swept_frequencies
 from verify.options import THEORIES
+from verify.problem.beam import Beam, PointForce
 
 EULER = "euler-bernoulli"
 UNKNOWNS = 8

@@ -5,16 +5,16 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.exact.harmonic import solve_harmonic
-from verify.exact.lineup import line_up
+from verify.exact.layout import line_up
 from verify.exact.modes import mode_shapes, solve_modes
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import phasor
-from verify.models.places import as_typed
-from verify.models.time_basis import TimeBasis, check_held
+from verify.linear.fields import phasor
+from verify.linear.places import as_typed
+from verify.linear.time_basis import TimeBasis, check_held
+from verify.problem.beam import Beam, PointForce
 
 DEGREE = 8
 """Of the Taylor pieces: the fastest mode is followed to 1e-9, the others far closer."""

@@ -6,17 +6,17 @@ from math import exp, pi, sqrt
 
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.checks import check_whole, check_word
 from verify.exact.buckling import check_stable
 from verify.exact.closed_forms import check_mode, frequency_hz, root_parts
 from verify.exact.roots import general_frequency_hz
-from verify.models.arrays import Array
-from verify.models.modes import Modes
-from verify.models.places import Numbers, as_typed, places
-from verify.models.sweeps import swept_modes
-from verify.models.theory import check_theory
+from verify.linear.modes import Modes
+from verify.linear.places import Numbers, as_typed, places
+from verify.linear.sweeps import swept_modes
+from verify.linear.theory import check_theory
 from verify.options import THEORIES
+from verify.problem.beam import Beam
 
 MOST_MODES = 100_000
 _MIRRORED = {

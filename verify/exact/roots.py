@@ -4,12 +4,12 @@ from collections.abc import Callable
 from functools import lru_cache
 from math import pi
 
-from verify.beam import Beam
 from verify.checks import check_number, check_word
-from verify.exact.lineup import Lineup, line_up
-from verify.exact.minors import Found, trial
-from verify.models.places import as_typed
+from verify.exact.characteristic import Found, trial
+from verify.exact.layout import Lineup, line_up
+from verify.linear.places import as_typed
 from verify.options import THEORIES
+from verify.problem.beam import Beam
 
 LARGEST_TRIAL = 1e30
 """Beta L: its fourth power, and the squares of what shear and turning make of that, are numbers too."""

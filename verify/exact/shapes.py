@@ -7,12 +7,12 @@ from functools import lru_cache
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.exact.lineup import Lineup, line_up
+from verify.exact.layout import Lineup, line_up
 from verify.exact.roots import wavenumber_length
-from verify.exact.spans import Spans, carried, solver, spans_of
-from verify.models.arrays import Array, ComplexArray
+from verify.exact.transfer import Spans, carried, solver, spans_of
+from verify.problem.beam import Beam
 
 _TOGETHER = 4096
 """Modes times places that are carried at once."""

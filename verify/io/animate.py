@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
-    from verify.models.arrays import Array
+    from verify.arrays import Array
     from verify.scene.model import Scene
 
 FRAMES, FPS = 36, 20

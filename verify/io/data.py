@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
+from verify.analysis.solution_cache import SolutionCache
+from verify.arrays import Array
 from verify.errors import InputError
-from verify.judge.cache import SolutionCache
-from verify.models.arrays import Array
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
 
 if TYPE_CHECKING:
-    from verify.beam import Beam
+    from verify.problem.beam import Beam
     from verify.scene.model import Scene
 
 COUNT, MODES, EXACT = 49, 10, 201

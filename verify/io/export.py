@@ -14,7 +14,7 @@ from verify.io.data import Dataset, Request, dataset
 from verify.report.result import Table, to_json
 
 if TYPE_CHECKING:
-    from verify.models.arrays import Array
+    from verify.arrays import Array
     from verify.scene.model import Scene
 
 DATA = ("modes", "wave", "motion")

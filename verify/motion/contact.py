@@ -6,18 +6,18 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE
-from verify.models.time_basis import Ratio, TimeBasis
-from verify.models.underfoot import standing_at
+from verify.linear.fields import RESONANCE
+from verify.linear.surface import standing_at
+from verify.linear.time_basis import Ratio, TimeBasis
 from verify.motion.records import Law
 from verify.options import NormalChoice
-from verify.slider import Slider
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.models.fields import HarmonicField
+    from verify.linear.fields import HarmonicField
     from verify.motion.surface import Stage
 
 FELT = 1e-3

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from verify.models.arrays import Array, BoolArray, ComplexArray
-from verify.models.time_basis import TimeBasis
+from verify.arrays import Array, BoolArray, ComplexArray
+from verify.linear.time_basis import TimeBasis
 from verify.motion.forcing import Modal, forced_powers, free_part, some, state_of, turns
 from verify.motion.result import Ledger
 from verify.motion.surface import Stage, free_at

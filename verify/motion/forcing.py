@@ -6,11 +6,11 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.beam import PointForce
+from verify.arrays import Array, BoolArray, ComplexArray
 from verify.errors import InputError
-from verify.models.arrays import Array, BoolArray, ComplexArray
-from verify.models.fields import RESONANCE, phasor, refuse_resonance
-from verify.models.time_basis import Ratio, TimeBasis
+from verify.linear.fields import RESONANCE, phasor, refuse_resonance
+from verify.linear.time_basis import Ratio, TimeBasis
+from verify.problem.beam import PointForce
 
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])

@@ -8,18 +8,18 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown
-from verify.models.arrays import Array
-from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
-from verify.models.fields import LARGEST_SLOPE
-from verify.models.intervals import extremes
-from verify.models.places import Numbers, as_typed, places_in_a_row, real_array
-from verify.models.time_basis import Ratio, TimeBasis, damping_in
+from verify.linear.catalogue import EXACT_MODES, MODELS, kept_modes
+from verify.linear.fields import LARGEST_SLOPE
+from verify.linear.intervals import extremes
+from verify.linear.places import Numbers, as_typed, places_in_a_row, real_array
+from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import check_free_phases, free_part, modal, state_of
 from verify.motion.result import EndState
 from verify.motion.surface import basis_of
+from verify.problem.beam import Beam
 
 Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
 """A mode's number, a function of x (metres), or places and values with straight lines between them."""

@@ -5,8 +5,8 @@ A slider on a belt, at the end of the file, is friction alone.
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import inline, jit
-from verify.models.arrays import Array
 from verify.motion import records as rec
 from verify.motion.records import Law, Space
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import inline, jit
-from verify.models.arrays import Array
 from verify.motion import records as rec
 from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power, pulled
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads

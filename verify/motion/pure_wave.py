@@ -4,18 +4,18 @@ from math import isfinite
 
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.checks import check_number
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
-from verify.models.arrays import Array
-from verify.models.search import zero_between
+from verify.linear.search import zero_between
 from verify.motion.contact import law_of
 from verify.motion.forcing import CONSTANT
 from verify.motion.records import Law, Rider, V, X
 from verify.motion.stepping import Sliding, fresh_motion, run_stages
 from verify.motion.surface import ANALYTIC_DEGREE, NO_MODES, Stage
-from verify.slider import Slider
+from verify.problem.beam import Beam
+from verify.problem.slider import Slider
 
 STEPS = 1024
 """Of one period."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from verify.models.arrays import Array, Indices
+from verify.arrays import Array, Indices
 
 X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL, PUSHED, SWEPT, HARDEST = range(10)
 """Entries of `Rider.motion`: what the slider carries from step to step. Height and climb are those of a slider held on

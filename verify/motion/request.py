@@ -8,19 +8,19 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array
 from verify.checks import check_kind, check_number, check_unmasked, check_whole
 from verify.errors import InputError, shown, written
-from verify.models.arrays import Array
-from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
-from verify.models.division import part_counts
-from verify.models.fields import check_drive
-from verify.models.places import Numbers, places_in_a_row
-from verify.models.time_basis import Ratio, TimeBasis, damping_in
+from verify.linear.catalogue import EXACT_MODES, MODELS, kept_modes
+from verify.linear.fields import check_drive
+from verify.linear.mesh import part_counts
+from verify.linear.places import Numbers, places_in_a_row
+from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP, check_phase
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
-from verify.slider import Slider
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration

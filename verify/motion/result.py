@@ -2,11 +2,11 @@
 
 from msgspec import Struct
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.errors import InputError
-from verify.models.arrays import Array
 from verify.motion.contact import Coupling, Margins
-from verify.slider import Slider
+from verify.problem.beam import Beam
+from verify.problem.slider import Slider
 
 END, INTERRUPTED = "end", "interrupted"
 """Why a run stopped that went as far as it was asked to."""

@@ -4,11 +4,11 @@ from math import pi, sqrt
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.checks import check_number
 from verify.errors import InputError
-from verify.models.arrays import Array
 from verify.motion.records import SLIPS, STICKS, Law
-from verify.slider import GRAVITY
+from verify.problem.slider import GRAVITY
 
 STEPS = 4096
 STEPS_PER_PERIOD = 4000

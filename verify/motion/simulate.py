@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.beam import Beam
 from verify.checks import check_kind
-from verify.models.catalogue import MODELS
-from verify.models.places import Forces, Numbers, as_forces, as_typed
-from verify.models.time_basis import TimeBasis
-from verify.models.underfoot import ground_at
+from verify.linear.catalogue import MODELS
+from verify.linear.places import Forces, Numbers, as_forces, as_typed
+from verify.linear.surface import ground_at
+from verify.linear.time_basis import TimeBasis
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_free_phases, check_no_resonance
 from verify.motion.request import STEPS_PER_PERIOD, Envelope, Request, requested
@@ -20,7 +19,8 @@ from verify.motion.slider_run import Laid, begin, coupling_on, put_on, slide, st
 from verify.motion.surface import Stage, basis_of, free_at, on_ground, stages_from_rest, steady_stage
 from verify.motion.validity import margins_of
 from verify.options import Start
-from verify.slider import Slider
+from verify.problem.beam import Beam
+from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration

@@ -8,12 +8,11 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, written
-from verify.models.arrays import Array, ComplexArray
-from verify.models.catalogue import MODELS, check_count
-from verify.models.time_basis import TimeBasis
-from verify.models.underfoot import standing_at
+from verify.linear.catalogue import MODELS, check_count
+from verify.linear.surface import standing_at
+from verify.linear.time_basis import TimeBasis
 from verify.motion import records
 from verify.motion.contact import (
     Coupling,
@@ -42,10 +41,11 @@ from verify.motion.step_control import (
 from verify.motion.stepping import Sliding, fresh_motion, of_all_steps, on_beam, run_stages
 from verify.motion.surface import Stage
 from verify.motion.validity import margins_of
-from verify.slider import Slider
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.models.fields import HarmonicField
+    from verify.linear.fields import HarmonicField
 
 
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:

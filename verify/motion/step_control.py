@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.arrays import Array
 from verify.errors import InputError
-from verify.models.arrays import Array
-from verify.models.time_basis import TimeBasis
+from verify.linear.time_basis import TimeBasis
 from verify.motion.request import Request
 from verify.motion.result import Ledger, Motion
 from verify.motion.surface import Stage, cut, free_at

@@ -6,13 +6,13 @@ from time import perf_counter, thread_time
 import msgspec
 import numpy as np
 
-from verify.beam import PointForce
-from verify.models.arrays import Array
-from verify.models.fields import phasor
+from verify.arrays import Array
+from verify.linear.fields import phasor
 from verify.motion import records
 from verify.motion.forcing import turns
 from verify.motion.records import Books, Drive, Kept, Rider, Space, Surface
 from verify.motion.surface import Stage
+from verify.problem.beam import PointForce
 
 CHUNK = 20_000
 """Steps between two checks for an interrupt."""

@@ -7,17 +7,17 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.catalogue import MODELS, check_count
-from verify.models.places import SLACK
-from verify.models.time_basis import Ratio, TimeBasis, taylor_table
-from verify.models.underfoot import LEFT_BEAM, Ground
+from verify.linear.catalogue import MODELS, check_count
+from verify.linear.places import SLACK
+from verify.linear.surface import LEFT_BEAM, Ground
+from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
+from verify.problem.beam import Beam, PointForce
 
 if TYPE_CHECKING:
-    from verify.models.fields import HarmonicField
+    from verify.linear.fields import HarmonicField
 
 Shapes = Callable[[Array, int], Array]
 ANALYTIC_DEGREE = 8
@@ -286,7 +286,7 @@ def steady_edges(field: "HarmonicField") -> tuple[Array, int]:
         fixed = [*(m.position for m in beam.mass), *(s.position for s in beam.spring)]
         places = [*(f.position for f in field.forces), *steps, *fixed]
         return np.union1d(np.linspace(0.0, length, cells + 1), places), ANALYTIC_DEGREE
-    from verify.models.division import divide
+    from verify.linear.mesh import divide
 
     parts: Any = divide(field.beam, field.count)
     return np.asarray(parts.nodes * parts.unit), 3

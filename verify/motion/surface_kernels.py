@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import FAST, inline
-from verify.models.arrays import Array
 from verify.motion import records as rec
 from verify.motion.records import Drive, Here, Law
 

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.beam import Beam
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
 from verify.exact.error_laws import LAWS, expected_error, leading_error
-from verify.models.fields import lossless_wavenumber
+from verify.linear.fields import lossless_wavenumber
 from verify.motion.contact import Margins
-from verify.slider import GRAVITY
+from verify.problem.beam import Beam
+from verify.problem.slider import GRAVITY
 
 if TYPE_CHECKING:
     from verify.motion.request import Request

@@ -6,8 +6,8 @@ ends tell nothing. So its way is that of the surface and what the relative speed
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import inline
-from verify.models.arrays import Array
 from verify.motion import records as rec
 from verify.motion.friction_kernels import friction
 from verify.motion.records import Law

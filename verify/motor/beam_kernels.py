@@ -9,8 +9,8 @@ begins; within it the surface has, on the average, half of what the forces give 
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import FAST, inline
-from verify.models.arrays import Array
 from verify.motion.records import OMEGA, Z_IM
 from verify.motor import records as rec
 from verify.motor.records import BeamAnswer, Feet

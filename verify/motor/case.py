@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.motion.request import requested
 from verify.motion.slider_run import damped_field
@@ -18,10 +17,11 @@ from verify.motor.result import MotorRun, MotorState
 from verify.motor.run import MODES, STEPS_PER_PERIOD, run_motor
 from verify.motor.setup import Setup, carry_out, lay_out
 from verify.options import Links, Start
-from verify.slider import Slider
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.models.fields import HarmonicField
+    from verify.linear.fields import HarmonicField
 
 
 class MotorCase(msgspec.Struct, frozen=True, kw_only=True):

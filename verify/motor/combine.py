@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from verify.errors import InputError
-from verify.slider import Slider
+from verify.problem.slider import Slider
 
 CHAIN = "chain"
 """Name of the nonlinear chain beside the linear models."""

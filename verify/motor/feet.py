@@ -5,18 +5,18 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array, Indices
 from verify.errors import InputError, written
-from verify.models.arrays import Array, Indices
-from verify.models.places import SLACK
-from verify.models.search import zero_between
-from verify.models.time_basis import TimeBasis
-from verify.models.underfoot import ground_at, standing_at
+from verify.linear.places import SLACK
+from verify.linear.search import zero_between
+from verify.linear.surface import ground_at, standing_at
+from verify.linear.time_basis import TimeBasis
 from verify.motion.request import Request
 from verify.motion.surface import Stage, basis_of
 from verify.motor import records
 from verify.motor.records import Feet, Hard, Log, Rubbing
-from verify.slider import Foot, Slider
+from verify.problem.beam import Beam
+from verify.problem.slider import Foot, Slider
 
 EVENTS = 20_000
 PASSES = 4

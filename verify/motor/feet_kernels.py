@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from verify.arrays import Array, Indices
 from verify.jit import FAST, inline
-from verify.models.arrays import Array, Indices
 from verify.motion.records import MOVING, STILL
 from verify.motor import records as rec
 from verify.motor.records import Feet, Line, Log

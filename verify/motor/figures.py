@@ -14,7 +14,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.models.underfoot import standing_at
+from verify.linear.surface import standing_at
 from verify.motor.case import MotorCase, blocks
 from verify.motor.result import MotorRun, uninterrupted
 from verify.motor.settling import (

@@ -7,8 +7,8 @@ speed and of the normal force. Points with tangential stiffness stretch until th
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import inline
-from verify.models.arrays import Array
 from verify.motor import records as rec
 from verify.motor.beam_kernels import WIDER
 from verify.motor.records import Feet

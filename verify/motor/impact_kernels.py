@@ -6,8 +6,8 @@ by halving, wherever in a step they fall. So is where friction turns round.
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import inline, jit
-from verify.models.arrays import Array
 from verify.motion.records import Surface
 from verify.motion.surface_kernels import find_piece, set_factors
 from verify.motor import records as rec

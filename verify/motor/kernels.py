@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.jit import inline, jit
-from verify.models.arrays import Array
 from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import between, find_piece, rotate_half, set_factors
 from verify.motor import records as rec

@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 from msgspec.structs import replace
 
+from verify.arrays import Array
 from verify.chain.confirmed import from_rest
 from verify.chain.result import ChainMotion
 from verify.chain.ride import joint_steps, line_rows, piece_at
@@ -13,9 +14,8 @@ from verify.chain.stretching import ElasticMotion
 from verify.chain.system import axial_stiffness, build_system
 from verify.checks import check_whole
 from verify.errors import InputError
-from verify.models.arrays import Array
-from verify.models.places import SLACK
-from verify.models.underfoot import LEFT_BEAM
+from verify.linear.places import SLACK
+from verify.linear.surface import LEFT_BEAM
 from verify.motion.records import READ, Drive, Surface
 from verify.motion.request import Request
 from verify.motion.surface import Stage

@@ -8,16 +8,16 @@ from math import cos, pi
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.checks import check_number, check_whole
-from verify.models.arrays import Array
 from verify.motion.pure_wave import wave_stage
 from verify.motion.surface import cut
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of, fresh_log
 from verify.motor.figures import AtSpeed
 from verify.motor.stepping import Riding, run_stages
-from verify.slider import Contact, Foot, Slider
+from verify.problem.beam import Beam
+from verify.problem.slider import Contact, Foot, Slider
 
 WARM = 2
 """Periods before the one that counts: what gives way along the surface forgets how it began."""

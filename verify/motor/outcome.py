@@ -4,15 +4,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from verify.models.arrays import Array
-from verify.models.fields import travelling_wavenumber
-from verify.models.underfoot import standing_at
+from verify.arrays import Array
+from verify.linear.fields import travelling_wavenumber
+from verify.linear.surface import standing_at
 from verify.motion.result import Statistics
 from verify.motion.slider_run import reached
 from verify.motor import records
 from verify.motor.result import MotorLedger, MotorMargins, MotorRun, MotorState
 from verify.motor.stepping import Riding
-from verify.slider import Slider
+from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
     from verify.motor.setup import Setup

@@ -7,7 +7,7 @@ point touches the mirror image of the beam, above it.
 
 from typing import NamedTuple
 
-from verify.models.arrays import Array, Indices
+from verify.arrays import Array, Indices
 
 X, V = range(2)
 """Columns of `Feet.body`: distance travelled, speed."""

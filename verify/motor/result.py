@@ -2,10 +2,10 @@
 
 from msgspec import Struct
 
-from verify.beam import Beam
-from verify.models.arrays import Array
+from verify.arrays import Array
 from verify.motion.contact import Margins
 from verify.motion.result import Ride
+from verify.problem.beam import Beam
 
 
 class MotorMargins(Struct, frozen=True, kw_only=True):

@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import Beam
 from verify.checks import check_kind, check_number, check_word, plain, several
 from verify.errors import InputError, written
-from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.linear.places import Forces, Numbers, as_forces, as_typed
 from verify.motion.request import Request, check_same_beam, requested
 from verify.motor.combine import CHAIN, check_together
 from verify.motor.feet import Placed
 from verify.motor.result import MotorRun
 from verify.motor.setup import carry_out, lay_out
 from verify.options import LINKS, Links, Start
-from verify.slider import Slider
+from verify.problem.beam import Beam
+from verify.problem.slider import Slider
 
 MODES = 80
 """Of the exact beam, unless given."""

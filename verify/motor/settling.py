@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.arrays import Array
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun, MotorState
-    from verify.slider import Slider
+    from verify.problem.slider import Slider
 
 BLOCK = 12
 """Periods between two looks at whether the means have settled."""

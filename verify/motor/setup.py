@@ -6,10 +6,10 @@ from time import perf_counter
 import msgspec
 import numpy as np
 
+from verify.arrays import Array
 from verify.errors import InputError
-from verify.models.arrays import Array
-from verify.models.time_basis import TimeBasis
-from verify.models.underfoot import check_one_ground, ground_at, standing_at
+from verify.linear.surface import check_one_ground, ground_at, standing_at
+from verify.linear.time_basis import TimeBasis
 from verify.motion.contact import FELT, Coupling, Margins, friction_speed
 from verify.motion.forcing import check_no_resonance
 from verify.motion.request import Request, check_same_modes

@@ -4,8 +4,8 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
+from verify.arrays import Array, ComplexArray, Indices
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray, Indices
 from verify.motor import records
 from verify.motor.case import Block, MotorCase, blocks
 from verify.motor.feet import Placed, feet_of

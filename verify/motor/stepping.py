@@ -5,9 +5,8 @@ from collections.abc import Callable, Sequence
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
-from verify.models.arrays import Array, Indices
-from verify.models.underfoot import LEFT_BEAM, standing_at
+from verify.arrays import Array, Indices
+from verify.linear.surface import LEFT_BEAM, standing_at
 from verify.motion.records import Surface
 from verify.motion.request import Request
 from verify.motion.result import END
@@ -16,6 +15,7 @@ from verify.motion.surface import Stage
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of, fresh_log, hard_of, rubbing_of
 from verify.motor.records import BeamAnswer, Feet, GivenSurface, Hard, Line, Log, Rubbing
+from verify.problem.beam import Beam
 
 
 class Riding(msgspec.Struct, eq=False, kw_only=True):

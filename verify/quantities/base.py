@@ -19,15 +19,15 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 import msgspec
 from msgspec import Meta
 
+from verify.analysis.bracket import Bracket
 from verify.checks import plain
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
-from verify.judge.bracket import Bracket
-from verify.models.naming import AMONG
+from verify.linear.naming import AMONG
 from verify.registry import Registry
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.scene.model import Scene as Scene  # noqa: PLC0414
 else:
     Scene = Any

@@ -14,8 +14,8 @@ from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall
 from verify.quantities.slider import SliderOptions, TimeOptions, motion_arguments
 
 if TYPE_CHECKING:
+    from verify.analysis.solution_cache import SolutionCache
     from verify.chain.ride import ChainRide
-    from verify.judge.cache import SolutionCache
 
 Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
 Seconds = Annotated[float, Meta(gt=0, description="s, from rest")]

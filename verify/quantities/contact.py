@@ -9,9 +9,9 @@ from msgspec import Meta
 from verify.checks import check_sizes
 from verify.contact import bouncing, landing, layer
 from verify.errors import InputError
+from verify.problem.slider import GRAVITY
 from verify.quantities.base import Scene, quantity
 from verify.quantities.options import Mass, Mu, Sizes, Slope, drive_frequency
-from verify.slider import GRAVITY
 
 HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
 SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]
@@ -147,7 +147,7 @@ def wave_force(scene: Scene, contact: WaveContact) -> float:
 @quantity("slider.wave_force_order", unit="1", reads=("beam", "drive"))
 def wave_force_order(scene: Scene, contact: WaveContact, *, counts: Sizes) -> float:
     """Observed order of that force in the number of springs, against the Winkler layer; steps in proportion."""
-    from verify.judge.compare import observed_order
+    from verify.analysis.compare import observed_order
 
     check_sizes("counts", counts)
     exact = layer.force(contact.contact_half_angle, contact.speed_ratio, contact.epsilon)

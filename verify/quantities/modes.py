@@ -4,17 +4,17 @@ from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
+from verify.analysis.bracket import Bracket
 from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.judge.bracket import Bracket
-from verify.models.catalogue import MODELS
-from verify.models.naming import MEAN, model_meta
+from verify.linear.catalogue import MODELS
+from verify.linear.naming import MEAN, model_meta
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
 
 BEAM = ("beam",)
 Reading = Annotated[
@@ -42,7 +42,7 @@ def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
 @quantity("mode.plate_error", unit="1", reads=BEAM)
 def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
     """Frequency as a thin plate with free long edges, relative to Euler-Bernoulli theory, less 1."""
-    from verify.exact.plate_strip import plate_error
+    from verify.exact.plate import plate_error
 
     return plate_error(scene.beam, mode)
 
@@ -107,7 +107,7 @@ class OrdersOrMean(Orders, frozen=True, kw_only=True):
 @quantity("mode.order", unit="1", reads=BEAM)
 def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
     """Observed order of the frequency error over N; outside the asymptotic range an InputError."""
-    from verify.judge.compare import settled_order
+    from verify.analysis.compare import settled_order
 
     expected = None if of.model == MEAN else MODELS.named(of.model).order(scene.beam, **dict(of.settings))
     errors = [cache.frequency_error(of.model, n, of.mode, of.settings) for n in of.counts]
@@ -117,7 +117,7 @@ def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
 @quantity("mode.shape_order", unit="1", reads=BEAM)
 def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None = None) -> float:
     """Observed order of the shape error over N; outside the asymptotic range an InputError."""
-    from verify.judge.compare import settled_order
+    from verify.analysis.compare import settled_order
 
     return settled_order(of.counts, [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts])
 
@@ -138,7 +138,7 @@ def count_needed(
     error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
 ) -> float:
     """Number of segments or elements from which on the frequency error is at most `error`."""
-    from verify.judge.sizing import enough_from
+    from verify.analysis.sizing import enough_from
 
     return enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal")).count
 

@@ -11,7 +11,7 @@ from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed, Reading
     from verify.motor.result import MotorRun

@@ -8,16 +8,16 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options
-from verify.beam import PointForce, check_frequency
 from verify.checks import Relative
 from verify.errors import InputError
-from verify.models import catalogue
-from verify.models.catalogue import MODELS
-from verify.models.naming import MEAN, model_meta
+from verify.linear import catalogue
+from verify.linear.catalogue import MODELS
+from verify.linear.naming import MEAN, model_meta
+from verify.problem.beam import PointForce, check_frequency
 from verify.quantities.base import Place, Scene
 
 if TYPE_CHECKING:
-    from verify.judge.cache import Settings
+    from verify.analysis.solution_cache import Settings
 
 Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]
 Size = Annotated[int, Meta(ge=1, description="N, segments or elements; not for model = analytic")]

@@ -10,13 +10,13 @@ from msgspec.structs import replace
 from verify import options
 from verify.checks import check_sizes
 from verify.errors import InputError
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
+from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
-from verify.slider import Slider, changed
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.motion.result import Ledger, Motion
 
 Time = Annotated[float, Meta(gt=0, description="s; default: the scene's motion.duration")]
@@ -171,7 +171,7 @@ def order(
     steps: Annotated[tuple[Annotated[float, Meta(gt=0)], ...], Meta(description="three or more, s")] | None = None,
 ) -> float:
     """Observed order of the slider's displacement in N, against the exact beam, or in the step, against a 16th."""
-    from verify.judge.compare import relative_error, settled_order
+    from verify.analysis.compare import relative_error, settled_order
 
     def displacement(by: TimeOptions, step: float | None = None) -> float:
         return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
@@ -278,7 +278,7 @@ def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window:
     """Gamma of two waves fitted to the phasors of the driven beam's motion in a window, without slider."""
     import numpy as np
 
-    from verify.models.places import places
+    from verify.linear.places import places
     from verify.waves.series import measure_series
     from verify.waves.window import check_window
 

@@ -14,10 +14,10 @@ from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
-    from verify.models.fields import HarmonicField
-    from verify.waves.absorber import Ending
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.linear.fields import HarmonicField
     from verify.waves.case import DrivenCase
+    from verify.waves.impedance_matching import Ending
 
 Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
 DRIVEN = ("beam", "drive")
@@ -109,7 +109,7 @@ def axis_ratio(
 ) -> float:
     """Signed axis ratio of the surface ellipse at x, or its mean over whole half wavelengths; below 0 towards +x."""
     from verify.waves.driven import measured_alone
-    from verify.waves.measures import ellipse, surface_motion
+    from verify.waves.two_waves import ellipse, surface_motion
 
     if x is not None and window is not None:
         raise InputError(f"window = {list(window)} with x = {x!r}: give one of the two")
@@ -176,7 +176,7 @@ def lumped_swr(
     modes: Annotated[tuple[opt.Mode, opt.Mode], Meta(description="mode numbers of the two")] = (21, 22),
 ) -> float:
     """Local standing-wave ratio of two equal modes in quadrature, the lumped-parameter model of the wave."""
-    from verify.waves.lumped import TwoModes
+    from verify.waves.two_modes import TwoModes
 
     return float(TwoModes(beam=scene.beam, modes=modes).local_swr(x)[0])
 
@@ -195,7 +195,7 @@ FromRightEnd = Annotated[float, Meta(ge=0, description="m from the right end")]
 
 
 def _ending(scene: Scene, position: float, frequency_hz: float | None, turning: bool = False) -> "Ending":
-    from verify.waves.absorber import ending
+    from verify.waves.impedance_matching import ending
 
     if position >= scene.beam.length:
         raise InputError(f"position = {position!r} lies off the beam: give less than {scene.beam.length!r} m")
@@ -222,7 +222,7 @@ def absorber_reflection(
     model: Annotated[Literal["analytic"], Meta(description="whole beam; default: a half-infinite one")] | None = None,
 ) -> float:
     """Gamma behind an absorbing device: of a half-infinite beam, or of the scene's exact beam in its middle half."""
-    from verify.waves.absorber import reflection
+    from verify.waves.impedance_matching import reflection
 
     if (ratio is None) == (resistance is None):
         raise InputError(f"ratio = {ratio!r} and resistance = {resistance!r}: give one of the two")
@@ -241,7 +241,7 @@ def absorber_reflection(
 def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float, turning: bool) -> float:
     """Gamma in the middle half between the other forces and a device at x, which replaces what acts there."""
     from verify.analytic_modes import solve_harmonic
-    from verify.device import of_impedance
+    from verify.problem.device import of_impedance
     from verify.waves.devices import field_with_devices
     from verify.waves.driven import measured_alone
 

@@ -10,7 +10,7 @@ from verify.report.result import Figure
 from verify.units import in_words
 
 if TYPE_CHECKING:
-    from verify.beam import Beam
+    from verify.problem.beam import Beam
 
 BODY, SLIDER, FORCE, SPRING, SOFT = MODEL_COLORS["segment"], MODEL_COLORS["fem"], "#cc3f76", "#2a9d5c", "#7d8590"
 THINNEST, THICKEST = 0.10, 0.34

@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.scene.model import Complex, Gate, Scene
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
 
 
 class GateResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -73,7 +73,7 @@ def band(gate: Gate) -> tuple[float, float]:
 
 def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
     """(reason for failing or '', fraction of the tolerance)."""
-    from verify.judge.bracket import Bracket
+    from verify.analysis.bracket import Bracket
 
     kinds = {Bracket: "a bracket needs expect alone", complex: "a complex value needs expect = { re, im } with within"}
     remedy = kinds.get(type(value), "a real value needs expect with within, or at_least, at_most")

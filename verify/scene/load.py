@@ -172,7 +172,7 @@ def _position(entries: list[Any], step: str, field: str) -> int:
 
 def _drop_obsolete(tables: dict[str, Any], keys: Iterable[str]) -> None:
     """Remove what an override made obsolete: the reference of a new expectation, the parameter of another law."""
-    from verify.slider import OF_ONE_LAW
+    from verify.problem.slider import OF_ONE_LAW
 
     for i, gate in enumerate(tables.get("gate", ()) if isinstance(tables.get("gate"), list) else ()):
         names = (i, gate.get("id")) if isinstance(gate, dict) else ()

@@ -14,7 +14,7 @@ from verify.scene.load import load_scene
 from verify.scene.model import Scene
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Result
 
 Progress: TypeAlias = Callable[[str], None]
@@ -67,7 +67,7 @@ def run_scene(
     With overrides ('beam.length=0.4') gates are skipped that hold for the values in the file. Raises InputError where
     the scene is wrong or a study cannot run; a gate that fails or cannot be evaluated is in the result.
     """
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES
     from verify.scene.warnings import deflection_warning, unit_warnings
     from verify.studies.base import studies_of

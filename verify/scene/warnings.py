@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 from verify.scene.model import Scene
 
 if TYPE_CHECKING:
-    from verify.beam import Beam
-    from verify.section import Piece
+    from verify.problem.beam import Beam
+    from verify.problem.cross_section import Piece
 
 SOUND = (30.0, 30_000.0)  # sqrt(E/rho) of materials, soft rubber to diamond, m/s
 MAX_DENSITY = 25_000.0  # above osmium, kg/m^3

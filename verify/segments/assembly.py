@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from verify.beam import Beam
 from verify.checks import MOST_PARTS, check_whole, check_word
-from verify.models.division import divide
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.linear.mesh import divide
+from verify.linear.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import ATTACHMENTS, JOINTS, WALLS, Attachment, Joints, Theory, Wall
+from verify.problem.beam import Beam
 from verify.segments.links import (
     FIELD,
     Chain,

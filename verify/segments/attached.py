@@ -23,7 +23,7 @@ from functools import cache
 
 import numpy as np
 
-from verify.models.arrays import Array, BoolArray, Indices
+from verify.arrays import Array, BoolArray, Indices
 from verify.segments.links import Chain
 from verify.segments.loads import joint_weights
 

@@ -5,11 +5,11 @@ from typing import Any
 
 from msgspec.structs import replace
 
-from verify.beam import Beam
 from verify.errors import InputError
-from verify.models.compression import buckling_ratio
-from verify.models.places import as_typed
+from verify.linear.compression import buckling_ratio
+from verify.linear.places import as_typed
 from verify.options import Attachment, Joints, Wall
+from verify.problem.beam import Beam
 from verify.segments.assembly import build_chain, chain_pencil, check_set_up
 
 _PASSES = 60

@@ -3,10 +3,10 @@
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.errors import InputError
-from verify.models.arrays import Array
-from verify.models.division import Parts, part_counts
+from verify.linear.mesh import Parts, part_counts
+from verify.problem.beam import Beam
 from verify.segments.attached import shear_give
 from verify.segments.crowded import felt_together
 from verify.segments.links import Body, Chain, elastic_ends, series_compliances

@@ -25,7 +25,7 @@ from math import ceil, floor
 import msgspec
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.arrays import Array
 from verify.segments.attached import felt_at, is_mended, places_on
 from verify.segments.links import Chain
 

@@ -5,14 +5,14 @@ from functools import partial
 
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array
 from verify.checks import check_word
-from verify.models.arrays import Array
-from verify.models.driven_pencil import check_dense
-from verify.models.eigen import modal_basis
-from verify.models.places import as_typed
-from verify.models.time_basis import TimeBasis, check_held, own_ratios
+from verify.linear.driven_pencil import check_dense
+from verify.linear.eigen import modal_basis
+from verify.linear.places import as_typed
+from verify.linear.time_basis import TimeBasis, check_held, own_ratios
 from verify.options import LINES, LOADS, Attachment, Joints, Line, Load, Wall
+from verify.problem.beam import Beam
 from verify.segments.assembly import build_chain, chain_pencil
 from verify.segments.linear import check, damped, leading_sign
 from verify.segments.links import Chain

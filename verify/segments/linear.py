@@ -8,22 +8,22 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.checks import MOST_DASHPOT, check_number, check_whole, check_word
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.division import check_division
-from verify.models.driven_pencil import check_dampings, harmonic_response, modal_receptance, name_resonance
-from verify.models.eigen import Eigenpairs, check_size, lowest
-from verify.models.fields import HarmonicField, check_drive, phasor, unit_drives
-from verify.models.modes import Modes
-from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed, within
-from verify.models.response import forced_response
-from verify.models.sweeps import FIELD as FREQUENCIES
-from verify.models.sweeps import HarmonicSweep, swept_frequencies, swept_modes
-from verify.models.theory import check_theory
+from verify.linear.driven_pencil import check_dampings, harmonic_response, modal_receptance, name_resonance
+from verify.linear.eigen import Eigenpairs, check_size, lowest
+from verify.linear.fields import HarmonicField, check_drive, phasor, unit_drives
+from verify.linear.mesh import check_division
+from verify.linear.modes import Modes
+from verify.linear.pencil import FactoredPencil
+from verify.linear.places import Forces, Numbers, as_forces, as_typed, within
+from verify.linear.response import forced_response
+from verify.linear.sweeps import FIELD as FREQUENCIES
+from verify.linear.sweeps import HarmonicSweep, swept_frequencies, swept_modes
+from verify.linear.theory import check_theory
 from verify.options import ATTACHMENTS, LOADS, READINGS, THEORIES, Attachment, Joints, Load, Reading, Theory, Wall
+from verify.problem.beam import Beam, PointForce
 from verify.segments.assembly import build_chain, chain_pencil, check_set_up
 from verify.segments.links import FIELD, Chain, elastic_ends, free_joints
 from verify.segments.loads import joint_weights

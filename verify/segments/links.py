@@ -12,10 +12,10 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
-from verify.models.arrays import Array
-from verify.models.division import Parts
-from verify.models.inverse import first_bending
+from verify.arrays import Array
+from verify.linear.inverse import first_bending
+from verify.linear.mesh import Parts
+from verify.problem.beam import Beam
 
 FIELD = "n_segments"
 

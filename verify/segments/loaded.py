@@ -32,8 +32,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.models.arrays import Array, ComplexArray
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.arrays import Array, ComplexArray
+from verify.linear.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.segments.crowded import felt_together
 from verify.segments.links import Chain, right_of, stiffness_at_joints
 

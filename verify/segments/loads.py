@@ -7,7 +7,7 @@ for the load and for the reading alike: order 4.
 
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.arrays import Array
 from verify.segments.links import Chain
 
 

@@ -13,8 +13,8 @@ import msgspec
 from verify.segments.links import elastic_ends
 
 if TYPE_CHECKING:
-    from verify.beam import Beam
-    from verify.section import Piece
+    from verify.problem.beam import Beam
+    from verify.problem.cross_section import Piece
 
 _WALL_ORDERS = {"half": 2, "welded": 2, "third-order": 3}
 """Of walls whose joint is of less than order 4."""

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from verify.models.arrays import Array
-from verify.models.spline import natural_or_flat
+from verify.arrays import Array
+from verify.linear.spline import natural_or_flat
 from verify.segments.links import Chain, plain_curvatures, with_ends
 
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from verify.models.arrays import Array, ComplexArray
-from verify.models.spline import natural_or_flat
+from verify.arrays import Array, ComplexArray
+from verify.linear.spline import natural_or_flat
 from verify.segments.links import Chain
 from verify.segments.loaded import angles, end_turns, spans, turns
 

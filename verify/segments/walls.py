@@ -6,7 +6,7 @@ for one link length (the trapezoidal rule); at a clamped wall that rule needs an
 
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.arrays import Array
 
 # What a clamped end adds to the weights 1 of its joints, from the wall on, in l/EI.
 _CORRECTIONS: dict[str, tuple[float, ...]] = {

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.attached import PointMass, PointSpring
-from verify.beam import Beam, PointForce
-from verify.models.catalogue import MODELS
-from verify.section import Section
+from verify.linear.catalogue import MODELS
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
 from verify.stress import reference
 from verify.stress.engine import check, worst
 from verify.stress.reference import CANTILEVER, FREE, MATRICES, PI, STRIP, D, Parts, equal, relative_error, sparse

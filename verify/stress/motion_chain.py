@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import PointForce
-from verify.slider import GRAVITY, Slider
+from verify.problem.beam import PointForce
+from verify.problem.slider import GRAVITY, Slider
 from verify.stress.engine import check, worst
 from verify.stress.reference import STRIP, D
 

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.problem.beam import Beam
 
 D = Decimal
 PI = D("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803")

@@ -11,9 +11,9 @@ from time import process_time
 
 from msgspec.structs import replace
 
-from verify.beam import PointForce
 from verify.errors import InputError, one_line
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
+from verify.problem.beam import PointForce
 from verify.stress.engine import check
 from verify.stress.reference import CANTILEVER, STRIP
 
@@ -21,7 +21,7 @@ DISCRETE = {"segment": "segments", "fem": "elements"}
 MODES = 3
 SIZES = (5000, 15_000, 50_000)
 _CHILD = """
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
 from verify.stress.reference import STRIP
 peaks = []
 for n in (300, *{sizes}):

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
-from verify.device import Device
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
+from verify.problem.beam import Beam, PointForce
+from verify.problem.device import Device
 from verify.stress.engine import check, worst
 from verify.stress.reference import CANTILEVER, PI, STRIP, D, cos, sin, sinh
 

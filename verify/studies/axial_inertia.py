@@ -18,8 +18,8 @@ from verify.studies.charts import model_style, percent, plot_lines, si
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from verify.judge.cache import SolutionCache
-    from verify.models.arrays import Array
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.arrays import Array
     from verify.options import Inertia
     from verify.report.result import Result
     from verify.scene.model import Scene

@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.registry import Registry
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Result
     from verify.scene.model import Scene
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from verify.judge.variants import Variant
+    from verify.analysis.variants import Variant
     from verify.report.result import Column, Movie
 
 THIN, BROAD = 1.4, 4.0
@@ -32,14 +32,14 @@ def percent(name: str, form: str = "+.4g") -> "Column":
 
 def sized_title(model: str, count: int | None) -> str:
     """'49 segments', 'exact beam'."""
-    from verify.models.catalogue import MODELS
+    from verify.linear.catalogue import MODELS
 
     return f"{count} {MODELS[model].title}" if count else MODELS[model].title
 
 
 def model_style(model: str) -> dict[str, Any]:
     """Colour and line width of a model in every chart."""
-    from verify.models.catalogue import MODELS
+    from verify.linear.catalogue import MODELS
     from verify.report.plotting import MODEL_COLORS
 
     color = MODEL_COLORS.get(model, MODELS[model].colour)

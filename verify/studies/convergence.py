@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 from msgspec import Meta
 
+from verify.analysis.variants import Rules, Variant
 from verify.errors import InputError, NoBracketError
-from verify.judge.variants import Rules, Variant
 from verify.studies.base import Progress, Study
 from verify.studies.charts import percent, si, variant_colors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Result
     from verify.scene.model import Scene
 
@@ -43,7 +43,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve every variant at every size and time it. Raises InputError for a size that cannot be solved."""
-        from verify.judge.cache import comparable
+        from verify.analysis.solution_cache import comparable
         from verify.report.result import Column, Figure, Result, Table
 
         models, left_out = comparable(cache.beam, self.counts, max(self.modes))
@@ -76,8 +76,8 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:
         """A row for each mode, variant and size, in this order."""
-        from verify.judge.compare import ORDER_FLOOR
-        from verify.models.catalogue import MODELS
+        from verify.analysis.compare import ORDER_FLOOR
+        from verify.linear.catalogue import MODELS
         from verify.timing import interleaved_medians
 
         seconds: dict[tuple[Variant, int], float] = {}
@@ -111,8 +111,8 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
-        from verify.judge.cache import has_bracket
-        from verify.models.naming import MEAN
+        from verify.analysis.solution_cache import has_bracket
+        from verify.linear.naming import MEAN
 
         rows: list[Row] = []
         reasons: dict[str, None] = {}

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.motion.result import Motion as Run
     from verify.report.result import Result, Table
     from verify.scene.model import Scene
@@ -89,7 +89,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.exact.in_time import check_beam
-        from verify.models.catalogue import MODELS, bounding, discrete
+        from verify.linear.catalogue import MODELS, bounding, discrete
         from verify.motion.simulate import simulate
         from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result

@@ -15,7 +15,7 @@ from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed, Timed
     from verify.motor.result import MotorRun
@@ -96,7 +96,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     steps_per_period: Annotated[int, Meta(ge=16, le=4096, description="Steps in a period, at least.")] = 61
 
     def __post_init__(self) -> None:
-        from verify.models.naming import Among
+        from verify.linear.naming import Among
 
         for model in self.models:
             Among("time_basis").check(model, "motor.models")
@@ -122,7 +122,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
-        from verify.models.catalogue import MODELS
+        from verify.linear.catalogue import MODELS
         from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
 

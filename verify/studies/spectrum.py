@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from msgspec import Meta
 
+from verify.analysis.variants import Rules, Variant
 from verify.errors import InputError
-from verify.judge.variants import Rules, Variant
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, variant_colors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from verify.judge.cache import SolutionCache
-    from verify.models.arrays import Array
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.arrays import Array
     from verify.report.result import Figure, Result
     from verify.scene.model import Scene
 
@@ -43,7 +43,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
-        from verify.judge.cache import EULER, comparable, theory_of
+        from verify.analysis.solution_cache import EULER, comparable, theory_of
         from verify.report.result import Column, Figure, Result, Table
         from verify.words import theory_name
 
@@ -94,7 +94,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def _theories(self, cache: "SolutionCache") -> dict[str, list[float]]:
         """Relative change of each frequency by each other theory; those without a value on this beam are left out."""
-        from verify.exact.plate_strip import plate_error
+        from verify.exact.plate import plate_error
         from verify.options import THEORIES
 
         closed = cache.beam.supports == ("pinned", "pinned") and cache.beam.uniform
@@ -112,9 +112,9 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """First, middle and last mode above one another; no figure where exact shapes are not available."""
         import numpy as np
 
+        from verify.analysis.solution_cache import theory_of
         from verify.exact.modes import mode_shape
-        from verify.judge.cache import theory_of
-        from verify.models.catalogue import MODELS
+        from verify.linear.catalogue import MODELS
         from verify.report.result import Figure
 
         theory = theory_of(variants[0].settings)

@@ -15,7 +15,7 @@ from verify.studies.base import Progress, Study
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Result
     from verify.scene.model import Scene
 
@@ -125,7 +125,7 @@ def run_sweep(
 
 def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
     """Values by quantity, number of claims that agree, reason for a missing value, of one combination."""
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import evaluate
     from verify.scene.load import scene_from
     from verify.studies.claims import computed

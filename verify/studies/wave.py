@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from verify.judge.cache import SolutionCache
-    from verify.models.fields import HarmonicField
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.linear.fields import HarmonicField
     from verify.report.result import Result
     from verify.scene.model import Scene
     from verify.waves.case import DrivenCase
@@ -47,8 +47,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
-        from verify.models.catalogue import MODELS, discrete
-        from verify.waves.measures import middle_half
+        from verify.linear.catalogue import MODELS, discrete
+        from verify.waves.two_waves import middle_half
         from verify.waves.window import check_window
 
         if len(scene.forces) != 2 or scene.drive is None:
@@ -71,7 +71,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Solve the fields of all models. Raises InputError."""
         from msgspec.structs import replace
 
-        from verify.models.catalogue import MODELS, discrete
+        from verify.linear.catalogue import MODELS, discrete
         from verify.quantities.waves import FieldOptions, driven_case
         from verify.report.result import Column, Figure, Result, Table
         from verify.waves.driven import driven, measured_alone
@@ -160,7 +160,7 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     """
     import numpy as np
 
-    from verify.waves.measures import lifted
+    from verify.waves.two_waves import lifted
 
     turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
     places = np.linspace(0.25, 0.75, POINTS) * field.beam.length
@@ -174,7 +174,7 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
 def _draw_envelopes(ax: "Axes", fields: Fields) -> None:
     import numpy as np
 
-    from verify.models.catalogue import MODELS
+    from verify.linear.catalogue import MODELS
 
     x = np.linspace(0.0, fields["analytic"].beam.length, 601)
     lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
@@ -185,7 +185,7 @@ def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
     def set_up(ax: "Axes") -> Any:
         import numpy as np
 
-        from verify.models.catalogue import MODELS
+        from verify.linear.catalogue import MODELS
         from verify.units import unit_of, unit_over
 
         exact = fields["analytic"]

@@ -13,7 +13,7 @@ The fastest allowed phase of an interval is one of these or an end of it. Each i
 import msgspec
 import numpy as np
 
-from verify.models.arrays import Array, ComplexArray
+from verify.arrays import Array, ComplexArray
 
 TRIED = 10
 """Phases that are tried at each frequency."""

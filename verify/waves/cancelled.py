@@ -5,8 +5,8 @@ from math import sqrt
 
 import numpy as np
 
+from verify.arrays import ComplexArray
 from verify.errors import InputError
-from verify.models.arrays import ComplexArray
 
 _KEPT = 1e-5
 """Of a sum: rounding of its terms with which it is refused. What was lost was a twentieth of it to all of it."""

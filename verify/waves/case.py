@@ -4,10 +4,10 @@ from typing import Any
 
 import msgspec
 
-from verify.beam import Beam, PointForce
-from verify.device import Device
 from verify.errors import InputError
-from verify.models.catalogue import MODELS
+from verify.linear.catalogue import MODELS
+from verify.problem.beam import Beam, PointForce
+from verify.problem.device import Device
 
 
 class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):

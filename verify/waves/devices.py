@@ -20,14 +20,14 @@ from typing import TypeAlias
 import numpy as np
 from msgspec.structs import replace
 
-from verify.attached import PointSpring
-from verify.beam import Beam, PointForce, check_frequency
+from verify.arrays import ComplexArray
 from verify.checks import check_kind, check_number, several
-from verify.device import Device
 from verify.errors import InputError, ResonanceError, shown
-from verify.models.arrays import ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response, wavenumber
-from verify.models.places import Forces, as_forces, as_typed
+from verify.linear.fields import RESONANCE, HarmonicField, combined, phasor, unit_response, wavenumber
+from verify.linear.places import Forces, as_forces, as_typed
+from verify.problem.beam import Beam, PointForce, check_frequency
+from verify.problem.device import Device
+from verify.problem.point_attachments import PointSpring
 from verify.waves.cancelled import check_kept
 from verify.waves.imposed import Solve
 from verify.waves.poles import Conditions, UnsettledError, field_at_pole, is_near, is_resonant, looked_at

@@ -8,18 +8,18 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.analysis.compare import relative_error, settled_order
+from verify.arrays import Array
 from verify.errors import InputError, ResonanceError
-from verify.judge.compare import relative_error, settled_order
-from verify.models.arrays import Array
-from verify.models.catalogue import MODELS
-from verify.models.fields import HarmonicField, phasor
-from verify.models.search import Least, least_over
-from verify.models.sweeps import HarmonicSweep
+from verify.linear.catalogue import MODELS
+from verify.linear.fields import HarmonicField, phasor
+from verify.linear.search import Least, least_over
+from verify.linear.sweeps import HarmonicSweep
+from verify.problem.beam import Beam, PointForce
 from verify.waves.case import DrivenCase
-from verify.waves.found import WaveMeasures
 from verify.waves.imposed import driven_field
-from verify.waves.measures import (
+from verify.waves.results import WaveMeasures
+from verify.waves.two_waves import (
     amplitudes_of,
     check_moving,
     crest_speed,
@@ -35,7 +35,7 @@ from verify.waves.measures import (
 from verify.waves.window import check_window
 
 if TYPE_CHECKING:
-    from verify.judge.cache import SolutionCache
+    from verify.analysis.solution_cache import SolutionCache
 
 Window: TypeAlias = tuple[float, float]
 

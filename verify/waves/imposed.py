@@ -11,10 +11,10 @@ from contextlib import suppress
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, ResonanceError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response
+from verify.linear.fields import RESONANCE, HarmonicField, combined, phasor, unit_response
+from verify.problem.beam import Beam, PointForce
 from verify.waves.cancelled import check_kept
 from verify.waves.poles import (
     STEP,

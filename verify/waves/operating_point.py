@@ -3,13 +3,13 @@
 import msgspec
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array
 from verify.errors import InputError
-from verify.models.arrays import Array
+from verify.problem.beam import Beam, PointForce
 from verify.waves.best_phase import TRIED, phases_to_try
 from verify.waves.case import DrivenCase
-from verify.waves.measures import middle_half
-from verify.waves.unit_waves import Gaps, UnitDrive, figures_of, superposed
+from verify.waves.superposition import Gaps, UnitDrive, figures_of, superposed
+from verify.waves.two_waves import middle_half
 
 PHASES_DEG = (5.0, 175.0)
 """Between two drives, in size: what is searched."""

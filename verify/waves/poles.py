@@ -20,10 +20,10 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.arrays import Array, ComplexArray
 from verify.errors import ResonanceError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, combined, unit_response
+from verify.linear.fields import RESONANCE, HarmonicField, combined, unit_response
+from verify.problem.beam import Beam, PointForce
 
 STEP = 1e-5
 """Relative distance of the frequencies that an interpolation or a derivative takes."""

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from verify.beam import Beam
+from verify.arrays import Array, ComplexArray
 from verify.checks import check_number
 from verify.errors import InputError, ZeroFieldError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import wavenumber
-from verify.models.places import as_typed, in_a_row, places, real_array
-from verify.models.spline import natural_or_flat
-from verify.waves.found import WaveMeasures
-from verify.waves.measures import STILL, fit_waves, fitted_wavenumber, measures_of
-from verify.waves.medium import Medium
+from verify.linear.fields import wavenumber
+from verify.linear.places import as_typed, in_a_row, places, real_array
+from verify.linear.spline import natural_or_flat
+from verify.problem.beam import Beam
+from verify.waves.results import WaveMeasures
+from verify.waves.two_waves import STILL, fit_waves, fitted_wavenumber, measures_of
+from verify.waves.waveguide import Medium
 from verify.waves.window import check_clear, stated_wavenumber
 
 

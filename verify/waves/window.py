@@ -5,10 +5,10 @@ from itertools import accumulate
 
 import numpy as np
 
-from verify.beam import Beam
 from verify.checks import LARGEST, plain
 from verify.errors import InputError, WindowError, shown
-from verify.models.fields import wavenumber
+from verify.linear.fields import wavenumber
+from verify.problem.beam import Beam
 from verify.words import as_written
 
 MOST_HALVES = 10_000

@@ -1,0 +1,112 @@
+"""What every model brings to time: its free modes, read along the beam, and how point forces load them."""
+
+from collections.abc import Callable, Sequence
+from math import comb, factorial
+from typing import TypeAlias
+
+import msgspec
+import numpy as np
+
+from verify.arrays import Array, ComplexArray
+from verify.errors import InputError
+from verify.linear.pencil import FactoredPencil
+from verify.linear.places import Numbers, as_asked, keep_lines, places
+from verify.problem.beam import Beam, PointForce
+
+Ratio: TypeAlias = float | Array
+"""Of damping: of all modes, or (n,), of each."""
+
+
+class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """All modes that one model moves in, of unit modal mass (SI)."""
+
+    model: str
+    """Its name."""
+    count: int | None
+    """Segments or elements; None for the exact beam, whose modes are cut off."""
+    beam: Beam
+    """The beam that moves in them."""
+    omegas: Array
+    """(n,), rad/s, undamped."""
+    shapes: Callable[[Array, int], Array]
+    """(x, derivative) -> (n, len(x)), in 1/sqrt(kg) per metre^derivative; from the right where it jumps. Positive
+    where the beam first moves off its left end, as the shapes of `Modes`."""
+    loads: Callable[[float], Array]
+    """Position in metres -> (n,), the load of every mode under a unit transverse force there."""
+    edges: Array
+    """(pieces + 1,), metres: between them the shapes are polynomials of `degree`."""
+    degree: int
+    """Of those polynomials."""
+    method: str
+    """Where the modes come from."""
+    tail: Callable[[Sequence[PointForce], float, Ratio], Callable[[Array, int], ComplexArray]] | None = None
+    """What modes beyond the last would add: (forces, frequency_hz, damping) -> (x, derivative) -> (len(x),) complex.
+
+    None where no mode is cut off.
+    """
+    ratios: Array | None = None
+    """(n,), what the beam's loss factor comes to at each mode's own frequency: half of it times the share of what has
+    loss in the mode's stiffness. None where all has: half of it is every mode's."""
+    turns: Callable[[], Array] | None = None
+    """() -> (n, bodies): how far the bodies of `beam.mass` turn; None where they turn as the shapes do there."""
+
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes")
+
+    def body_turns(self) -> Array:
+        """How far the bodies of `beam.mass` turn, (n, bodies), in 1/(sqrt(kg) m)."""
+        if self.turns is not None:
+            return self.turns()
+        return np.asarray(self.shapes(np.array([mass.position for mass in self.beam.mass]), 1))
+
+    def deflection(self, x: Numbers) -> Array:
+        """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg); a number is a row of one. Raises InputError off it."""
+        return as_asked(self.shapes(places("x", x, self.beam.length).ravel(), 0), x)
+
+
+def own_ratios(pencil: FactoredPencil, vectors: Array, lossy: ComplexArray) -> Array:
+    """`TimeBasis.ratios`, (n,), of modes (columns) and D with its losses, (m,): of the first order in them.
+
+    What a loss factor and what has none make of a mode together couples it to the others by no more than that.
+    """
+    energies = pencil.strain(vectors) ** 2
+    return np.asarray(0.5 * (lossy.imag @ energies) / (pencil.stiffness @ energies))
+
+
+def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:
+    """The damping ratio of every mode, one or (n,): `ratio` if given, else what the beam's loss factor comes to.
+
+    Raises InputError where a mode would not swing.
+    """
+    if ratio is not None or basis.ratios is None:
+        return 0.5 * basis.beam.loss_factor if ratio is None else ratio
+    if basis.ratios.max() >= 1.0:
+        worst = int(basis.ratios.argmax())
+        raise InputError(
+            f"beam.loss_factor = {basis.beam.loss_factor!r} comes to a ratio of {basis.ratios[worst]:.3g} in mode "
+            f"{worst + 1}, which does not swing: give a smaller one or modal_damping"
+        )
+    return basis.ratios
+
+
+def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:
+    """Coefficients in xi = (x - edge) / length of pieces first..last-1, (pieces, degree + 1, rows).
+
+    Expanded about the middle of each piece: an edge that rounding puts on the wrong side of a node would be read
+    off the neighbour.
+    """
+    lengths = np.diff(edges[first : last + 1])
+    middles = edges[first:last] + 0.5 * lengths
+    parts = np.array([shapes(middles, d) * lengths**d / factorial(d) for d in range(degree + 1)])
+    powers = range(degree + 1)
+    shift = np.array([[comb(d, k) * (-0.5) ** (d - k) if d >= k else 0.0 for d in powers] for k in powers])
+    return np.ascontiguousarray(np.einsum("kd,drp->pkr", shift, parts))
+
+
+def check_held(beam: Beam) -> None:
+    """Raise InputError for supports that let the beam drift away as a whole."""
+    if beam.rigid_motions:
+        raise InputError(
+            f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), in which a beam that "
+            "is driven or let go may drift off: clamp an end, pin both, or give beam.spring"
+        )
