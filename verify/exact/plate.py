@@ -75,23 +75,16 @@ def stiffening(half_width: float, poissons_ratio: float) -> float:
     (1 - g - nu)^2 sqrt(1 + g) tanh(q sqrt(1 + g)) = (1 + g - nu)^2 sqrt(1 - g) tanh(q sqrt(1 - g)),
     whose lowest root lies between a narrow strip's sqrt(1 - nu^2) and 1.
     """
-    narrow = sqrt(1.0 - poissons_ratio * poissons_ratio)
+    nu = poissons_ratio
+    narrow = sqrt(1.0 - nu * nu)
     # Bisection down to neighbouring numbers: in narrow strips rounding hides the change of sign from a root finder.
     below, above = narrow, 1.0
-    while True:
-        middle = 0.5 * (below + above)
-        if not below < middle < above:
-            return below / narrow - 1.0
-        if _edge(middle, half_width, poissons_ratio) < 0.0:
-            below = middle
-        else:
-            above = middle
-
-
-def _edge(g: float, q: float, nu: float) -> float:
-    """Residual of the characteristic equation at a free edge, negative below the root."""
-    fast, slow = sqrt(1.0 + g), sqrt(1.0 - g)
-    return (1.0 - g - nu) ** 2 * fast * tanh(q * fast) - (1.0 + g - nu) ** 2 * slow * tanh(q * slow)
+    while below < (g := 0.5 * (below + above)) < above:
+        fast, slow = sqrt(1.0 + g), sqrt(1.0 - g)
+        residual = (1.0 - g - nu) ** 2 * fast * tanh(half_width * fast)
+        residual -= (1.0 + g - nu) ** 2 * slow * tanh(half_width * slow)
+        below, above = (g, above) if residual < 0.0 else (below, g)
+    return below / narrow - 1.0
 
 
 def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, mode: int) -> float:
