@@ -26,7 +26,7 @@ MOST_UNKNOWNS = 25_000
 def plate_error(beam: Beam, mode: int) -> float:
     """Frequency of a mode as a thin plate, relative to Euler-Bernoulli theory, less 1.
 
-    The mode is symmetric across the width, without a nodal line along the strip: 0 for a narrow strip, at most
+    The mode is symmetric across the width, without a nodal line along the strip: 0 for a narrow strip,
     1/sqrt(1 - nu^2) - 1 for one that bends as a cylinder. The thickness has no influence. Exact for pinned and guided
     ends; an upper bound within about 1e-6 (|nu| <= 0.4) otherwise. Raises InputError for anything but a uniform
     rectangular strip, at least `FLATNESS` times as wide as thick, and for a mode without a counterpart in the plate.
