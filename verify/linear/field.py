@@ -40,12 +40,12 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def omega(self) -> float:
         """2 pi f, rad/s, of a field at one frequency."""
-        return 2.0 * np.pi * float(self.frequency_hz)  # type: ignore[arg-type]
+        return 2.0 * np.pi * float(self.frequency_hz)
 
     @property
     def wavenumber(self) -> complex:
         """Wavenumber of the exact beam by the same theory, 1/m; its imaginary part is never positive."""
-        return wavenumber(self.beam, float(self.frequency_hz), self.theory)  # type: ignore[arg-type]
+        return wavenumber(self.beam, float(self.frequency_hz), self.theory)
 
     def deflection(self, x: Numbers) -> ComplexArray:
         """Complex deflection at x (m), (*shape of x), m; a number is a row of one. Raises InputError off the beam."""
