@@ -19,7 +19,7 @@ from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, forces_on, frequencies_on, vector_on
-from verify.linear.system import FEW, StructuralSystem
+from verify.linear.system import FEW, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_held
 from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
@@ -250,6 +250,14 @@ class DiscreteModel(BeamModel):
         """Number of elastic modes."""
         return max(self.n_unknowns - self.beam.rigid_motions, 0)
 
+    def check_memory(self, n_modes: int = 0) -> None:
+        """Raise InputError, before anything is built, for a system of more than 10 GB: `system.memory`."""
+        if memory(self.n_unknowns, n_modes) > 10e9:
+            raise InputError(
+                f"count = {self.count}: {self.n_unknowns} unknowns with {n_modes} modes exceed the largest system of "
+                f"10 GB, lower the number of {self.parts} or of modes"
+            )
+
     @property
     def _omega_unit(self) -> float:
         """rad/s of a dimensionless frequency of 1."""
@@ -258,6 +266,7 @@ class DiscreteModel(BeamModel):
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes. Raises InputError for more than it has, and for a compression beyond buckling."""
         self.check_n_modes(n_modes)
+        self.check_memory(n_modes)
         values, vectors = self.system.modes(n_modes)
         vectors = self.normalised(vectors)
         return Modes(
@@ -266,6 +275,7 @@ class DiscreteModel(BeamModel):
             length=self.beam.length,
             frequencies_hz=np.sqrt(values) * (self._omega_unit / (2.0 * pi)),
             shapes=self.line(vectors),
+            method=self.system.method(n_modes),
             **self.modes_of(vectors),
         )
 
