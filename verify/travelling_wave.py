@@ -130,7 +130,7 @@ class WaveMeasures:
 
     @cached_property
     def ideal_axis_ratio(self) -> float:
-        """k h/2, by Timoshenko's theory times psi/w' of a running wave: the axis ratio of a pure one, unsigned."""
+        """K h/2, by Timoshenko's theory times psi/w' of a running wave: the axis ratio of a pure one, unsigned."""
         return float(self.guide.axis_ratio(self.omega, self.waves.wavenumber))
 
     @cached_property

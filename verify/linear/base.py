@@ -7,7 +7,6 @@ for models of parts: they give the system, how a place weighs its unknowns, and 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import fields
-from functools import cached_property
 from math import pi, sqrt
 from typing import Any, ClassVar, Literal
 
@@ -232,7 +231,7 @@ class DiscreteModel(BeamModel):
 
     @abstractmethod
     def lossy_stiffness(self, omega: float) -> Any:
-        """d of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
+        """D of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
 
         Real where nothing is lost.
         """

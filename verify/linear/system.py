@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, BoolArray, ComplexArray
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 
 DENSE = 150
