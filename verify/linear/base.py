@@ -296,9 +296,9 @@ class DiscreteModel(BeamModel):
         check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
         omegas = 2.0 * pi * frequencies
         omega2 = (omegas / self._omega_unit) ** 2
-        damped = [self.lossy_stiffness(float(omega)) for omega in omegas]
-        factors = damped[0] / self.system.stiffness
-        couples = bool(np.ptp(np.imag(factors)) > 1e-15 * abs(factors).max()) or len({id(d) for d in damped}) > 1
+        damped, last = self.lossy_stiffness(float(omegas[0])), self.lossy_stiffness(float(omegas[-1]))
+        factors = damped / self.system.stiffness
+        couples = bool(np.ptp(np.imag(factors)) > 1e-15 * abs(factors).max()) or not np.array_equal(damped, last)
         if modal_damping and (couples or rows):
             raise InputError(
                 f"modal_damping = {modal_damping!r} beside {'devices' if rows else 'a loss in a part of the stiffness'}"
@@ -311,9 +311,9 @@ class DiscreteModel(BeamModel):
                 raise self._at_resonance(float(frequencies[at[0]]))
             return found
         found = np.empty((len(omegas), *loads.shape), dtype=complex)
-        for i, (w2, d) in enumerate(zip(omega2, damped, strict=True)):
+        for i, w2 in enumerate(omega2):
             try:
-                found[i] = self.system.harmonic(loads, float(w2), d, rows)
+                found[i] = self.system.harmonic(loads, float(w2), self.lossy_stiffness(float(omegas[i])), rows)
             except np.linalg.LinAlgError:
                 raise self._at_resonance(float(frequencies[i])) from None
         return found
