@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from verify.problem.slider import Contact, Foot, Slider
     from verify.scene.load import load_scene
     from verify.scene.run import run_scene
-    from verify.waves.results import WaveMeasures
+    from verify.travelling_wave import WaveMeasures
 
 __all__ = [
     "Beam",
@@ -95,9 +95,9 @@ _HOMES = {
     "verify.motor.run": ("run_motor", "run_motors"),
     "verify.scene.load": ("load_scene",),
     "verify.scene.run": ("run_scene",),
+    "verify.travelling_wave": ("WaveMeasures",),
     "verify.problem.cross_section": ("Section",),
     "verify.problem.slider": ("Contact", "Foot", "Slider"),
-    "verify.waves.results": ("WaveMeasures",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

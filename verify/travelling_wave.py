@@ -17,6 +17,7 @@ backwards at the crests, where a slider touches them.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,14 +31,16 @@ from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
 from verify.waves.best_drive import BestDrive, best_drive
 from verify.waves.best_frequency import best_frequency
-from verify.waves.driven_case import DrivenCase
+from verify.waves.driven_case import DrivenCase, driven
 from verify.waves.from_time_series import field_of_series, phasors
 from verify.waves.impedance_matching import matched_device
 from verify.waves.operating_point import OperatingMap, OperatingPoint, maximum_crest_speed
-from verify.waves.results import TwoWaves
-from verify.waves.two_waves import fit_waves, two_waves
+from verify.waves.two_waves import TwoWaves, fit_waves, two_waves
 from verify.waves.waveguide import Waveguide
 from verify.waves.window import Window, middle_half
+
+if TYPE_CHECKING:
+    from verify.analysis.solution_cache import SolutionCache
 
 __all__ = [
     "BestDrive",
@@ -53,6 +56,7 @@ __all__ = [
     "matched_device",
     "maximum_crest_speed",
     "measure",
+    "measure_case",
     "measure_series",
     "middle_half",
     "phasors",
@@ -130,7 +134,7 @@ class WaveMeasures:
 
     @cached_property
     def ideal_axis_ratio(self) -> float:
-        """k h/2, by Timoshenko's theory times psi/w' of a running wave: the axis ratio of a pure one, unsigned."""
+        """Of a pure wave, unsigned: k h/2, by Timoshenko's theory times psi/w' of a running wave."""
         return float(self.guide.axis_ratio(self.omega, self.waves.wavenumber))
 
     @cached_property
@@ -152,11 +156,6 @@ class WaveMeasures:
         self.waves.check_travelling()
         least, mean, largest = self.signed_area_range
         return (largest - least) / abs(mean)
-
-    @property
-    def sense(self) -> str:
-        """The sense in which most surface points turn, in (x, y)."""
-        return "counter-clockwise" if self.signed_area_range[1] < 0 else "clockwise"
 
     @cached_property
     def crest_speed(self) -> float:
@@ -195,6 +194,11 @@ def measure(field: HarmonicField, window: Window, wave_number: complex | None = 
         x=np.linspace(start, end, n),
         fine=np.linspace(start, end, max(n, n_fine)),
     )
+
+
+def measure_case(case: DrivenCase, cache: "SolutionCache", window: Window | None = None) -> WaveMeasures:
+    """The same of a case's field, in the middle half by default, at the wavenumber of its model. Raises InputError."""
+    return measure(driven(case, cache), window or middle_half(case.beam), case.wavenumber(case.frequency_hz))
 
 
 def measure_series(
@@ -266,9 +270,9 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
     power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
     # the third derivative jumps at a force, the second at a couple: quadrature in between
-    jumps = [one.position for one in (*field.forces, *beam.mass, *beam.spring) if one.position < middle]
+    jumps = [f.position for f in field.forces] + [m.position for m in beam.mass] + [s.position for s in beam.spring]
     cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
-    edges = np.unique(np.concatenate([cells, jumps]))
+    edges = np.unique([*cells, *(x for x in jumps if x < middle)])
     points, weights = np.polynomial.legendre.leggauss(8)
     half = 0.5 * np.diff(edges)[:, None]
     x, weights = (edges[:-1, None] + half * (points + 1.0)).ravel(), (half * weights).ravel()

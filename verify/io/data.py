@@ -110,15 +110,12 @@ def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | 
 
 
 def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.waves.case import DrivenCase
-    from verify.waves.driven import driven
+    from verify.waves.driven_case import DrivenCase, driven
 
     if scene.drive is None or not scene.forces:
         raise InputError("what = 'wave': the scene has no drive with forces, add [drive] or export modes")
     case = DrivenCase(
-        beam=scene.beam,
-        model=request.model,
-        count=count,
+        model=MODELS[request.model].build(scene.beam, count),
         forces=scene.forces,
         frequency_hz=scene.drive.frequency_hz,
         kind=scene.drive.kind,

@@ -279,12 +279,13 @@ def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window:
     import numpy as np
 
     from verify.linear.places import places
-    from verify.waves.series import measure_series
-    from verify.waves.window import check_window
+    from verify.travelling_wave import measure_series
+    from verify.waves.window import check_span, check_waves
 
     arguments = motion_arguments(scene, by)
     hertz = arguments["frequency_hz"]
-    check_window(scene.beam, [force.position for force in arguments["forces"]], hertz, window)
+    check_span(scene.beam, [force.position for force in arguments["forces"]], window)
+    check_waves(scene.beam, hertz, window)
     x = places("window", np.linspace(*window, POINTS), scene.beam.length)
     samples = int(SAMPLES_PER_PERIOD * arguments["duration"] * hertz) + 1
     run = _simulated(cache, arguments, at=tuple(map(float, x)), samples=samples)

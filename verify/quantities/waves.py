@@ -15,8 +15,8 @@ from verify.quantities.base import Place, Scene, quantity
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
-    from verify.linear.fields import HarmonicField
-    from verify.waves.case import DrivenCase
+    from verify.linear.field import HarmonicField
+    from verify.travelling_wave import BestDrive, DrivenCase, WaveMeasures
     from verify.waves.impedance_matching import Ending
 
 Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
@@ -45,7 +45,8 @@ class FieldOptions(FieldSettings, frozen=True, kw_only=True):
 
 def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: int | None = None) -> "DrivenCase":
     """The driven beam of a scene with these options, by their own model if they have one. Raises InputError."""
-    from verify.waves.case import DrivenCase
+    from verify.linear.registry import MODELS
+    from verify.waves.driven_case import DrivenCase
 
     if isinstance(options, FieldOptions):
         model, count = options.model, options.count
@@ -53,23 +54,28 @@ def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: in
     of_case = (*opt.DriveOptions.__struct_fields__, "loss_factor", "drive", "model", "count")
     settings = opt.check_settings(model, opt.not_default(options, without=of_case), "field")
     loss = options.loss_factor
+    beam = scene.beam if loss is None else replace(scene.beam, loss_factor=loss)
     return DrivenCase(
-        beam=scene.beam if loss is None else replace(scene.beam, loss_factor=loss),
-        model=model,
-        count=count,
+        model=MODELS[model].build(beam, count, **dict(settings)),
         forces=options.forces(scene),
         frequency_hz=opt.drive_frequency(scene, options.frequency_hz),
         kind=options.drive or (scene.drive.kind if scene.drive else "force"),
-        settings=settings,
         devices=tuple(scene.devices),
     )
 
 
 def driven_field(scene: Scene, cache: "SolutionCache", options: FieldOptions) -> "HarmonicField":
     """The steady field of a scene with these options. Raises InputError."""
-    from verify.waves.driven import driven
+    from verify.waves.driven_case import driven
 
     return driven(driven_case(scene, options), cache)
+
+
+def measures(scene: Scene, cache: "SolutionCache", options: FieldOptions, window: Window | None) -> "WaveMeasures":
+    """The wave of that field in a window, the middle half by default, at the model's own wavenumber."""
+    from verify.travelling_wave import measure_case
+
+    return measure_case(driven_case(scene, options), cache, window)
 
 
 @quantity("wave.deflection", unit="m", reads=DRIVEN, devices=True)
@@ -80,9 +86,7 @@ def deflection(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x
 
 def _measure(figure: str) -> Callable[..., float]:
     def measure(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None) -> float:
-        from verify.waves.driven import measured_alone
-
-        return float(measured_alone(driven_field(scene, cache, options), window, figure))
+        return float(getattr(measures(scene, cache, options, window), figure))
 
     return measure
 
@@ -108,15 +112,14 @@ def axis_ratio(
     scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x: Place | None = None, window: Window | None = None
 ) -> float:
     """Signed axis ratio of the surface ellipse at x, or its mean over whole half wavelengths; below 0 towards +x."""
-    from verify.waves.driven import measured_alone
-    from verify.waves.two_waves import ellipse, surface_motion
+    from verify.travelling_wave import ellipse, surface_motion
 
     if x is not None and window is not None:
         raise InputError(f"window = {list(window)} with x = {x!r}: give one of the two")
-    field = driven_field(scene, cache, options)
     if x is None:
-        return float(measured_alone(field, window, "mean_axis_ratio"))
-    return float(ellipse(surface_motion(field.beam, field.turn(x), x=x), field.deflection(x))[0][0])
+        return measures(scene, cache, options, window).mean_axis_ratio
+    field = driven_field(scene, cache, options)
+    return float(ellipse(surface_motion(field.beam, field.rotation(x), x), field.deflection(x))[0][0])
 
 
 @quantity("wave.power_imbalance", unit="1", reads=DRIVEN, devices=True)
@@ -124,27 +127,52 @@ def power_imbalance(
     scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
 ) -> float:
     """Power of the left force less losses up to the window's middle less flux there, over that flux."""
-    from verify.waves.driven import measures, power_imbalance
+    from verify.travelling_wave import power_imbalance
 
     if any(device.turning for device in scene.devices):
         raise InputError("drive.device: a power balance takes transverse devices alone, leave its rotational terms out")
-    field = driven_field(scene, cache, options)
-    return power_imbalance(field, measures(field, window))
+    return power_imbalance(driven_field(scene, cache, options), measures(scene, cache, options, window))
 
 
 @quantity("wave.best_frequency", unit="Hz", reads=DRIVEN, devices=True)
 def best_frequency(
     scene: Scene,
-    cache: "SolutionCache",
     options: FieldOptions,
     *,
     window: Window | None = None,
     span: Annotated[Relative, Meta(gt=0, lt=0.5, description="search range relative to the drive's frequency")] = 0.015,
 ) -> float:
     """Frequency of least reflection near the drive's."""
-    from verify.waves.driven import best_frequency
+    from verify.waves.best_frequency import best_frequency
 
-    return best_frequency(driven_case(scene, options), span, window, cache)
+    return best_frequency(driven_case(scene, options), span, window)
+
+
+Direction = Annotated[Literal["+x", "-x"], Meta(description="of the wave")]
+
+
+def _best_drive(scene: Scene, options: FieldOptions, window: Window | None, direction: Direction) -> "BestDrive":
+    from verify.waves.best_drive import best_drive
+
+    found = best_drive(driven_case(scene, options), window, direction=1 if direction == "+x" else -1)
+    found.check_exists()
+    return found
+
+
+@quantity("wave.best_ratio", unit="1", reads=DRIVEN, devices=True)
+def best_ratio(
+    scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
+) -> float:
+    """Amplitude of the second actuator over the first that leaves no reflection."""
+    return _best_drive(scene, options, window, direction).ratio
+
+
+@quantity("wave.best_ratio_phase", unit="deg", reads=DRIVEN, devices=True)
+def best_ratio_phase(
+    scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
+) -> float:
+    """Phase by which the second actuator leads the first in that drive, above -180 up to 180 degrees."""
+    return _best_drive(scene, options, window, direction).phase_deg
 
 
 @quantity("wave.order", unit="1", reads=DRIVEN, devices=True)
@@ -162,10 +190,23 @@ def order(
     window: Window | None = None,
 ) -> float:
     """Observed order of a wave measure's error against the exact field; outside the asymptotic range an InputError."""
-    from verify.waves.driven import wave_order
+    from verify.analysis.comparison import relative_error, settled_order
+    from verify.linear.registry import MODELS
+    from verify.travelling_wave import measure_case
+    from verify.waves.driven_case import driven
+    from verify.waves.window import middle_half
 
     check_sizes("counts", counts)
-    return wave_order(driven_case(scene, options, model, counts[0]), counts, window, of, cache)
+
+    def figure(case: "DrivenCase") -> complex:
+        if of == "deflection":
+            return complex(driven(case, cache).deflection(0.5 * sum(window or middle_half(case.beam)))[0])
+        found = measure_case(case, cache, window)
+        return complex(found.standing_wave_ratio if of == "standing_wave_ratio" else found.mean_axis_ratio)
+
+    cases = [driven_case(scene, options, model, count) for count in counts]
+    exact = figure(replace(cases[0], model=MODELS["analytic"].build(cases[0].beam, theory=cases[0].model.theory)))
+    return settled_order(counts, [relative_error(figure(case), exact) for case in cases])
 
 
 @quantity("wave.lumped_swr", unit="1", reads=("beam",), devices=True)
@@ -186,9 +227,9 @@ def fastest_crests(
     scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
     """Largest crest speed of the exact beam up to a reflection, within 1.5 % of the frequency and 5 to 175 deg."""
-    from verify.waves.operating_point import fastest_point
+    from verify.waves.operating_point import maximum_crest_speed
 
-    return fastest_point(driven_case(scene, FieldOptions()), limit).crest_speed
+    return maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed
 
 
 FromRightEnd = Annotated[float, Meta(ge=0, description="m from the right end")]
@@ -240,10 +281,10 @@ def absorber_reflection(
 
 def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float, turning: bool) -> float:
     """Gamma in the middle half between the other forces and a device at x, which replaces what acts there."""
-    from verify.analytic_modes import solve_harmonic
+    from verify.analytic_modes import ExactModel
     from verify.problem.device import of_impedance
-    from verify.waves.devices import field_with_devices
-    from verify.waves.driven import measured_alone
+    from verify.waves.two_waves import two_waves
+    from verify.waves.window import middle_half
 
     opt.check_forces(scene, "an absorbing device")
     tolerance = 1e-9 * scene.beam.length
@@ -253,4 +294,5 @@ def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float
         raise InputError("drive.force: none is left beside the device, add one elsewhere")
     if impedance:
         devices.append(of_impedance(x, impedance, 2.0 * pi * hertz, turning=turning))
-    return measured_alone(field_with_devices(solve_harmonic, scene.beam, forces, hertz, devices), None, "reflection")
+    field = ExactModel(scene.beam).harmonic(forces, hertz, devices=devices)
+    return two_waves(field, middle_half(scene.beam), field.wavenumber).reflection
