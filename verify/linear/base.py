@@ -19,7 +19,7 @@ from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, forces_on, frequencies_on, vector_on
-from verify.linear.system import FEW, StructuralSystem
+from verify.linear.system import FEW, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_held
 from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
@@ -63,19 +63,28 @@ class BeamModel(ABC):
         cls.title = cls.title or getattr(cls, "name", "")
 
     @classmethod
-    def build(cls, beam: Beam, count: int | None, **settings: Any) -> "BeamModel":
+    def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":
         """The model of a beam by the number of parts, None for a model without. Raises InputError."""
+        cls.check_count(count)
+        for name in settings:
+            if name not in cls.settings():
+                raise InputError(f"{name} = {settings[name]!r} is no setting of the {cls.name} model: leave it out")
+        return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
+
+    @classmethod
+    def check_count(cls, count: int | None) -> None:
+        """Raise InputError for a missing number of parts, and for one where there are none."""
         if cls.sized == (count is None):
             raise InputError(
                 f"count is missing: give the number of {cls.parts} for model = {cls.name}"
                 if cls.sized
                 else f"count = {count!r} is for models of parts: {cls.name} has none, leave it out"
             )
-        known = {one.name for one in fields(cls)}  # type: ignore[arg-type]
-        for name in settings:
-            if name not in known:
-                raise InputError(f"{name} = {settings[name]!r} is no setting of the {cls.name} model: leave it out")
-        return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
+
+    @classmethod
+    def settings(cls) -> tuple[str, ...]:
+        """Names of its settings: its fields after the beam and the number of parts."""
+        return tuple(one.name for one in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
 
     @classmethod
     def can(cls, verb: str) -> bool:
@@ -182,7 +191,7 @@ class BeamModel(ABC):
         return acting, stationed
 
     def _has_no(self, verb: str) -> InputError:
-        from verify.linear.catalogue import MODELS
+        from verify.linear.registry import MODELS
 
         able = ", ".join(model.name for model in MODELS.values() if model.can(verb))
         return InputError(f"model = {self.name!r} has no {verb.replace('_', ' ')}: choose one of {able}")
@@ -241,6 +250,14 @@ class DiscreteModel(BeamModel):
         """Number of elastic modes."""
         return max(self.n_unknowns - self.beam.rigid_motions, 0)
 
+    def check_memory(self, n_modes: int = 0) -> None:
+        """Raise InputError, before anything is built, for a system of more than 10 GB: `system.memory`."""
+        if memory(self.n_unknowns, n_modes) > 10e9:
+            raise InputError(
+                f"count = {self.count}: {self.n_unknowns} unknowns with {n_modes} modes exceed the largest system of "
+                f"10 GB, lower the number of {self.parts} or of modes"
+            )
+
     @property
     def _omega_unit(self) -> float:
         """rad/s of a dimensionless frequency of 1."""
@@ -249,6 +266,7 @@ class DiscreteModel(BeamModel):
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes. Raises InputError for more than it has, and for a compression beyond buckling."""
         self.check_n_modes(n_modes)
+        self.check_memory(n_modes)
         values, vectors = self.system.modes(n_modes)
         vectors = self.normalised(vectors)
         return Modes(
@@ -257,6 +275,7 @@ class DiscreteModel(BeamModel):
             length=self.beam.length,
             frequencies_hz=np.sqrt(values) * (self._omega_unit / (2.0 * pi)),
             shapes=self.line(vectors),
+            method=self.system.method(n_modes),
             **self.modes_of(vectors),
         )
 

@@ -28,6 +28,16 @@ FEW = 4
 """Frequencies up to which each is solved by itself: all modes cost more than a few factorisations."""
 
 
+def uses_dense(n: int, k: int) -> bool:
+    """Whether k modes of n unknowns come from dense matrices: few unknowns, or a good part of all modes."""
+    return n <= DENSE or 3 * k > n
+
+
+def memory(n: int, k: int) -> int:
+    """Bytes that k modes of n unknowns take: eight dense matrices, or sparse factors and the Lanczos basis."""
+    return 64 * n**2 if uses_dense(n, k) else 8 * n * (250 + 8 * k)
+
+
 @dataclass(frozen=True, eq=False)
 class StructuralSystem:
     """K = B^T diag(d) B and M over n unknowns. B is a product of sparse factors, applied one after another."""
@@ -84,15 +94,21 @@ class StructuralSystem:
 
         Raises InputError where a compression leaves no positive eigenvalue.
         """
-        if self.n <= DENSE or 3 * (k + self.n_rigid) > self.n:
-            vectors = self._by_svd(k) if self.stiffness.min() > 0.0 else self._by_dense_pencil(k)
-        else:
+        if not uses_dense(self.n, k + self.n_rigid):
             vectors = self._by_lanczos(k)
+        else:
+            vectors = self._by_svd(k) if self.stiffness.min() > 0.0 else self._by_dense_pencil(k)
         values = self.rayleigh_quotients(vectors)
         if values.min(initial=1.0) <= 0.0:
             raise InputError("beam.tension: the compression buckles this model, compress less or hold the beam better")
         order = np.argsort(values, kind="stable")
         return values[order], (vectors / np.sqrt(self._modal_masses(vectors)))[:, order]
+
+    def method(self, k: int) -> str:
+        """How `modes` computes k of them."""
+        if not uses_dense(self.n, k + self.n_rigid):
+            return "shift-and-invert Lanczos"
+        return "singular values" if self.stiffness.min() > 0.0 else "dense eigenvalues"
 
     @cached_property
     def all_modes(self) -> tuple[Array, Array]:
