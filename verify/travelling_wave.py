@@ -17,7 +17,6 @@ backwards at the crests, where a slider touches them.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,16 +30,13 @@ from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
 from verify.waves.best_drive import BestDrive, best_drive
 from verify.waves.best_frequency import best_frequency
-from verify.waves.driven_case import DrivenCase, driven
+from verify.waves.driven_case import DrivenCase
 from verify.waves.from_time_series import field_of_series, phasors
 from verify.waves.impedance_matching import matched_device
 from verify.waves.operating_point import OperatingMap, OperatingPoint, maximum_crest_speed
 from verify.waves.two_waves import TwoWaves, fit_waves, two_waves
 from verify.waves.waveguide import Waveguide
 from verify.waves.window import Window, middle_half
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
 
 __all__ = [
     "BestDrive",
@@ -56,7 +52,6 @@ __all__ = [
     "matched_device",
     "maximum_crest_speed",
     "measure",
-    "measure_case",
     "measure_series",
     "middle_half",
     "phasors",
@@ -194,11 +189,6 @@ def measure(field: HarmonicField, window: Window, wave_number: complex | None = 
         x=np.linspace(start, end, n),
         fine=np.linspace(start, end, max(n, n_fine)),
     )
-
-
-def measure_case(case: DrivenCase, cache: "SolutionCache", window: Window | None = None) -> WaveMeasures:
-    """The same of a case's field, in the middle half by default, at the wavenumber of its model. Raises InputError."""
-    return measure(driven(case, cache), window or middle_half(case.beam), case.wavenumber(case.frequency_hz))
 
 
 def measure_series(

@@ -78,7 +78,7 @@ def sufficient_size(
     neighbourhood of its size solved; between pinned and guided ends the discrete dispersion proves it. Else by a scan
     to twice the last size beyond the limit, and bisection. Raises InputError where no size up to `largest` is within.
     """
-    if not ROUNDING <= error:
+    if not error >= ROUNDING:
         raise InputError(f"error = {error!r} is as small as rounding: give {ROUNDING:g} or more")
     beam, modes = cache.beam, mode if isinstance(mode, range) else range(mode, mode + 1)
     cls = MODELS.named(model)

@@ -6,12 +6,13 @@ for models of parts: they give the system, how a place weighs its unknowns, and 
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cached_property
 from math import pi, sqrt
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from msgspec import structs
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_number, check_whole, check_word, several
@@ -213,7 +214,17 @@ class DiscreteModel(BeamModel):
     @property
     @abstractmethod
     def system(self) -> StructuralSystem:
-        """Its stiffness and mass; a cached property."""
+        """Its stiffness and mass, stable or not; a cached property."""
+
+    @cached_property
+    def stable_system(self) -> StructuralSystem:
+        """The system. Raises InputError where the beam's axial force buckles it."""
+        if self.beam.tension < 0.0 and (factor := self.system.buckling_factor()) <= 1.0:
+            raise InputError(
+                f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling: {self.count} "
+                f"{self.parts} buckle at {-self.beam.tension * factor:.6g} N, compress it less or hold it better"
+            )
+        return self.system
 
     @abstractmethod
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
@@ -232,7 +243,7 @@ class DiscreteModel(BeamModel):
 
     @abstractmethod
     def lossy_stiffness(self, omega: float) -> Any:
-        """d of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
+        """D of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
 
         Real where nothing is lost.
         """
@@ -267,7 +278,7 @@ class DiscreteModel(BeamModel):
         """The first elastic modes. Raises InputError for more than it has, and for a compression beyond buckling."""
         self.check_n_modes(n_modes)
         self.check_memory(n_modes)
-        values, vectors = self.system.modes(n_modes)
+        values, vectors = self.stable_system.modes(n_modes)
         vectors = self.normalised(vectors)
         return Modes(
             model=self.name,
@@ -275,7 +286,7 @@ class DiscreteModel(BeamModel):
             length=self.beam.length,
             frequencies_hz=np.sqrt(values) * (self._omega_unit / (2.0 * pi)),
             shapes=self.line(vectors),
-            method=self.system.method(n_modes),
+            method=self.stable_system.method(n_modes),
             **self.modes_of(vectors),
         )
 
@@ -316,23 +327,23 @@ class DiscreteModel(BeamModel):
         omegas = 2.0 * pi * frequencies
         omega2 = (omegas / self._omega_unit) ** 2
         damped, last = self.lossy_stiffness(float(omegas[0])), self.lossy_stiffness(float(omegas[-1]))
-        factors = damped / self.system.stiffness
+        factors = damped / self.stable_system.stiffness
         couples = bool(np.ptp(np.imag(factors)) > 1e-15 * abs(factors).max()) or not np.array_equal(damped, last)
         if modal_damping and (couples or rows):
             raise InputError(
                 f"modal_damping = {modal_damping!r} beside {'devices' if rows else 'a loss in a part of the stiffness'}"
                 ": the modes would couple, give one of the two"
             )
-        sweep = len(omegas) > FEW and not (couples or rows) and self.system.stiffness.min() > 0.0
-        if modal_damping or (sweep and self.system.n <= 4 * 150):
-            found = self.system.harmonic_sweep(loads, omega2, float(np.imag(factors[0])), modal_damping)
+        sweep = len(omegas) > FEW and not (couples or rows) and self.stable_system.stiffness.min() > 0.0
+        if modal_damping or (sweep and self.stable_system.n <= 4 * 150):
+            found = self.stable_system.harmonic_sweep(loads, omega2, float(np.imag(factors[0])), modal_damping)
             if (at := np.flatnonzero(np.isnan(found[:, 0, 0]))).size:
                 raise self._at_resonance(float(frequencies[at[0]]))
             return found
         found = np.empty((len(omegas), *loads.shape), dtype=complex)
         for i, w2 in enumerate(omega2):
             try:
-                found[i] = self.system.harmonic(loads, float(w2), self.lossy_stiffness(float(omegas[i])), rows)
+                found[i] = self.stable_system.harmonic(loads, float(w2), self.lossy_stiffness(float(omegas[i])), rows)
             except np.linalg.LinAlgError:
                 raise self._at_resonance(float(frequencies[i])) from None
         return found
@@ -399,7 +410,7 @@ class DiscreteModel(BeamModel):
             )
         amplitudes = np.array([phasor(drive) for drive in drives])
         try:
-            unknowns, forces = self.system.prescribed(
+            unknowns, forces = self.stable_system.prescribed(
                 rows,
                 amplitudes,
                 (omega / self._omega_unit) ** 2,
@@ -420,11 +431,15 @@ class DiscreteModel(BeamModel):
         loads = self.load_rows(at).toarray().T * scale
         omegas = 2.0 * pi * frequencies
         damped = self.lossy_stiffness(float(omegas[0]))
-        factors = damped / self.system.stiffness
+        factors = damped / self.stable_system.stiffness
         found = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
-        if self.system.n <= 4 * 150 and np.ptp(np.imag(factors)) <= 1e-15 and self.system.stiffness.min() > 0.0:
+        if (
+            self.stable_system.n <= 4 * 150
+            and np.ptp(np.imag(factors)) <= 1e-15
+            and self.stable_system.stiffness.min() > 0.0
+        ):
             # shapes are read once, of modes, and not of every response
-            values, vectors = self.system.all_modes
+            values, vectors = self.stable_system.all_modes
             shapes, weights = self.line(vectors)(read, 0), vectors.T @ loads
             omega2 = (omegas / self._omega_unit) ** 2
             denominators = values * factors[0] - omega2[:, None]
@@ -434,7 +449,7 @@ class DiscreteModel(BeamModel):
             return np.asarray(found, dtype=complex)
         for i, omega in enumerate(omegas):
             try:
-                response = self.system.harmonic(
+                response = self.stable_system.harmonic(
                     loads, float(omega / self._omega_unit) ** 2, self.lossy_stiffness(float(omega))
                 )
             except np.linalg.LinAlgError:
@@ -442,19 +457,27 @@ class DiscreteModel(BeamModel):
             found[i] = self.line(response)(read, 0)
         return found
 
+    def buckling_load(self) -> float:
+        """The compression at which it buckles first, N; 0 where nothing keeps the beam from tilting."""
+        if any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines):
+            return 0.0
+        load = float(self.beam.bending_stiffness / self.beam.length**2)
+        compressed: DiscreteModel = replace(self, beam=structs.replace(self.beam, tension=-load))  # type: ignore[type-var]
+        return load * compressed.system.buckling_factor()
+
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
         """All its modes for motion in time. Raises InputError for rigid-body motions, and for too many unknowns."""
         check_held(self.beam)
         check_word("line", line, self.lines)
         if modes is not None:
             raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} keeps all it has, leave it out")
-        values, vectors = self.system.all_modes
+        values, vectors = self.stable_system.all_modes
         lossy = self.lossy_stiffness(1.0)
         ratios = None
         if self.beam.loss_factor and self.beam.lossless:
             # half of the loss factor times the share of what has loss in each mode's stiffness
-            energies = self.system.strain(vectors) ** 2
-            ratios = 0.5 * (np.imag(lossy) @ energies) / (self.system.stiffness @ energies)
+            energies = self.stable_system.strain(vectors) ** 2
+            ratios = 0.5 * (np.imag(lossy) @ energies) / (self.stable_system.stiffness @ energies)
         vectors = self.normalised(vectors)
         return TimeBasis(
             model=self.name,

@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from verify import options
 from verify.checks import Relative, check_sizes
 from verify.errors import InputError
+from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
 
@@ -45,18 +46,16 @@ class FieldOptions(FieldSettings, frozen=True, kw_only=True):
 
 def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: int | None = None) -> "DrivenCase":
     """The driven beam of a scene with these options, by their own model if they have one. Raises InputError."""
-    from verify.linear.registry import MODELS
     from verify.waves.driven_case import DrivenCase
 
     if isinstance(options, FieldOptions):
         model, count = options.model, options.count
     opt.check_count(model, count)
     of_case = (*opt.DriveOptions.__struct_fields__, "loss_factor", "drive", "model", "count")
-    settings = opt.check_settings(model, opt.not_default(options, without=of_case), "field")
-    loss = options.loss_factor
-    beam = scene.beam if loss is None else replace(scene.beam, loss_factor=loss)
+    settings = dict(opt.check_settings(model, opt.not_default(options, without=of_case)))
+    beam = scene.beam if options.loss_factor is None else replace(scene.beam, loss_factor=options.loss_factor)
     return DrivenCase(
-        model=MODELS[model].build(beam, count, **dict(settings)),
+        model=MODELS.named(model).build(beam, count, **settings),
         forces=options.forces(scene),
         frequency_hz=opt.drive_frequency(scene, options.frequency_hz),
         kind=options.drive or (scene.drive.kind if scene.drive else "force"),
@@ -71,11 +70,13 @@ def driven_field(scene: Scene, cache: "SolutionCache", options: FieldOptions) ->
     return driven(driven_case(scene, options), cache)
 
 
-def measures(scene: Scene, cache: "SolutionCache", options: FieldOptions, window: Window | None) -> "WaveMeasures":
-    """The wave of that field in a window, the middle half by default, at the model's own wavenumber."""
-    from verify.travelling_wave import measure_case
+def measured(case: "DrivenCase", cache: "SolutionCache", window: tuple[float, float] | None = None) -> "WaveMeasures":
+    """The wave of a case in a window, the middle half by default, with its model's wavenumber. Raises InputError."""
+    from verify.travelling_wave import measure, middle_half
+    from verify.waves.driven_case import driven
 
-    return measure_case(driven_case(scene, options), cache, window)
+    field = driven(case, cache)
+    return measure(field, window or middle_half(case.beam), case.wavenumber(case.frequency_hz))
 
 
 @quantity("wave.deflection", unit="m", reads=DRIVEN, devices=True)
@@ -86,7 +87,7 @@ def deflection(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x
 
 def _measure(figure: str) -> Callable[..., float]:
     def measure(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None) -> float:
-        return float(getattr(measures(scene, cache, options, window), figure))
+        return float(getattr(measured(driven_case(scene, options), cache, window), figure))
 
     return measure
 
@@ -117,9 +118,9 @@ def axis_ratio(
     if x is not None and window is not None:
         raise InputError(f"window = {list(window)} with x = {x!r}: give one of the two")
     if x is None:
-        return measures(scene, cache, options, window).mean_axis_ratio
+        return measured(driven_case(scene, options), cache, window).mean_axis_ratio
     field = driven_field(scene, cache, options)
-    return float(ellipse(surface_motion(field.beam, field.rotation(x), x), field.deflection(x))[0][0])
+    return float(ellipse(surface_motion(field.beam, field.rotation(x), x=x), field.deflection(x))[0][0])
 
 
 @quantity("wave.power_imbalance", unit="1", reads=DRIVEN, devices=True)
@@ -131,19 +132,21 @@ def power_imbalance(
 
     if any(device.turning for device in scene.devices):
         raise InputError("drive.device: a power balance takes transverse devices alone, leave its rotational terms out")
-    return power_imbalance(driven_field(scene, cache, options), measures(scene, cache, options, window))
+    case = driven_case(scene, options)
+    return power_imbalance(driven_field(scene, cache, options), measured(case, cache, window))
 
 
 @quantity("wave.best_frequency", unit="Hz", reads=DRIVEN, devices=True)
 def best_frequency(
     scene: Scene,
+    cache: "SolutionCache",
     options: FieldOptions,
     *,
     window: Window | None = None,
     span: Annotated[Relative, Meta(gt=0, lt=0.5, description="search range relative to the drive's frequency")] = 0.015,
 ) -> float:
     """Frequency of least reflection near the drive's."""
-    from verify.waves.best_frequency import best_frequency
+    from verify.travelling_wave import best_frequency
 
     return best_frequency(driven_case(scene, options), span, window)
 
@@ -152,11 +155,11 @@ Direction = Annotated[Literal["+x", "-x"], Meta(description="of the wave")]
 
 
 def _best_drive(scene: Scene, options: FieldOptions, window: Window | None, direction: Direction) -> "BestDrive":
-    from verify.waves.best_drive import best_drive
+    from verify.travelling_wave import best_drive
 
-    found = best_drive(driven_case(scene, options), window, direction=1 if direction == "+x" else -1)
-    found.check_exists()
-    return found
+    best = best_drive(driven_case(scene, options), window, direction=1 if direction == "+x" else -1)
+    best.check_exists()
+    return best
 
 
 @quantity("wave.best_ratio", unit="1", reads=DRIVEN, devices=True)
@@ -190,23 +193,22 @@ def order(
     window: Window | None = None,
 ) -> float:
     """Observed order of a wave measure's error against the exact field; outside the asymptotic range an InputError."""
-    from verify.analysis.comparison import relative_error, settled_order
-    from verify.linear.registry import MODELS
-    from verify.travelling_wave import measure_case
+    from verify.analysis.comparison import asymptotic_order, relative_error
+    from verify.travelling_wave import middle_half
     from verify.waves.driven_case import driven
-    from verify.waves.window import middle_half
 
     check_sizes("counts", counts)
+    middle = 0.5 * sum(window or middle_half(scene.beam))
 
     def figure(case: "DrivenCase") -> complex:
         if of == "deflection":
-            return complex(driven(case, cache).deflection(0.5 * sum(window or middle_half(case.beam)))[0])
-        found = measure_case(case, cache, window)
-        return complex(found.standing_wave_ratio if of == "standing_wave_ratio" else found.mean_axis_ratio)
+            return complex(driven(case, cache).deflection(middle)[0])
+        return complex(getattr(measured(case, cache, window), "mean_" * (of == "axis_ratio") + of))
 
     cases = [driven_case(scene, options, model, count) for count in counts]
-    exact = figure(replace(cases[0], model=MODELS["analytic"].build(cases[0].beam, theory=cases[0].model.theory)))
-    return settled_order(counts, [relative_error(figure(case), exact) for case in cases])
+    exact = MODELS[EXACT].build(cases[0].beam, theory=options.theory)
+    reference = figure(replace(cases[0], model=exact))
+    return asymptotic_order(counts, [relative_error(figure(case), reference) for case in cases])
 
 
 @quantity("wave.lumped_swr", unit="1", reads=("beam",), devices=True)
@@ -227,7 +229,7 @@ def fastest_crests(
     scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
     """Largest crest speed of the exact beam up to a reflection, within 1.5 % of the frequency and 5 to 175 deg."""
-    from verify.waves.operating_point import maximum_crest_speed
+    from verify.travelling_wave import maximum_crest_speed
 
     return maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed
 
@@ -281,10 +283,8 @@ def absorber_reflection(
 
 def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float, turning: bool) -> float:
     """Gamma in the middle half between the other forces and a device at x, which replaces what acts there."""
-    from verify.analytic_modes import ExactModel
     from verify.problem.device import of_impedance
-    from verify.waves.two_waves import two_waves
-    from verify.waves.window import middle_half
+    from verify.travelling_wave import measure, middle_half
 
     opt.check_forces(scene, "an absorbing device")
     tolerance = 1e-9 * scene.beam.length
@@ -294,5 +294,5 @@ def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float
         raise InputError("drive.force: none is left beside the device, add one elsewhere")
     if impedance:
         devices.append(of_impedance(x, impedance, 2.0 * pi * hertz, turning=turning))
-    field = ExactModel(scene.beam).harmonic(forces, hertz, devices=devices)
-    return two_waves(field, middle_half(scene.beam), field.wavenumber).reflection
+    field = MODELS[EXACT].build(scene.beam).harmonic(forces, hertz, devices=devices)
+    return measure(field, middle_half(scene.beam), field.wavenumber).reflection

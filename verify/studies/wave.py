@@ -1,6 +1,5 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
-from math import pi
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from verify.linear.field import HarmonicField
     from verify.report.result import Result, Table
     from verify.scene.model import Scene
-    from verify.travelling_wave import BestDrive, DrivenCase, WaveMeasures
+    from verify.travelling_wave import BestDrive, DrivenCase
 
 Row: TypeAlias = dict[str, Any]
 Fields: TypeAlias = "dict[str, HarmonicField]"
@@ -47,15 +46,15 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
-        from verify.linear.registry import MODELS, discrete
+        from verify.linear.registry import EXACT, MODELS, discrete
         from verify.waves.window import check_span, check_waves, middle_half
 
         if len(scene.forces) != 2 or scene.drive is None:
             raise InputError("wave: the study needs a [drive] with two forces, add them")
-        MODELS["analytic"].build(scene.beam)
-        places, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
+        MODELS[EXACT].build(scene.beam)
+        positions, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
         try:
-            check_span(scene.beam, places, middle_half(scene.beam))
+            check_span(scene.beam, positions, middle_half(scene.beam))
             check_waves(scene.beam, frequency, middle_half(scene.beam))
         except WindowError as error:
             raise WindowError(
@@ -71,10 +70,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Solve the fields of all models. Raises InputError."""
         from msgspec.structs import replace
 
-        from verify.linear.registry import MODELS, discrete
-        from verify.quantities.waves import FieldOptions, driven_case
+        from verify.linear.registry import EXACT, MODELS, discrete
+        from verify.quantities.waves import FieldOptions, driven_case, measured
         from verify.report.result import Column, Figure, Result, Table
-        from verify.travelling_wave import best_drive, measure_case
+        from verify.travelling_wave import best_drive
         from verify.waves.driven_case import driven
 
         drive = scene.drive
@@ -82,16 +81,15 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         exact = driven_case(scene, FieldOptions())
         models = [model.name for model in discrete("harmonic", scene.beam)]
         rows: list[Row] = []
-        for model, count in [("analytic", None), *((model, count) for model in models for count in self.counts)]:
+        for model, count in [(EXACT, None), *((model, count) for model in models for count in self.counts)]:
             row: Row = {"name": sized_title(model, count), "model": model, "N": count}
             progress(row["name"])
             rows.append(row | _waves(replace(exact, model=MODELS[model].build(scene.beam, count)), cache))
-        fields = {"analytic": driven(exact, cache)}
-        fields |= {
-            model: driven(replace(exact, model=MODELS[model].build(scene.beam, self.count)), cache) for model in models
-        }
+        fields = {EXACT: driven(exact, cache)}
+        for model in models:
+            fields[model] = driven(replace(exact, model=MODELS[model].build(scene.beam, self.count)), cache)
         other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
-        ratio, best = measure_case(other, cache).standing_wave_ratio, best_drive(exact)
+        ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact)
 
         columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
         columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
@@ -146,47 +144,47 @@ def _waves(case: "DrivenCase", cache: "SolutionCache") -> Row:
     """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
     from msgspec.structs import replace
 
-    from verify.travelling_wave import measure_case
     from verify.waves.best_frequency import minimum_reflection
 
-    row = {"drive": _figures(measure_case(case, cache)), "best": None, "note": ""}
+    row = {"drive": _operation(case, cache), "best": None, "note": ""}
     try:
         least = minimum_reflection(case)
     except InputError as error:
         return row | {"note": str(error)}
     if least.at_edge:
-        edge = f"{least.x:.6g} Hz: no optimum but where the search ends"
-        return row | {"note": f"the reflection falls off the search, at its edge, {edge}"}
-    return row | {"best": _figures(measure_case(replace(case, frequency_hz=least.x), cache))}
+        return row | {"note": f"the reflection still falls at the edge of the search, {least.x:.6g} Hz"}
+    return row | {"best": _operation(replace(case, frequency_hz=least.x), cache)}
 
 
-def _figures(one: "WaveMeasures") -> dict[str, float]:
-    """The wave at one frequency: the figures of merit of a motor."""
+def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
+    from verify.quantities.waves import measured
+
+    wave = measured(case, cache)
     return {
-        "frequency_hz": one.omega / (2.0 * pi),
-        "standing_wave_ratio": one.standing_wave_ratio,
-        "axis_ratio": one.mean_axis_ratio,
-        "crest_speed": one.crest_speed,
+        "frequency_hz": case.frequency_hz,
+        "standing_wave_ratio": wave.standing_wave_ratio,
+        "axis_ratio": wave.mean_axis_ratio,
+        "crest_speed": wave.crest_speed,
     }
 
 
-def _cells(figures: dict[str, float] | None) -> tuple[float | None, ...]:
-    return tuple(figures.values()) if figures else (None,) * 4
+def _cells(one: dict[str, float] | None) -> tuple[float | None, ...]:
+    return tuple(one.values()) if one else (None,) * 4
 
 
 def _drives(best: "BestDrive", case: "DrivenCase", ratio: float) -> "Table":
     """The scene's drive, the best of equal amplitudes, and the best ratio, at the scene's frequency."""
     from verify.report.result import Column, Table
+    from verify.waves.operating_point import lead_deg
 
-    first, second = case.forces
-    lead = 180.0 - (180.0 - (second.phase_deg - first.phase_deg)) % 360.0
+    first, second = (force.amplitude for force in case.forces)
     columns = [Column("drive"), Column("amplitude ratio", format=".4g"), Column("phase, deg", format=".2f")]
     rows = [
-        ("the scene's", second.amplitude / first.amplitude if first.amplitude else None, lead, ratio),
+        ("the scene's", second / first if first else None, lead_deg(case), ratio),
         ("best at equal amplitudes", 1.0, best.equal_phase_deg, best.equal_standing_wave_ratio),
         ("best ratio", best.ratio, best.phase_deg, best.standing_wave_ratio),
     ]
-    notes = [f"Second over first {case.kind}, exact beam, wave towards +x.", *([f"{best.note}."] if best.note else [])]
+    notes = [f"Second over first {case.kind}; exact beam, wave towards +x.", *([f"{best.note}."] if best.note else [])]
     return Table("Two actuators without reflection", [*columns, Column("SWR", format=".5g")], rows, notes)
 
 
