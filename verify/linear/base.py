@@ -64,19 +64,28 @@ class BeamModel(ABC):
         cls.title = cls.title or getattr(cls, "name", "")
 
     @classmethod
-    def build(cls, beam: Beam, count: int | None, **settings: Any) -> "BeamModel":
+    def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":
         """The model of a beam by the number of parts, None for a model without. Raises InputError."""
+        cls.check_count(count)
+        for name in settings:
+            if name not in cls.settings():
+                raise InputError(f"{name} = {settings[name]!r} is no setting of the {cls.name} model: leave it out")
+        return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
+
+    @classmethod
+    def check_count(cls, count: int | None) -> None:
+        """Raise InputError for a missing number of parts, and for one where there are none."""
         if cls.sized == (count is None):
             raise InputError(
                 f"count is missing: give the number of {cls.parts} for model = {cls.name}"
                 if cls.sized
                 else f"count = {count!r} is for models of parts: {cls.name} has none, leave it out"
             )
-        known = {one.name for one in fields(cls)}  # type: ignore[arg-type]
-        for name in settings:
-            if name not in known:
-                raise InputError(f"{name} = {settings[name]!r} is no setting of the {cls.name} model: leave it out")
-        return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
+
+    @classmethod
+    def settings(cls) -> tuple[str, ...]:
+        """Names of its settings: its fields after the beam and the number of parts."""
+        return tuple(one.name for one in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
 
     @classmethod
     def can(cls, verb: str) -> bool:
@@ -183,7 +192,7 @@ class BeamModel(ABC):
         return acting, stationed
 
     def _has_no(self, verb: str) -> InputError:
-        from verify.linear.catalogue import MODELS
+        from verify.linear.registry import MODELS
 
         able = ", ".join(model.name for model in MODELS.values() if model.can(verb))
         return InputError(f"model = {self.name!r} has no {verb.replace('_', ' ')}: choose one of {able}")
