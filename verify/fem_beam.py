@@ -94,9 +94,10 @@ class HermiteModel(DiscreteModel):
     @cached_property
     def basis(self) -> Any:
         """scikit-fem's basis: w and psi of each node in turn, then the shear strains of each element."""
-        from verify.elements.element import line_basis
+        from verify.elements.element import cached_basis, line_basis
 
-        return line_basis(self.mesh.nodes, self.shear)
+        nodes = self.mesh.nodes
+        return cached_basis(nodes.tobytes(), self.shear) if len(nodes) <= 4000 else line_basis(nodes, self.shear)
 
     @cached_property
     def free(self) -> Indices:
@@ -116,13 +117,13 @@ class HermiteModel(DiscreteModel):
         Strains are theta_1 - theta_0 and theta_0 + theta_1 - 2 (w_1 - w_0)/l of each element, whose squares times EI/l
         and 3 EI/l are twice its bending energy; a constant shear strain g_0 adds 2 g_0 to the latter.
         """
-        from scipy.sparse import csr_array, eye_array, vstack
+        from scipy.sparse import csr_array, vstack
 
         n, size, lengths = self.n_elements, self.basis.N, self.mesh.lengths
-        # first: differences of neighbouring deflections, which are exact, then all values
         e, one = np.arange(n), np.ones(n)
-        ahead = csr_array((np.concatenate([-one, one]), (np.tile(e, 2), np.concatenate([2 * e, 2 * e + 2]))), (n, size))
-        first = vstack([ahead, eye_array(size)], format="csr")[:, self.free]
+        # first factor: differences of neighbouring deflections, which are exact, then all values
+        columns, at = np.concatenate([2 * e, 2 * e + 2, np.arange(size)]), np.concatenate([e, e, n + np.arange(size)])
+        first = csr_array((np.concatenate([-one, one, np.ones(size)]), (at, columns)), shape=(n + size, size))
         left, right, constant = n + 2 * e + 1, n + 2 * e + 3, n + 2 * n + 2 + 2 * e
         chord = [(e, 1.0 / lengths)]
         mean, gradient = [(left, -one), (right, one)], [(left, one), (right, one), (e, -2.0 / lengths)]
@@ -133,15 +134,14 @@ class HermiteModel(DiscreteModel):
             # w'^2 has the mean chord^2 + mean^2/12 + gradient^2/20
             force = self.beam.tension * self.unit**2 / self.beam.bending_stiffness * lengths
             strains, stiffness = [*strains, chord, mean, gradient], [*stiffness, force, force / 12.0, force / 20.0]
-        at = [i * n + e for i, strain in enumerate(strains) for _ in strain]
-        columns, values = zip(*(entry for strain in strains for entry in strain), strict=True)
-        entries = np.concatenate(values), (np.concatenate(at), np.concatenate(columns))
-        rows = [csr_array(entries, shape=(len(strains) * n, n + size))]
+        places, values = zip(*(entry for strain in strains for entry in strain), strict=True)
+        at = np.concatenate([i * n + e for i, strain in enumerate(strains) for _ in strain])
+        rows = [csr_array((np.concatenate(values), (at, np.concatenate(places))), shape=(len(strains) * n, n + size))]
         for row, value in self._ground_strains():
             rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + size)))
             stiffness.append(value)
         return StructuralSystem(
-            [first, vstack(rows, format="csr")],
+            [first[:, self.free], vstack(rows, format="csr") if len(rows) > 1 else rows[0]],
             np.concatenate(stiffness),
             self._mass()[self.free][:, self.free].tocsc(),
             self._rigid(),
