@@ -43,7 +43,7 @@ class HermiteLine(Element):  # type: ignore[misc]
 
     nodal_dofs = 2
     maxdeg = 3
-    dofnames = ("u", "u_x")
+    dofnames: tuple[str, ...] = ("u", "u_x")
     doflocs = np.array([[0.0], [0.0], [1.0], [1.0]])
     refdom = RefLine
 

@@ -26,6 +26,8 @@ RESONANCE = 1e-9
 """Relative distance in frequency to an undamped resonance below which a response is rounding."""
 FEW = 4
 """Frequencies up to which each is solved by itself: all modes cost more than a few factorisations."""
+SUPERPOSED = 600
+"""Unknowns up to which many frequencies are superposed from all modes."""
 
 
 def uses_dense(n: int, k: int) -> bool:
@@ -209,7 +211,7 @@ class StructuralSystem:
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
     @cached_property
-    def _pattern(self) -> tuple[Any, Array, Array, Array]:
+    def _pattern(self) -> tuple[Any, Any, Any, Array]:
         """[[-1, B], [B^T, M]] sparse by columns, where its data hold -1 and M, and the scales of the strains.
 
         Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
@@ -285,17 +287,28 @@ class StructuralSystem:
 
         `modal_damping` is the damping ratio of every mode. NaN at the frequencies of undamped resonances.
         """
+        denominators, acting, responding = self.receptance_terms(omega2, loss_factor, modal_damping)
+        shares = (acting.T @ loads)[None] / denominators[:, :, None]
+        response = responding @ shares.transpose(1, 0, 2).reshape(acting.shape[1], -1)
+        return np.asarray(response.reshape(self.n, len(omega2), -1).transpose(1, 0, 2))
+
+    def receptance_terms(
+        self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
+    ) -> tuple[ComplexArray, Array, Array]:
+        """omega_n^2 (1 + i eta) - omega^2 of all motions, (n_frequencies, k), and vectors (n, k): excited, responding.
+
+        Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
+        """
         values, vectors = self.all_modes
-        denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None]
-        denominators = denominators + 2j * modal_damping * np.sqrt(values * omega2[:, None])
+        acting = responding = vectors
+        if self.n_rigid:
+            values = np.concatenate([np.zeros(self.n_rigid), values])
+            acting, responding = np.hstack([self.rigid, vectors]), np.hstack([self._rigid_dual[1], vectors])
+        damping = 2j * modal_damping * np.sqrt(values * omega2[:, None])
+        denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None] + damping
         near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
         denominators[near.any(axis=1)] = np.nan
-        shares = (vectors.T @ loads)[None] / denominators[:, :, None]
-        response = (vectors @ shares.transpose(1, 0, 2).reshape(len(values), -1)).reshape(self.n, len(omega2), -1)
-        response = response.transpose(1, 0, 2)
-        if self.n_rigid:
-            response = response - (self._rigid_dual[1] @ (self.rigid.T @ loads))[None] / omega2[:, None, None]
-        return np.asarray(response)
+        return denominators, acting, responding
 
     def prescribed(
         self,
