@@ -238,12 +238,12 @@ class StructuralSystem:
 
     def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
         """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
-        from scipy.sparse import block_array, csc_array
+        from scipy.sparse import block_array, csc_array, hstack
         from scipy.sparse.linalg import splu
 
         matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
         for row, z in devices:
-            wide = csc_array((row.data, (row.coords[0], row.coords[1] + m)), shape=(1, matrix.shape[0]))
+            wide = hstack([csc_array((1, m)), row], format="csc")
             matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide)
         if rows is not None:
             wide = block_array([[csc_array((rows.shape[0], m)), rows]], format="csc")
