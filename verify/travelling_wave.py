@@ -34,8 +34,7 @@ from verify.waves.driven_case import DrivenCase
 from verify.waves.from_time_series import field_of_series, phasors
 from verify.waves.impedance_matching import matched_device
 from verify.waves.operating_point import OperatingMap, OperatingPoint, maximum_crest_speed
-from verify.waves.results import TwoWaves
-from verify.waves.two_waves import fit_waves, two_waves
+from verify.waves.two_waves import TwoWaves, fit_waves, two_waves
 from verify.waves.waveguide import Waveguide
 from verify.waves.window import Window, middle_half
 
@@ -130,7 +129,7 @@ class WaveMeasures:
 
     @cached_property
     def ideal_axis_ratio(self) -> float:
-        """K h/2, by Timoshenko's theory times psi/w' of a running wave: the axis ratio of a pure one, unsigned."""
+        """Of a pure wave, unsigned: k h/2, by Timoshenko's theory times psi/w' of a running wave."""
         return float(self.guide.axis_ratio(self.omega, self.waves.wavenumber))
 
     @cached_property
@@ -152,11 +151,6 @@ class WaveMeasures:
         self.waves.check_travelling()
         least, mean, largest = self.signed_area_range
         return (largest - least) / abs(mean)
-
-    @property
-    def sense(self) -> str:
-        """The sense in which most surface points turn, in (x, y)."""
-        return "counter-clockwise" if self.signed_area_range[1] < 0 else "clockwise"
 
     @cached_property
     def crest_speed(self) -> float:
@@ -266,9 +260,9 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
     power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
     # the third derivative jumps at a force, the second at a couple: quadrature in between
-    jumps = [one.position for one in (*field.forces, *beam.mass, *beam.spring) if one.position < middle]
+    jumps = [f.position for f in field.forces] + [m.position for m in beam.mass] + [s.position for s in beam.spring]
     cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
-    edges = np.unique(np.concatenate([cells, jumps]))
+    edges = np.unique([*cells, *(x for x in jumps if x < middle)])
     points, weights = np.polynomial.legendre.leggauss(8)
     half = 0.5 * np.diff(edges)[:, None]
     x, weights = (edges[:-1, None] + half * (points + 1.0)).ravel(), (half * weights).ravel()

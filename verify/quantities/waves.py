@@ -17,7 +17,7 @@ from verify.quantities.base import Place, Scene, quantity
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.linear.field import HarmonicField
-    from verify.travelling_wave import DrivenCase, WaveMeasures
+    from verify.travelling_wave import BestDrive, DrivenCase, WaveMeasures
     from verify.waves.impedance_matching import Ending
 
 Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
@@ -149,6 +149,33 @@ def best_frequency(
     from verify.travelling_wave import best_frequency
 
     return best_frequency(driven_case(scene, options), span, window)
+
+
+Direction = Annotated[Literal["+x", "-x"], Meta(description="of the wave")]
+
+
+def _best_drive(scene: Scene, options: FieldOptions, window: Window | None, direction: Direction) -> "BestDrive":
+    from verify.travelling_wave import best_drive
+
+    best = best_drive(driven_case(scene, options), window, direction=1 if direction == "+x" else -1)
+    best.check_exists()
+    return best
+
+
+@quantity("wave.best_ratio", unit="1", reads=DRIVEN, devices=True)
+def best_ratio(
+    scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
+) -> float:
+    """Amplitude of the second actuator over the first that leaves no reflection."""
+    return _best_drive(scene, options, window, direction).ratio
+
+
+@quantity("wave.best_ratio_phase", unit="deg", reads=DRIVEN, devices=True)
+def best_ratio_phase(
+    scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
+) -> float:
+    """Phase by which the second actuator leads the first in that drive, above -180 up to 180 degrees."""
+    return _best_drive(scene, options, window, direction).phase_deg
 
 
 @quantity("wave.order", unit="1", reads=DRIVEN, devices=True)

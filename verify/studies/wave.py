@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from verify.analysis.solution_cache import SolutionCache
     from verify.linear.field import HarmonicField
-    from verify.report.result import Result
+    from verify.report.result import Result, Table
     from verify.scene.model import Scene
-    from verify.waves.driven_case import DrivenCase
+    from verify.travelling_wave import BestDrive, DrivenCase
 
 Row: TypeAlias = dict[str, Any]
 Fields: TypeAlias = "dict[str, HarmonicField]"
@@ -73,6 +73,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.linear.registry import EXACT, MODELS, discrete
         from verify.quantities.waves import FieldOptions, driven_case, measured
         from verify.report.result import Column, Figure, Result, Table
+        from verify.travelling_wave import best_drive
         from verify.waves.driven_case import driven
 
         drive = scene.drive
@@ -88,7 +89,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for model in models:
             fields[model] = driven(replace(exact, model=MODELS[model].build(scene.beam, self.count)), cache)
         other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
-        ratio = measured(other, cache).standing_wave_ratio
+        ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact)
 
         columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
         columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
@@ -110,7 +111,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
         return Result(
             summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
-            tables=[Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes)],
+            tables=[
+                Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
+                _drives(best, exact, rows[0]["drive"]["standing_wave_ratio"]),
+            ],
             figures=[
                 Figure(
                     "wave-envelopes",
@@ -127,7 +131,12 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             ],
             movies=[movie("wave-moving", f"One period, N = {self.count}", MOVIE, _movie(fields, self.count))],
             warnings=[f"{row['name']}: {row['note']}." for row in rows if row["note"]],
-            data={"rows": rows, "other_drive_standing_wave_ratio": ratio},
+            data={
+                "rows": rows,
+                "other_drive_standing_wave_ratio": ratio,
+                "best_ratio": best.ratio,
+                "best_ratio_phase_deg": best.phase_deg,
+            },
         )
 
 
@@ -161,6 +170,22 @@ def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
 
 def _cells(one: dict[str, float] | None) -> tuple[float | None, ...]:
     return tuple(one.values()) if one else (None,) * 4
+
+
+def _drives(best: "BestDrive", case: "DrivenCase", ratio: float) -> "Table":
+    """The scene's drive, the best of equal amplitudes, and the best ratio, at the scene's frequency."""
+    from verify.report.result import Column, Table
+    from verify.waves.operating_point import lead_deg
+
+    first, second = (force.amplitude for force in case.forces)
+    columns = [Column("drive"), Column("amplitude ratio", format=".4g"), Column("phase, deg", format=".2f")]
+    rows = [
+        ("the scene's", second / first if first else None, lead_deg(case), ratio),
+        ("best at equal amplitudes", 1.0, best.equal_phase_deg, best.equal_standing_wave_ratio),
+        ("best ratio", best.ratio, best.phase_deg, best.standing_wave_ratio),
+    ]
+    notes = [f"Second over first {case.kind}; exact beam, wave towards +x.", *([f"{best.note}."] if best.note else [])]
+    return Table("Two actuators without reflection", [*columns, Column("SWR", format=".5g")], rows, notes)
 
 
 def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:

@@ -3,39 +3,37 @@
 import numpy as np
 
 from verify.arrays import Array
-from verify.errors import InputError
+from verify.errors import InputError, NoFigureError
 from verify.waves.driven_case import DrivenCase
-from verify.waves.results import reflections
 from verify.waves.superposition import amplitudes, unit_waves
-from verify.waves.two_waves import Minimum, minimum_near
+from verify.waves.two_waves import Minimum, minimum_near, reflections
 from verify.waves.window import Window, middle_half
 
 SEARCH_SPAN = 0.015
 """Half width of the search, relative to the drive's frequency."""
-_GRID, _TOLERANCE = 41, 1e-5
-"""Frequencies of the first scan, and how closely the minimum is found, Hz."""
 
 
 def minimum_reflection(case: DrivenCase, span: float = SEARCH_SPAN, window: Window | None = None) -> Minimum:
-    """Where within `span` (relative) of the drive's frequency the reflection is least, Hz.
+    """Where within `span` (relative) of the drive's frequency the reflection is least, to 1e-5 Hz.
 
     Its `at_edge` says that the reflection still falls there. Raises InputError where the wave stands at all of them.
     """
-    window = window or middle_half(case.beam)
-    frequencies = np.linspace(1.0 - span, 1.0 + span, _GRID) * case.frequency_hz
-    drives = amplitudes(case)
 
     def reflection(at: Array) -> Array:
-        waves = unit_waves(case, at, window)
-        found = reflections(*waves.superposed(drives))[:, 0]
-        # a resonance among others is a standing wave; where no frequency has a wave, the reason is raised
-        return np.nan_to_num(waves.check_any(found) if len(at) > 1 else found, nan=1.0)
+        try:
+            waves = unit_waves(case, at, window or middle_half(case.beam)).superposed(amplitudes(case))
+        except NoFigureError:
+            if len(at) > 1:
+                raise
+            return np.ones(1)
+        return np.nan_to_num(reflections(*waves)[:, 0], nan=1.0)  # on a resonance the wave stands
 
-    least = minimum_near(reflection, frequencies, _TOLERANCE)
+    least = minimum_near(reflection, np.linspace(1.0 - span, 1.0 + span, 41) * case.frequency_hz, 1e-5)
     if least.value > 1.0 - 1e-6:
+        low, high = ((1.0 + side * span) * case.frequency_hz for side in (-1, 1))
         raise InputError(
-            f"phase_deg: with this phase between the forces the wave stands at every frequency from "
-            f"{frequencies[0]:.6g} to {frequencies[-1]:.6g} Hz, so none is best, choose another phase_deg"
+            f"phase_deg: with this phase between the forces the wave stands at every frequency from {low:.6g} to "
+            f"{high:.6g} Hz, so none is best, choose another phase_deg"
         )
     return least
 

@@ -1,6 +1,5 @@
 """A driven beam as one value: a model, what drives it at one frequency, and the devices on it."""
 
-from math import pi
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -51,24 +50,24 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def passive(self) -> tuple[Device, ...]:
         """The devices without their own forces."""
-        omega = 2.0 * pi * self.frequency_hz
-        impeding = (d for d in self.devices if d.turning or d.impedance(omega) != 0.0)
+        impeding = (d for d in self.devices if d.turning or d.stiffness or d.mass or d.dashpot)
         return tuple(replace(device, amplitude=0.0) for device in impeding)
 
-    def field(self, forces: tuple[PointForce, ...] | None = None) -> HarmonicField:
-        """The steady field under its own or other forces (displacements). Raises InputError."""
-        self.check_propagates(self.frequency_hz)
-        solve = self.model.harmonic if self.kind == "force" else self.model.imposed
-        return solve(self.acting if forces is None else forces, self.frequency_hz, devices=self.passive)
-
-    def check_propagates(self, frequency_hz: float) -> None:
-        """Raise CutOffError at a frequency whose waves do not run along the model's parts."""
+    def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
+        """The field under other forces (displacements) at another frequency. Raises InputError."""
         if self.beam.uniform:
             self.model.check_propagates(frequency_hz)
+        solve = self.model.harmonic if self.kind == "force" else self.model.imposed
+        return solve(forces, frequency_hz, devices=self.passive)
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of waves in the model, 1/m: by its discrete dispersion where that is known, else the beam's."""
+        """Of waves in the model, 1/m: by its discrete dispersion where that is known, else the beam's.
+
+        Raises CutOffError at a frequency whose waves do not run along its parts.
+        """
         beam, theory = self.beam, self.model.theory
+        if beam.uniform:
+            self.model.check_propagates(frequency_hz)
         if theory != "euler-bernoulli" or beam.tension or beam.foundation or beam.section:
             return wavenumber(beam, frequency_hz, theory)
         return self.model.wavenumber(frequency_hz)
@@ -77,5 +76,5 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 def driven(case: DrivenCase, cache: "SolutionCache") -> HarmonicField:
     """The field of a case, stored in the cache. Raises InputError."""
     if case not in cache.fields:
-        cache.fields[case] = case.field()
+        cache.fields[case] = case.field(case.acting, case.frequency_hz)
     return cache.fields[case]

@@ -10,8 +10,7 @@ from verify.errors import InputError, ZeroFieldError
 from verify.linear.field import wavenumber
 from verify.linear.positions import positions_on, real_array
 from verify.problem.beam import Beam
-from verify.waves.results import TwoWaves
-from verify.waves.two_waves import ROUNDING, fit_waves, fitted_wavenumber
+from verify.waves.two_waves import ROUNDING, TwoWaves, fit_waves, fitted_wavenumber
 from verify.waves.window import check_clear, check_wavenumber
 
 

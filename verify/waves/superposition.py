@@ -1,8 +1,7 @@
-"""The two waves that a unit force, or a unit displacement, makes at each actuator of a case, at many frequencies."""
+"""The two waves under a unit force, or a unit displacement, of each actuator of a case, at many frequencies."""
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import NoFigureError, ResonanceError
@@ -14,7 +13,7 @@ from verify.waves.window import Window, check_span, check_waves
 
 
 class UnitWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """The two waves in a window under a unit force (displacement) at each of n_a actuators, at n frequencies.
+    """The two waves in a window per unit force (displacement) of each of n_a actuators, at n frequencies.
 
     NaN at a frequency without them: an undamped resonance, a cut-off, a window that is too short.
     """
@@ -29,26 +28,21 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     backward: ComplexArray
     """A-, likewise."""
     missing: tuple[NoFigureError, ...]
-    """Why, of each frequency without them."""
+    """The reason for each frequency without them."""
 
     def superposed(self, drives: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """A+ and A-, (n, p) each, m, under p sets of complex amplitudes, (n_a, p) or (n, n_a, p).
 
-        NaN where nothing moves but by rounding.
+        NaN where nothing moves but by rounding. Raises NoFigureError where that is all.
         """
-        scale = np.ones(len(self.k))
+        scale = np.ones((len(self.k), 1))
         if self.case.kind == "force":
-            scale = np.array([unit_response(self.case.beam, float(f)) for f in self.frequencies_hz])
+            scale[:, 0] = [unit_response(self.case.beam, float(f)) for f in self.frequencies_hz]
         forward, backward = ((wave[:, None, :] @ drives)[:, 0, :] for wave in (self.forward, self.backward))
-        rounding = ROUNDING * scale[:, None] * abs(drives).sum(axis=-2)
-        zero = np.maximum(abs(forward), abs(backward)) <= rounding
-        return np.where(zero, np.nan, forward), np.where(zero, np.nan, backward)
-
-    def check_any(self, values: Array) -> Array:
-        """The values, (n, ...). Raises NoFigureError, for the first reason, where all are NaN."""
-        if np.isnan(values).all():
+        moves = np.maximum(abs(forward), abs(backward)) > ROUNDING * scale * abs(drives).sum(axis=-2)
+        if not moves.any():
             raise self.missing[0] if self.missing else zero_field()
-        return values
+        return np.where(moves, forward, np.nan), np.where(moves, backward, np.nan)
 
 
 def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitWaves:
@@ -57,23 +51,23 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
     positions, couples = [force.position for force in case.acting], [d.position for d in case.passive if d.turning]
     check_span(beam, [*positions, *(d.position for d in case.passive if d.across)], window, couples, theory)
     rule = window_rule(window, wavenumber(beam, highest, theory).real)
-    fields = _unit_responses(case, frequencies_hz, np.array(positions), rule.x)
+    responses = _unit_responses(case, frequencies_hz, positions, rule.x)
     k, missing = np.full(len(frequencies_hz), np.nan, dtype=complex), list[NoFigureError]()
     for i, hertz in enumerate(frequencies_hz.tolist()):
         try:
             check_waves(beam, hertz, window, theory)
-            case.check_propagates(hertz)
-            if not np.isfinite(fields[i]).all():
+            own = case.wavenumber(hertz)
+            if not np.isfinite(responses[i]).all():
+                held = " held at its actuators" if case.kind == "displacement" else ""
                 raise ResonanceError(
-                    f"frequency_hz = {hertz!r} is an undamped resonance of the {case.model.name} model"
-                    f"{' held at its actuators' if case.kind == 'displacement' else ''}: give the beam a loss_factor "
-                    "or choose another frequency"
+                    f"frequency_hz = {hertz!r} is an undamped resonance of the {case.model.name} model{held}: give the "
+                    "beam a loss_factor or choose another frequency"
                 )
-            k[i] = case.wavenumber(hertz)
+            k[i] = own
         except NoFigureError as error:
             missing.append(error)
     waves, known = np.full((len(k), 2, len(positions)), np.nan, dtype=complex), np.isfinite(k)
-    waves[known] = amplitudes_of(rule, k[known], fields[known], 0.5 * sum(window))
+    waves[known] = amplitudes_of(rule, k[known], responses[known], 0.5 * sum(window))
     return UnitWaves(
         case=case,
         frequencies_hz=frequencies_hz,
@@ -84,21 +78,19 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
     )
 
 
-def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: Array, x: Array) -> ComplexArray:
+def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[float], x: Array) -> ComplexArray:
     """Deflection at x, (n, n_a, len(x)), per unit force, or displacement with the others at rest; NaN at resonances."""
     if case.kind == "force" and not case.passive:
         return case.model.receptance(positions, frequencies_hz, x)
-    found = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
     for i, hertz in enumerate(frequencies_hz.tolist()):
-        at = replace(case, frequency_hz=hertz)
-        solve = at.model.harmonic if case.kind == "force" else at.model.imposed
         for j in range(len(positions)):
-            units = tuple(PointForce(position=p, amplitude=float(m == j)) for m, p in enumerate(positions.tolist()))
+            units = tuple(PointForce(position=p, amplitude=float(m == j)) for m, p in enumerate(positions))
             try:
-                found[i, j] = solve(units, hertz, devices=at.passive).deflection(x)
-            except ResonanceError:
+                responses[i, j] = case.field(units, hertz).deflection(x)
+            except NoFigureError:
                 break
-    return found
+    return responses
 
 
 def amplitudes(case: DrivenCase) -> ComplexArray:

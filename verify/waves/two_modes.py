@@ -1,18 +1,18 @@
 """The lumped picture of a travelling wave: two modes a quarter of a period apart; and the local waves of any field.
 
-At a point a deflection is a wave towards +x, one towards -x and two near fields. Its derivatives separate them:
+At a point the derivatives of a deflection separate both waves from both near fields:
 
     w - w''/k^2 = 2 (A+ + A-),   w' - w'''/k^2 = -2 i k (A+ - A-).
 
-The local standing-wave ratio is (|A+| + |A-|) / ||A+| - |A-||. Along a uniform beam without losses a driven field has
-one ratio between two forces. Two modes do not: equal neighbours n, n + 1 of a pinned beam in quadrature have
-|A+|^2 and |A-|^2 as 1 +- sin(pi x / L), so that the ratio is max(tan, cot)(pi x / 2L): a pure wave at mid-span,
-standing at the ends. Derived here; the picture is that of the authors' earlier paper, C. Vloebergh, J.-F. Collard,
-B. Dehez, F. Labrique, *Study of a travelling wave linear piezomotor using analytical, finite-element and lumped
-parameter models*, Electrimacs 2008.
+Along a uniform beam without losses a driven field has one standing-wave ratio between two forces. Two modes do not:
+equal neighbours n, n + 1 of a pinned beam in quadrature have |A+-|^2 as 1 +- sin(pi x / L), so that the ratio is
+max(tan, cot)(pi x / 2L): a pure wave at mid-span, standing at the ends. Derived here; the picture is that of
+C. Vloebergh, J.-F. Collard, B. Dehez, F. Labrique, *Study of a travelling wave linear piezomotor using analytical,
+finite-element and lumped parameter models*, Electrimacs 2008.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -24,7 +24,7 @@ from verify.exact.modes import exact_frequency_hz, mode_shape
 from verify.linear.field import HarmonicField
 from verify.linear.positions import Numbers, vector_on
 from verify.problem.beam import Beam
-from verify.waves.results import reflections, standing_wave_ratios
+from verify.waves.two_waves import reflections, standing_wave_ratios
 
 
 class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
@@ -54,11 +54,15 @@ class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
     def local_waves(self, x: Numbers) -> tuple[ComplexArray, ComplexArray]:
         """(A+, A-) at x (m), (n,) each, in the modes' own units. Raises InputError off the beam."""
         at = vector_on("x", x, self.beam.length)
-        first, second = (
-            np.stack(_waves_of(lambda x, order, mode=mode: mode_shape(self.beam, mode, x, order), k, at))  # type: ignore[misc]
-            for mode, k in ((mode, self.wavenumber(mode)) for mode in self.modes)
+
+        def waves(mode: int) -> ComplexArray:
+            return np.array(
+                _waves_of(lambda x, order: mode_shape(self.beam, mode, x, order), self.wavenumber(mode), at)
+            )
+
+        forward, backward = waves(self.modes[0]) + self.ratio * np.exp(1j * np.deg2rad(self.phase_deg)) * waves(
+            self.modes[1]
         )
-        forward, backward = first + self.ratio * np.exp(1j * np.deg2rad(self.phase_deg)) * second
         return forward, backward
 
     def local_swr(self, x: Numbers) -> Array:
@@ -81,7 +85,7 @@ def local_swr(field: HarmonicField, x: Numbers) -> Array:
     return standing_wave_ratios(reflections(*local_waves(field, x)))
 
 
-def _waves_of(shapes: Callable[[Array, int], Array], k: complex, x: Array) -> tuple[ComplexArray, ComplexArray]:
+def _waves_of(shapes: Callable[[Array, int], Any], k: complex, x: Array) -> tuple[ComplexArray, ComplexArray]:
     """(A+, A-) at x of derivatives of a shape with wavenumber k, (n,) each."""
     even = 0.5 * (shapes(x, 0) - shapes(x, 2) / k**2)
     odd = 0.5j * (shapes(x, 1) - shapes(x, 3) / k**2) / k

@@ -30,7 +30,7 @@ class Waveguide(msgspec.Struct, frozen=True):
         return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / resisted
 
     def axis_ratio(self, omega: Any, k: Any) -> Any:
-        """K h/2 times that ratio: width over height of the surface ellipse of a pure wave."""
+        """Of a pure wave: k h/2 times that ratio, width over height of the surface ellipse."""
         return np.real(k * self.rotation_ratio(omega)) * self.beam.surface_distance
 
     def crest_speed(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:

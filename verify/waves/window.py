@@ -6,7 +6,7 @@ import numpy as np
 
 from verify.checks import LARGEST, check_kind, plain
 from verify.errors import InputError, WindowError, shown
-from verify.linear.field import HarmonicField, wavenumber
+from verify.linear.field import wavenumber
 from verify.problem.beam import Beam
 from verify.words import as_written
 
@@ -26,13 +26,6 @@ def middle_half(beam: Beam) -> Window:
     """The default window [L/4, 3L/4], m."""
     check_kind("beam", beam, Beam)
     return 0.25 * beam.length, 0.75 * beam.length
-
-
-def check_field_window(field: HarmonicField, window: Window) -> None:
-    """Raise for a window that does not suit a field: its forces, reactions, couples and frequency."""
-    positions = [force.position for force in field.forces]
-    check_span(field.beam, positions, window, field.couples, field.theory)
-    check_waves(field.beam, float(field.frequency_hz), window, field.theory)
 
 
 def check_span(
@@ -100,9 +93,7 @@ def check_waves(beam: Beam, frequency_hz: float, window: Window, theory: str = "
         )
     half = float(np.pi / wavenumber(beam, frequency_hz, theory).real)
     if end - start < half:
-        raise WindowError(
-            f"window = {as_written(window)} is shorter than half a wavelength ({half:.4g} m): widen it"
-        )
+        raise WindowError(f"window = {as_written(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
     if end - start > MOST_HALVES * half:
         raise WindowError(
             f"window = {as_written(window)} holds more than {MOST_HALVES} half wavelengths of {half:.4g} m: narrow it "
