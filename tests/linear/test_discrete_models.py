@@ -27,7 +27,7 @@ def test_two_links_swing_as_worked_out_by_hand(titanium_strip):
     """One unknown y: spring (2 y / l)^2 k, kinetic energy 2 m y'^2 / 3, so omega^2 = 6 EI / (rho A l^4)."""
     length = titanium_strip.length / 2
     omega = sqrt(6) * titanium_strip.wave_constant / length**2
-    modes = segment_model.solve_modes(titanium_strip, 1, 2)
+    modes = SegmentModel(titanium_strip, 2).modes(1)
     assert modes.frequencies_hz[0] == pytest.approx(omega / (2 * pi), rel=1e-15)
 
 
@@ -92,7 +92,7 @@ def test_eigenvalues_are_those_of_the_exact_discrete_dispersion(titanium_strip, 
 
 
 def test_most_of_the_modes_of_a_long_chain_keep_their_digits(titanium_strip):
-    found = segment_model.solve_modes(titanium_strip, 250, 300)
+    found = SegmentModel(titanium_strip, 300).modes(250)
     assert found.method == "dense SVD"
     exact = [error_laws.dispersion_frequency_hz("segment", titanium_strip, n, 300) for n in range(1, 251)]
     assert found.frequencies_hz == pytest.approx(exact, rel=1e-13)
@@ -116,8 +116,8 @@ def test_an_assembled_stiffness_loses_what_the_factored_one_keeps(titanium_strip
 def test_segments_lie_below_and_hermite_elements_above_for_every_mode_a_chain_has(titanium_strip):
     for count in range(2, 30):
         exact = np.array([closed_forms.frequency_hz(titanium_strip, n) for n in range(1, count)])
-        below = segment_model.solve_modes(titanium_strip, count - 1, count).frequencies_hz
-        above = fem_beam.solve_modes(titanium_strip, count - 1, count).frequencies_hz
+        below = SegmentModel(titanium_strip, count).modes(count - 1).frequencies_hz
+        above = HermiteModel(titanium_strip, count).modes(count - 1).frequencies_hz
         assert (below < exact).all(), count
         assert (exact < above).all(), count
 
@@ -145,7 +145,7 @@ def test_raw_joints_are_of_order_two_and_corrected_ones_of_order_four(titanium_s
     for reading, leading in (("raw", 1 / 12), ("corrected", None)):
         errors = []
         for count in (30, 60):
-            modes = segment_model.solve_modes(titanium_strip, mode, count)
+            modes = SegmentModel(titanium_strip, count).modes(mode)
             exact = analytic_modes.mode_shape(titanium_strip, mode, modes.nodes)
             errors.append(np.linalg.norm(modes.readings[reading]()[mode - 1]) / np.linalg.norm(exact) - 1)
         order = np.log2(errors[0] / errors[1])
@@ -161,7 +161,7 @@ def test_raw_joints_are_of_order_two_and_corrected_ones_of_order_four(titanium_s
 def test_hermite_elements_take_every_support(titanium_strip, supports, count):
     beam = replace(titanium_strip, supports=supports)
     exact = analytic_modes.solve_modes(beam, 4)
-    found = fem_beam.solve_modes(beam, 4, count)
+    found = HermiteModel(beam, count).modes(4)
     mu = np.array([closed_forms.wavenumber_length(supports, n) for n in range(1, 5)]) / count
     excess = found.frequencies_hz / exact.frequencies_hz - 1
     assert (excess > -1e-13).all()
@@ -240,10 +240,10 @@ def spring(beam, at, **given):
 def seen(beam, settings):
     """Orders of mode 2 from size to size, (3,), of the worst of three sizes each."""
     theory = settings.get("theory", "euler-bernoulli")
-    exact = frequency_near(beam, theory, segment_model.solve_modes(beam, 2, 560, **settings).frequencies_hz[-1])
+    exact = frequency_near(beam, theory, SegmentModel(beam, 560, **settings).modes(2).frequencies_hz[-1])
 
     def worst(count):
-        found = [segment_model.solve_modes(beam, 2, n, **settings).frequencies_hz[-1] for n in range(count, count + 3)]
+        found = [SegmentModel(beam, n, **settings).modes(2).frequencies_hz[-1] for n in range(count, count + 3)]
         return max(abs(f / exact - 1.0) for f in found)
 
     return [float(np.log2(one / other)) for one, other in pairwise(map(worst, COUNTS))]

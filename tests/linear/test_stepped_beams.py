@@ -116,7 +116,7 @@ def test_two_frequencies_that_nearly_coincide_are_told_apart():
 
 def test_no_stepped_frequency_is_missed():
     beam = replace(STEPPED, supports=("free", "free"))
-    elements = fem_beam.solve_modes(beam, 25, 240).frequencies_hz
+    elements = HermiteModel(beam, 240).modes(25).frequencies_hz
     exact = [analytic_modes.stepped_frequency_hz(beam, n) for n in range(1, 26)]
     assert elements == pytest.approx(exact, rel=1e-4)
     assert (elements > exact).all()
@@ -141,7 +141,7 @@ def test_elements_that_end_on_the_steps_keep_order_four():
 def test_unequal_segments_are_of_order_two(titanium_strip):
     exact = closed_forms.frequency_hz(titanium_strip, 3)
     first, second = (
-        segment_model.solve_modes(titanium_strip, 3, n, grading=2.5).frequencies_hz[2] / exact - 1 for n in (60, 120)
+        SegmentModel(titanium_strip, n, grading=2.5).modes(3).frequencies_hz[2] / exact - 1 for n in (60, 120)
     )
     assert np.log2(abs(first / second)) == pytest.approx(2.0, abs=0.05)
 
@@ -152,7 +152,7 @@ def test_printed_and_series_agree_where_the_paper_needs_them(titanium_strip):
         replace(titanium_strip, section=(Section(length=0.3), Section(length=0.43, density=1000.0))),
     ):
         printed, series = (
-            segment_model.solve_modes(beam, 5, 20, joints=j).frequencies_hz for j in ("printed", "series")
+            SegmentModel(beam, 20, joints=j).modes(5).frequencies_hz for j in ("printed", "series")
         )
         assert printed == pytest.approx(series, rel=1e-13)
 
