@@ -447,9 +447,9 @@ class DiscreteModel(BeamModel):
         if self._superposes(omegas):
             # shapes are read once, of modes, and not of every response
             omega2, loss = (omegas / self._omega_unit) ** 2, self._shared_loss(omegas) or 0.0
-            denominators, acting, responding = self.stable_system.receptance_terms(omega2, loss)
+            receptances, acting, responding = self.stable_system.modal_receptances(omega2, loss)
             weights, shapes = acting.T @ loads, self.line(responding)(read, 0)
-            found = np.einsum("mp,fm,mx->fpx", weights, 1.0 / denominators, shapes, optimize=True)
+            found = np.einsum("mp,fm,mx->fpx", weights, receptances, shapes, optimize=True)
             return np.asarray(found, dtype=complex)
         found = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
         for i, omega in enumerate(omegas):

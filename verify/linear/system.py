@@ -238,12 +238,12 @@ class StructuralSystem:
 
     def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
         """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
-        from scipy.sparse import block_array, csc_array
+        from scipy.sparse import block_array, csc_array, csr_array
         from scipy.sparse.linalg import splu
 
         matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
         for row, z in devices:
-            wide = csc_array((row.data, (row.coords[0], row.coords[1] + m)), shape=(1, matrix.shape[0]))
+            wide = csr_array((row.data, row.indices + m, row.indptr), shape=(1, matrix.shape[0]))
             matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide)
         if rows is not None:
             wide = block_array([[csc_array((rows.shape[0], m)), rows]], format="csc")
@@ -258,7 +258,7 @@ class StructuralSystem:
     ) -> Any:
         """The steady response (n, k) to loads (n, k): (K + devices - omega^2 M) v = load.
 
-        `stiffness` is d with losses, complex (m,). A device is a sparse row (1, n), which reads its displacement, and
+        `stiffness` is d with losses, complex (m,). A device is a sparse row (1, n) by rows, which reads its displacement, and
         its dynamic stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of a resonance where
         nothing is damped.
         """
@@ -287,15 +287,15 @@ class StructuralSystem:
 
         `modal_damping` is the damping ratio of every mode. NaN at the frequencies of undamped resonances.
         """
-        denominators, acting, responding = self.receptance_terms(omega2, loss_factor, modal_damping)
-        shares = (acting.T @ loads)[None] / denominators[:, :, None]
+        receptances, acting, responding = self.modal_receptances(omega2, loss_factor, modal_damping)
+        shares = (acting.T @ loads)[None] * receptances[:, :, None]
         response = responding @ shares.transpose(1, 0, 2).reshape(acting.shape[1], -1)
         return np.asarray(response.reshape(self.n, len(omega2), -1).transpose(1, 0, 2))
 
-    def receptance_terms(
+    def modal_receptances(
         self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
     ) -> tuple[ComplexArray, Array, Array]:
-        """omega_n^2 (1 + i eta) - omega^2 of all motions, (n_frequencies, k), and vectors (n, k): excited, responding.
+        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), vectors (n, k) of load and response.
 
         Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
         """
@@ -307,8 +307,10 @@ class StructuralSystem:
         damping = 2j * modal_damping * np.sqrt(values * omega2[:, None])
         denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None] + damping
         near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
-        denominators[near.any(axis=1)] = np.nan
-        return denominators, acting, responding
+        denominators[near] = 1.0
+        receptances = 1.0 / denominators
+        receptances[near.any(axis=1)] = np.nan
+        return receptances, acting, responding
 
     def prescribed(
         self,
