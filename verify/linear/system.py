@@ -238,12 +238,12 @@ class StructuralSystem:
 
     def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
         """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
-        from scipy.sparse import block_array, csc_array, csr_array
+        from scipy.sparse import block_array, csc_array, hstack
         from scipy.sparse.linalg import splu
 
         matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
         for row, z in devices:
-            wide = csr_array((row.data, row.indices + m, row.indptr), shape=(1, matrix.shape[0]))
+            wide = hstack([csc_array((1, m)), row], format="csc")
             matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide)
         if rows is not None:
             wide = block_array([[csc_array((rows.shape[0], m)), rows]], format="csc")
@@ -258,7 +258,7 @@ class StructuralSystem:
     ) -> Any:
         """The steady response (n, k) to loads (n, k): (K + devices - omega^2 M) v = load.
 
-        `stiffness` is d with losses, complex (m,). A device is a sparse row (1, n) by rows, which reads its displacement, and
+        `stiffness` is d with losses, complex (m,). A device is a sparse row (1, n), which reads its displacement, and
         its dynamic stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of a resonance where
         nothing is damped.
         """
