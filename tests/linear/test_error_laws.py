@@ -78,9 +78,7 @@ def test_the_leading_terms_are_a_law_of_fine_chains_alone(supports, mode, one, t
     first = one if supports.count("clamped") == 1 else two
 
     def ratio(count):
-        return errors("segment", supports, count)[mode - 1] / error_laws.leading_error(
-            "segment", supports, mode, count
-        )
+        return errors("segment", supports, count)[mode - 1] / error_laws.leading_error("segment", supports, mode, count)
 
     for count in (first, int(1.3 * first), 2 * first):
         if mode > 1 or count < 400:  # rounding

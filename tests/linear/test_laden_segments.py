@@ -16,7 +16,6 @@ from verify.problem.point_attachments import PointMass, PointSpring
 from verify.segment_model import SegmentModel
 
 
-
 def solve_modes(beam, n_modes, n_segments, **settings):
     return SegmentModel(beam, n_segments, **settings).modes(n_modes)
 
@@ -190,7 +189,9 @@ BUCKLING = {"PP": pi, "CF": pi / 2, "CC": 2 * pi}
 def test_a_chain_buckles_at_order_two_and_a_tensioned_one_at_four(supports):
     exact = EI * (BUCKLING[supports] / L) ** 2
     beam = replace(STRIP, supports=ENDS[supports])
-    series, mended = ([SegmentModel(beam, n, joints=j).buckling_load() / exact - 1 for n in (40, 80)] for j in ("series", "tensioned"))
+    series, mended = (
+        [SegmentModel(beam, n, joints=j).buckling_load() / exact - 1 for n in (40, 80)] for j in ("series", "tensioned")
+    )
     assert np.log2(series[0] / series[1]) == pytest.approx(2.0, abs=0.03)
     assert series[1] == pytest.approx(-((BUCKLING[supports] / 80) ** 2) / 12, rel=0.03)
     assert abs(mended[1]) < 0.02 * abs(series[1])
@@ -390,9 +391,7 @@ def strewn(draw):
     spring = PointSpring(
         position=float(places[3]), stiffness=float(10 ** draw.uniform(2, 7)), rotational=float(10 ** draw.uniform(0, 4))
     )
-    return replace(
-        BLADE, supports=supports, mass=masses[: int(draw.integers(1, 4))], spring=(spring,)
-    )
+    return replace(BLADE, supports=supports, mass=masses[: int(draw.integers(1, 4))], spring=(spring,))
 
 
 @pytest.mark.parametrize("seed", range(0, 30, 2))

@@ -14,7 +14,6 @@ from verify.motion.surface import basis_of
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)

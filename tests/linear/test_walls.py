@@ -59,7 +59,8 @@ def test_gregorys_wall_tends_to_its_asymptotic_law_on_both_sides_of_the_sign_cha
     """mu^4 (-1/1440 + c/(12 N)) of c clamped ends."""
     beam, c = replace(titanium_strip, supports=supports), supports.count("clamped")
     laws = [
-        (closed_forms.wavenumber_length(supports, 12) / n) ** 4 * (-1 / 1440 + c / (12 * n)) for n in (60 * c, 800, 1600)
+        (closed_forms.wavenumber_length(supports, 12) / n) ** 4 * (-1 / 1440 + c / (12 * n))
+        for n in (60 * c, 800, 1600)
     ]
     assert laws[0] > 0 > laws[2]
     off = [abs(e / law - 1) for e, law in zip(errors(beam, 12, (800, 1600)), laws[1:], strict=True)]
