@@ -33,7 +33,7 @@ from verify.problem.beam import Beam
 from verify.problem.supports import HOLDS
 from verify.segments import shear
 from verify.segments.attachments import Body, attachment_weights, bodies_on, joint_weights
-from verify.segments.chain import Chain, Motions, link_inertia, link_mass, right_of, selection, squares
+from verify.segments.chain import Chain, Motions, at_joints, link_inertia, link_mass, right_of, selection, squares
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
@@ -193,6 +193,10 @@ class SegmentModel(DiscreteModel):
     def _tension(self) -> float:
         return self.beam.tension * self.unit**2 / self.beam.bending_stiffness
 
+    @property
+    def _foundation(self) -> float:
+        return self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
+
     def _of_links(self, figure: str) -> Array:
         """A property of the beam's pieces for every link, (N,), SI."""
         counts = part_counts([piece.length for piece in self.beam.pieces], self.n_segments)
@@ -238,32 +242,35 @@ class SegmentModel(DiscreteModel):
 
     @cached_property
     def _weights(self) -> tuple[Any, Any]:
+        """Of joint positions (bodies, N + 1) and link rotations (bodies, N) for bodies and springs."""
         return attachment_weights(self.chain, [body.position for body in self.bodies], self.attachment)
 
-    def _rotation_row(self, i: int) -> Any:
-        """Rotation of body i over (rotations of the links, unknowns), sparse (1, N + n)."""
-        from scipy.sparse import hstack
+    @cached_property
+    def _rotations(self) -> Any:
+        """Rotations of the bodies over (rotations of the links, unknowns), sparse (bodies, N + n)."""
+        from scipy.sparse import diags_array, hstack
 
-        body, motions = self.bodies[i], self.motions
-        if body.end is not None and self._elastic[body.end]:
-            return hstack([selection([], [], (1, self.n_segments)), motions.end_rotations[[body.end]]], format="csr")
-        return hstack([self._weights[1][[i]], selection([], [], (1, motions.n))], format="csr")
+        beyond = np.array([body.end is not None and self._elastic[body.end] for body in self.bodies])
+        at = np.flatnonzero(beyond)
+        ends = selection(at, [self.bodies[i].end for i in at], (len(beyond), 2))
+        inside = diags_array(np.where(beyond, 0.0, 1.0)) @ self._weights[1]
+        return hstack([inside, ends @ self.motions.end_rotations], format="csr")
 
     # --- Stiffness and mass --------------------------------------------------------------------------------------
 
     @cached_property
-    def _softness(self) -> Array:
-        """Compliances of joints 0..N against slip, without walls, (N + 1,)."""
-        return shear.softness_of(self.links.lengths, self._shears)
-
-    @property
     def _shears(self) -> Array:
         """Kappa G A of the links, (N,)."""
         return self._of_links("shear_stiffness") * self.unit**2 / self.beam.bending_stiffness
 
     @cached_property
-    def _slip_compliances(self) -> tuple[Array, Array]:
-        """Of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without."""
+    def _softness(self) -> Array:
+        """Compliances of joints 0..N against slip by Eq. (1), without walls, (N + 1,)."""
+        return at_joints(self.links.lengths / self._shears)
+
+    @cached_property
+    def _slips(self) -> tuple[Array, Array]:
+        """Compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without."""
         if self.theory != "timoshenko":
             return np.zeros(0), np.zeros(len(self.bodies))
         bodies = self.bodies if self.attachment == "reciprocal" else ()
@@ -272,7 +279,7 @@ class SegmentModel(DiscreteModel):
     @cached_property
     def motions(self) -> Motions:
         """Positions, rotations and slips as linear maps of the unknowns."""
-        slips, gives = self._slip_compliances
+        slips, gives = self._slips
         rotating = [end for end, body in enumerate(self._at_ends) if body.rotary_inertia]
         return Motions(self.chain, rotating, slips, np.array([c for c, b in zip(gives, self.bodies) if c and b.mass]))
 
@@ -291,42 +298,41 @@ class SegmentModel(DiscreteModel):
     def _assembled(self) -> StructuralSystem:
         from scipy.sparse import csc_array, vstack
 
-        chain, motions, lengths, n = self.chain, self.motions, self.links.lengths, self.n_segments
+        beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
         # strains over (rotations of the links, unknowns v), and what resists them
         links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
         own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
-        strains: list[tuple[Any, Any]] = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
-        if slipping := len(motions.sliding) + len(motions.gives):
-            strains.append((own[motions.n - slipping :], np.ones(slipping)))
-        if self.beam.foundation:
-            ground = self.beam.foundation * self.unit**4 / self.beam.bending_stiffness * lengths
+        strains = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
+        strains.append((own[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
+        bound = 0.0
+        if beam.foundation:
+            ground = self._foundation * lengths
             strains += [(motions.middles @ own, ground), (links, ground * lengths**2 / 12.0)]
-        if self.beam.tension:
+            if beam.tension >= 0.0 and not beam.mass:
+                bound = np.minimum(ground / chain.masses, ground * lengths**2 / (12.0 * chain.inertias)).min()
+        if beam.tension:
             strains.append((links, self._tension * lengths))
-        mass = link_mass(motions)
+        mass, across = link_mass(motions), None
         if self.joints == "tensioned" and self.theory != "euler-bernoulli":
-            mass = mass - self._corrections_of_mass
-        springs, giving, down = [], 0, None
-        for i, (body, give) in enumerate(zip(self.bodies, self._slip_compliances[1], strict=False)):
-            row, lateral = self._weights[0][[i]] @ motions.positions, body.stiffness
-            if give and body.mass:
-                row, giving = row + motions.body_slips[[giving]], giving + 1
-            elif give:  # in series, so that no unknown is without mass
-                lateral = 1.0 / (1.0 / lateral + give)
-            springs.append(row)
-            if lateral:
-                strains.append((row @ own, [lateral]))
-            if body.mass:
-                mass = mass + squares(row, np.array([body.mass]))
-            if body.rotational and (body.end is None or not self._end_springs[body.end]):
-                strains.append((self._rotation_row(i), [body.rotational]))
-            if body.rotary_inertia:
-                down = motions.factors[1] @ motions.factors[0] if down is None else down
-                mass = mass + squares(self._rotation_row(i) @ down, np.array([body.rotary_inertia]))
-        rigid = self._rigid(vstack(springs).tocsr() if springs else None)
+            inertias = shear.joint_inertias(self._thick, self._wall_factors, self._own_share, self.wall)
+            mass = mass - squares(motions.angles_of @ motions.both, inertias)
+            if motions.n_slips:
+                mass = mass - squares(motions.joint_slips, shear.slip_masses(chain, motions.slips))
+        if self.bodies:
+            masses, rotary, lateral, rotational = np.array([body[2:] for body in self.bodies]).T
+            gives = self._slips[1]
+            # a spring without a mass is in series with its slip, or with its end's joint: no unknown is without mass
+            lateral = lateral / (1.0 + lateral * np.where(masses, 0.0, gives))
+            rotational = np.where([b.end is not None and self._end_springs[b.end] for b in self.bodies], 0.0, rotational)
+            slipping = np.flatnonzero((gives > 0.0) & (masses > 0.0))
+            own_slips = selection(slipping, np.arange(len(slipping)), (len(gives), len(slipping))) @ motions.body_slips
+            across = self._weights[0] @ motions.positions + own_slips
+            strains += [((across @ own)[lateral > 0.0], lateral[lateral > 0.0])]
+            strains += [(self._rotations[rotational > 0.0], rotational[rotational > 0.0])]
+            mass = mass + squares(across, masses) + squares(self._rotations @ motions.both, rotary)
         rows, stiffnesses = zip(*strains, strict=True)
         factors = [*motions.factors, vstack(rows, format="csr")]
-        return StructuralSystem(factors, np.concatenate(stiffnesses), csc_array(mass), rigid, self._lower_bound)
+        return StructuralSystem(factors, np.concatenate(stiffnesses), csc_array(mass), self._rigid(across), bound)
 
     @cached_property
     def _springs(self) -> Any:
@@ -338,16 +344,6 @@ class SegmentModel(DiscreteModel):
         """Part of each joint's angle that is the beam's and not a spring's beyond its end, (N + 1,)."""
         own, whole = self._own_compliances, self.chain.compliances
         return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
-
-    @property
-    def _corrections_of_mass(self) -> Any:
-        """What tensioned joints take off the rotary inertia and the mass of links, sparse (n, n)."""
-        motions = self.motions
-        inertias = shear.joint_inertias(self._thick, self._wall_factors, self._own_share, self.wall)
-        found = squares(motions.angles_of @ motions.factors[1] @ motions.factors[0], inertias)
-        if len(motions.slips):
-            found = found + squares(motions.joint_slips, shear.slip_masses(self.chain, motions.slips))
-        return found
 
     def _rigid(self, across: Any) -> Array:
         """Motions that nothing resists, (n, 0 to 2)."""
@@ -361,15 +357,6 @@ class SegmentModel(DiscreteModel):
             found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
         return found
 
-    @property
-    def _lower_bound(self) -> float:
-        """Of all eigenvalues, by a foundation; 0 where bodies or a compression may lower them."""
-        if self.beam.tension < 0.0 or self.beam.mass or not self.beam.foundation:
-            return 0.0
-        lengths, ground = self.links.lengths, self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
-        bound = np.minimum(lengths / self.chain.masses, lengths**3 / (12.0 * self.chain.inertias)).min()
-        return float(ground * bound)
-
     def lossy_stiffness(self, omega: float) -> Any:
         """D with the loss factor of the beam and the dashpots of the joints; springs, ground and tension lose nothing."""
         d, dashpots = self._assembled.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
@@ -379,8 +366,7 @@ class SegmentModel(DiscreteModel):
         series[[0, -1]] = self._end_springs
         loss = self.beam.loss_factor / self._beam_compliances[there] + dashpots
         found[: len(there)] = 1.0 / (1.0 / (1.0 / self._own_compliances[there] + 1j * loss) + series[there])
-        slipping = len(self.motions.sliding) + len(self.motions.gives)
-        found[len(there) : len(there) + slipping] *= 1.0 + 1j * self.beam.loss_factor
+        found[len(there) : len(there) + self.motions.n_slips] *= 1.0 + 1j * self.beam.loss_factor
         return found
 
     # --- Loads and readings --------------------------------------------------------------------------------------
@@ -447,9 +433,8 @@ class SegmentModel(DiscreteModel):
             bent[:, self._springs] = angles * self._own_share[self._springs] / stiffness
             if self.theory == "timoshenko":
                 values = self._assembled.rayleigh_quotients(vectors)
-                ground = self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
                 joints = self._corrected(vectors)
-                bent += shear.modal_shear_change(self.chain, self._shears, ground, joints, values)
+                bent += shear.modal_shear_change(self.chain, self._shears, self._foundation, joints, values)
             return bent / self.unit**2
 
         readings = {"corrected": lambda: self._corrected(vectors), "raw": lambda: self._joints(vectors)}
@@ -467,9 +452,8 @@ class SegmentModel(DiscreteModel):
         index = {body.position: i for i, body in enumerate(self.bodies)}
 
         def rotations() -> Array:
-            each = self.motions.factors[1] @ (self.motions.factors[0] @ vectors)
-            rows = [self._rotation_row(index[mass.position]) @ each for mass in self.beam.mass]
-            return np.concatenate(rows).T / self.unit
+            rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
+            return (rows @ self.motions.both @ vectors).T / self.unit
 
         spline = replace(self, reading="corrected").line
         return {

@@ -137,9 +137,14 @@ class Motions:
         return np.flatnonzero(np.isfinite(self.slips))
 
     @property
+    def n_slips(self) -> int:
+        """Number of slips."""
+        return len(self.sliding) + len(self.gives)
+
+    @property
     def n(self) -> int:
         """Number of unknowns."""
-        return len(self.free) + len(self.rotating) + len(self.sliding) + len(self.gives)
+        return len(self.free) + len(self.rotating) + self.n_slips
 
     @cached_property
     def positions(self) -> Any:
@@ -172,15 +177,13 @@ class Motions:
 
         The first takes plain differences, which are exact.
         """
-        from scipy.sparse import block_diag, diags_array, eye_array, vstack
+        from scipy.sparse import block_array, diags_array, eye_array, vstack
 
-        n, own = self.chain.n_segments, eye_array(self.n, format="csr")
-        scale = block_diag([diags_array(1.0 / self.chain.lengths), own], format="csr")
-        if len(self.sliding):
-            scale = scale - vstack([self._slip_rotations, 0.0 * own]) @ selection(
-                np.arange(self.n), n + np.arange(self.n), (self.n, n + self.n)
-            )
-        return vstack([bidiagonal(n, -1.0, 1.0) @ self.positions, own], format="csr"), scale.tocsr()
+        n, lengths, shares = self.chain.n_segments, self.chain.lengths, self._shares
+        own = eye_array(self.n, format="csr")
+        slips = -bidiagonal(n, shares[:-1] / lengths, shares[1:] / lengths) @ self.joint_slips
+        scale = block_array([[diags_array(1.0 / lengths), slips], [None, own]], format="csr")
+        return vstack([bidiagonal(n, -1.0, 1.0) @ self.positions, own], format="csr"), scale
 
     @property
     def _shares(self) -> Array:
@@ -189,18 +192,15 @@ class Motions:
         shares[[0, -1]] = 1.0
         return shares
 
-    @property
-    def _slip_rotations(self) -> Any:
-        """Rotations that slips take off the links, sparse (N, n)."""
-        lengths, n, shares = self.chain.lengths, self.chain.n_segments, self._shares
-        return bidiagonal(n, shares[:-1] / lengths, shares[1:] / lengths) @ self.joint_slips
-
     @cached_property
+    def both(self) -> Any:
+        """(rotations of the links, v) of v, sparse (N + n, n)."""
+        return self.factors[1] @ self.factors[0]
+
+    @property
     def rotations(self) -> Any:
         """Of the links, sparse (N, n)."""
-        n, lengths = self.chain.n_segments, self.chain.lengths
-        found = bidiagonal(n, -1.0 / lengths, 1.0 / lengths) @ self.positions
-        return found - self._slip_rotations if len(self.sliding) else found
+        return self.both[: self.chain.n_segments]
 
     @cached_property
     def middles(self) -> Any:

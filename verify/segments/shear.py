@@ -12,7 +12,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.segments.attachments import Body
-from verify.segments.chain import Chain, Motions, at_joints, right_of
+from verify.segments.chain import Chain, Motions, right_of
 from verify.segments.walls import tension_excess, wall_factors
 
 _LEAST = 1e-9
@@ -148,8 +148,3 @@ def section_rotation(
     kinds = tuple("not-a-knot" if there else "clamped" for there in jointed)
     line = CubicSpline(x, values.T, axis=1, bc_type=kinds)
     return lambda at, derivative: line(np.clip(at, nodes[0], nodes[-1]), derivative)
-
-
-def softness_of(lengths: Array, shears: Array) -> Array:
-    """1/k against slip of joints 0..N, two half links in series, (N + 1,)."""
-    return at_joints(lengths / shears)
