@@ -356,7 +356,7 @@ class DiscreteModel(BeamModel):
         """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
         first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
         losses = np.imag(first / self.stable_system.stiffness)
-        return float(losses[0]) if np.ptp(losses) <= 1e-15 and np.array_equal(first, last) else None
+        return float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
 
     def _superposes(self, omegas: Array) -> bool:
         """Whether all modes cost less than a factorisation for each frequency, and are not coupled."""
@@ -447,9 +447,9 @@ class DiscreteModel(BeamModel):
         if self._superposes(omegas):
             # shapes are read once, of modes, and not of every response
             omega2, loss = (omegas / self._omega_unit) ** 2, self._shared_loss(omegas) or 0.0
-            denominators, acting, responding = self.stable_system.receptance_terms(omega2, loss)
+            receptances, acting, responding = self.stable_system.modal_receptances(omega2, loss)
             weights, shapes = acting.T @ loads, self.line(responding)(read, 0)
-            found = np.einsum("mp,fm,mx->fpx", weights, 1.0 / denominators, shapes, optimize=True)
+            found = np.einsum("mp,fm,mx->fpx", weights, receptances, shapes, optimize=True)
             return np.asarray(found, dtype=complex)
         found = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
         for i, omega in enumerate(omegas):

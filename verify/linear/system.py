@@ -287,15 +287,15 @@ class StructuralSystem:
 
         `modal_damping` is the damping ratio of every mode. NaN at the frequencies of undamped resonances.
         """
-        denominators, acting, responding = self.receptance_terms(omega2, loss_factor, modal_damping)
-        shares = (acting.T @ loads)[None] / denominators[:, :, None]
+        receptances, acting, responding = self.modal_receptances(omega2, loss_factor, modal_damping)
+        shares = (acting.T @ loads)[None] * receptances[:, :, None]
         response = responding @ shares.transpose(1, 0, 2).reshape(acting.shape[1], -1)
         return np.asarray(response.reshape(self.n, len(omega2), -1).transpose(1, 0, 2))
 
-    def receptance_terms(
+    def modal_receptances(
         self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
     ) -> tuple[ComplexArray, Array, Array]:
-        """omega_n^2 (1 + i eta) - omega^2 of all motions, (n_frequencies, k), and vectors (n, k): excited, responding.
+        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), vectors (n, k) of load and response.
 
         Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
         """
@@ -307,8 +307,10 @@ class StructuralSystem:
         damping = 2j * modal_damping * np.sqrt(values * omega2[:, None])
         denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None] + damping
         near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
-        denominators[near.any(axis=1)] = np.nan
-        return denominators, acting, responding
+        denominators[near] = 1.0
+        receptances = 1.0 / denominators
+        receptances[near.any(axis=1)] = np.nan
+        return receptances, acting, responding
 
     def prescribed(
         self,
