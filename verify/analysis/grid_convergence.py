@@ -27,7 +27,7 @@ class GridConvergence(msgspec.Struct, frozen=True, kw_only=True):
     order: float | None
     """Observed order; None where the values do not converge."""
     extrapolated: float
-    """Richardson's value at vanishing part length; `value` without an order."""
+    """Richardson's value at vanishing part length; `value` without an observed order."""
     index: float
     """GCI: half width of the uncertainty band about `value`, relative to it; infinite without an order."""
     asymptotic_ratio: float | None
@@ -42,7 +42,9 @@ class GridConvergence(msgspec.Struct, frozen=True, kw_only=True):
 def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: int | None = None) -> GridConvergence:
     """Observed order, extrapolated value and grid convergence index of a value at three sizes, in any sequence.
 
-    `expected` is the theoretical order. Raises InputError for other than three different sizes, for values that are
+    `expected` is the theoretical order. An observed order above it is an accident of errors that are about to change
+    sign: the theoretical one then stands for it, which raises the fraction of bands that contain the exact frequency
+    from 0.90 to 0.97 (tests/analysis). Raises InputError for other than three different sizes, for values that are
     zero or not finite, and for differences within rounding.
     """
     if len(counts) != 3 or len(set(counts)) != 3 or min(counts) < 1 or len(values) != 3:
@@ -60,7 +62,8 @@ def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: i
     order = _order(r21, r32, e32 / e21)
     if order is None:
         return GridConvergence(value=f1, order=None, extrapolated=f1, index=inf, asymptotic_ratio=ratio)
-    correction = -e21 / (r21**order - 1.0)
+    used = order if expected is None else min(order, expected)
+    correction = -e21 / (r21**used - 1.0)
     return GridConvergence(
         value=f1,
         order=order,

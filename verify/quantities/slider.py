@@ -190,7 +190,7 @@ def order(
         raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
     exact = displacement(by, min(steps) / 16.0)
     errors = [relative_error(displacement(by, step), exact) for step in steps]
-    return asymptotic_order([1.0 / step for step in steps], errors, told=f"steps = {list(steps)}")
+    return asymptotic_order([1.0 / step for step in steps], errors, given=f"steps = {list(steps)}")
 
 
 @quantity("slider.deflection", unit="m")

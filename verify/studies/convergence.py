@@ -27,8 +27,8 @@ ORDER_TOLERANCE = 1.0
 STYLES = ("-o", "--s", ":^", "-.d", "-v")
 """Line and marker of each mode."""
 NOTES = [
-    "Order: from the size before. GCI: grid convergence index of this size and the two before, the error that a user "
-    "without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
+    "Order: from the size before. GCI: grid convergence index of this size and the two before, the error bound that a "
+    "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
     "Time: warm solve of all modes, assembly included, median of repeats.",
 ]
 CAPTIONS = {
@@ -101,6 +101,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         rows = []
         for mode in self.modes:
             for one in variants:
+                theory = one.expected_order(cache.beam)
                 before: tuple[int, float] | None = None
                 known: dict[int, float] = {}
                 for count in self.counts:
@@ -114,7 +115,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                             order = log(before[1] / error) / log(count / before[0])
                         known[count] = frequency
                         with suppress(InputError):  # fewer than three sizes, or rounding
-                            gci = grid_convergence(list(known)[-3:], list(known.values())[-3:])
+                            gci = grid_convergence(list(known)[-3:], list(known.values())[-3:], theory)
                             if gci.order is not None:
                                 exact = cache.exact_hz(mode, theory_of(one.settings))
                                 index, extrapolated = gci.index, relative_error(gci.extrapolated, exact)
