@@ -379,8 +379,14 @@ class SegmentModel(DiscreteModel):
 
         if not rotation:
             return joint_weights(self.chain, positions, self.load) @ self.motions.positions
-        each = [attachment_weights(self.chain, [float(position)], self.load)[1] for position in positions]
-        return vstack(each, format="csr") @ self.motions.rotations
+        ends = {body.position: body.end for body in self.bodies if body.end is not None and self._elastic[body.end]}
+        each = [
+            self.motions.end_rotations[[ends[position]]]
+            if position in ends
+            else attachment_weights(self.chain, [float(position)], self.load)[1] @ self.motions.rotations
+            for position in positions
+        ]
+        return vstack(each, format="csr")
 
     def _joints(self, unknowns: Any) -> Any:
         """Positions of joints 0..N of unknowns (n, k), (k, N + 1)."""
