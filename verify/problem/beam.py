@@ -20,6 +20,7 @@ from verify.problem.cross_section import (
     shear_coefficient,
 )
 from verify.problem.point_attachments import PointMass, PointSpring
+from verify.problem.supports import HOLDS
 
 SHORTEST_SECTION = 1e-6
 """Relative to the beam's length."""
@@ -29,8 +30,6 @@ MOST_WAVES = 1e6
 """Wavelengths along a beam: more take too many points, and their phase loses its digits."""
 KEPT = 4096
 """Beams whose pieces are cached, about a kilobyte each."""
-_HOLDS = {"pinned": (True, False), "clamped": (True, True), "guided": (False, True), "free": (False, False)}
-"""Whether a support holds deflection and slope."""
 
 
 class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -122,7 +121,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     f"{where}.position = {position!r} lies off the beam: give one between 0 and {self.length!r} m"
                 )
             for at, support in zip((0.0, self.length), self.supports, strict=True):
-                for field, value, held in zip(fields, values, _HOLDS[support], strict=True):
+                for field, value, held in zip(fields, values, HOLDS[support], strict=True):
                     if value and held and position == at:
                         raise InputError(
                             f"{where}.{field} = {value!r} would do nothing at a {support} end: leave it out, "
@@ -192,9 +191,9 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def rigid_lines(self) -> tuple[tuple[float, float], ...]:
         """Rigid motions w = a + b x without stiffness, as (a, b) with x in m: none, one or two."""
         ends = zip((0.0, self.length), self.supports, strict=True)
-        places = {at for at, support in ends if _HOLDS[support][0]}
+        places = {at for at, support in ends if HOLDS[support].deflection}
         places |= {spring.position for spring in self.spring if spring.stiffness}
-        turned = any(_HOLDS[support][1] for support in self.supports) or bool(self.tension)
+        turned = any(HOLDS[support].rotation for support in self.supports) or bool(self.tension)
         turned |= any(spring.rotational for spring in self.spring)
         if self.foundation or len(places) > 1 or (places and turned):
             return ()
