@@ -72,6 +72,19 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """Whether it acts on the rotation."""
         return any(getattr(self, name) for name in TURNING)
 
+    @property
+    def own_force(self) -> PointForce:
+        """The blocked force as a point force."""
+        return PointForce(position=self.position, amplitude=self.amplitude, phase_deg=self.phase_deg)
+
+    def dynamic_stiffness(self, omega: float) -> complex:
+        """Force over deflection, S + i omega R - omega^2 m, N/m."""
+        return complex(self.stiffness - omega**2 * self.mass, omega * self.dashpot)
+
+    def rotational_dynamic_stiffness(self, omega: float) -> complex:
+        """Couple over rotation, N m/rad."""
+        return complex(self.rotational - omega**2 * self.rotary_inertia, omega * self.rotational_dashpot)
+
     def impedance(self, omega: float) -> complex:
         """Force over velocity, R + i (omega m - S / omega), kg/s."""
         return complex(self.dashpot, omega * self.mass - self.stiffness / omega)

@@ -1,0 +1,151 @@
+"""The steady motion of a beam under harmonic forces, at one frequency or at many."""
+
+from collections.abc import Callable, Sequence
+from math import sqrt
+
+import msgspec
+import numpy as np
+from msgspec.structs import replace
+
+from verify.arrays import Array, ComplexArray
+from verify.errors import InputError
+from verify.linear.positions import Numbers, positions_on, reshape_like
+from verify.problem.beam import Beam, PointForce
+
+
+class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Steady motion Re(w(x) e^{+i omega t}) of one model under harmonic point forces.
+
+    With an array of frequencies every result has a leading axis of that length.
+    """
+
+    model: str
+    """Name of the model."""
+    count: int | None
+    """Elements or segments; None for the exact beam."""
+    beam: Beam
+    frequency_hz: float | Array
+    """Of the drive, Hz: one, or (n_frequencies,)."""
+    forces: tuple[PointForce, ...]
+    """All transverse point forces on the beam, N: the given ones and the reactions of devices and imposed
+    displacements. With several frequencies the given ones alone."""
+    shapes: Callable[[Array, int], ComplexArray]
+    """(x, derivative) -> (len(x),), or (n_frequencies, len(x)), in metres per metre^derivative."""
+    theory: str = "euler-bernoulli"
+    rotation_shapes: Callable[[Array, int], ComplexArray] | None = None
+    """The same of the section's rotation psi, rad, where shear makes it differ from the slope w'."""
+    couples: tuple[float, ...] = ()
+    """Positions at which devices act against rotation, m: their couples are not among the forces."""
+
+    @property
+    def omega(self) -> float:
+        """2 pi f, rad/s, of a field at one frequency."""
+        return 2.0 * np.pi * float(self.frequency_hz)
+
+    @property
+    def wavenumber(self) -> complex:
+        """Wavenumber of the exact beam by the same theory, 1/m; its imaginary part is never positive."""
+        return wavenumber(self.beam, float(self.frequency_hz), self.theory)
+
+    def deflection(self, x: Numbers) -> ComplexArray:
+        """Complex deflection at x (m), (*shape of x), m; a number is a row of one. Raises InputError off the beam."""
+        return self.derivative(x, 0)
+
+    def slope(self, x: Numbers) -> ComplexArray:
+        """Complex slope at x (m), of the same shape, rad. Raises InputError off the beam."""
+        return self.derivative(x, 1)
+
+    def derivative(self, x: Numbers, order: int) -> ComplexArray:
+        """A derivative of the deflection at x (m), of the same shape, m per m^order. Raises InputError."""
+        return reshape_like(self.shapes(positions_on("x", x, self.beam.length).ravel(), order), x)
+
+    def rotation(self, x: Numbers) -> ComplexArray:
+        """Complex rotation of the section at x (m), of the same shape, rad: w' without shear. Raises InputError."""
+        return reshape_like(self.rotations(positions_on("x", x, self.beam.length).ravel(), 0), x)
+
+    def rotations(self, x: Array, derivative: int) -> ComplexArray:
+        """Derivative of that rotation at x (n,), (n,), rad per m^derivative.
+
+        Raises InputError for a Timoshenko field of a model that does not give the rotation.
+        """
+        if self.rotation_shapes is not None:
+            return self.rotation_shapes(x, derivative)
+        if self.theory == "timoshenko":
+            raise InputError(
+                f"theory = 'timoshenko': fields of model = {self.model!r} do not give the rotation of the section, "
+                "with which a surface moves: choose another model, or a deflection or a slope"
+            )
+        return self.shapes(x, derivative + 1)
+
+    def at(self, index: int) -> "HarmonicField":
+        """The field at one of several frequencies, counted from 0."""
+        read, rotation = self.shapes, self.rotation_shapes
+        return replace(
+            self,
+            frequency_hz=float(np.atleast_1d(self.frequency_hz)[index]),
+            shapes=lambda x, derivative: read(x, derivative)[index],
+            rotation_shapes=None if rotation is None else lambda x, derivative: rotation(x, derivative)[index],
+        )
+
+
+def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli") -> complex:
+    """Wavenumber of propagating waves in the beam's own section, 1/m.
+
+    (rho A omega^2 / (EI (1 + i eta)))^{1/4}; under a tension T and on a foundation k_f the root of
+    EI k^4 + T k^2 = rho A omega^2 - k_f that propagates. Rayleigh's theory adds rotary inertia, Timoshenko's
+    (Phil. Mag. 41, 1921) shear, with G = kappa G A: EI G k^4 - omega^2 (rho A EI + rho I G) k^2 =
+    rho A omega^2 (G - rho I omega^2), where rho A omega^2 is less by k_f in what resists deflection.
+    """
+    lossy = 1.0 + 1j * beam.loss_factor
+    if not (beam.tension or beam.foundation) and theory == "euler-bernoulli":
+        return complex(sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant) * lossy**-0.25)
+    own, omega = beam.own, 2.0 * np.pi * frequency_hz
+    stiffness, load = own.bending_stiffness * lossy, own.mass_per_length * omega**2 - beam.foundation
+    inertia = (own.rotary_inertia or 0.0) * omega**2 if theory != "euler-bernoulli" else 0.0
+    # a k^4 + b k^2 = c
+    a, b, c = stiffness, complex(beam.tension - inertia), complex(load)
+    if theory == "timoshenko" and own.shear_stiffness is not None:
+        shear = own.shear_stiffness * lossy
+        b, c = -(load * stiffness / shear + inertia), load * (1.0 - inertia / shear)
+    k = complex(np.sqrt((-b + np.sqrt(b * b + 4.0 * a * c + 0j)) / (2.0 * a)))
+    return k if k.imag <= 0.0 else k.conjugate()
+
+
+def lossless_wavenumber(beam: Beam, frequency_hz: float) -> complex:
+    """The same of a beam without losses, 1/m: real where a wave propagates."""
+    return wavenumber(replace(beam, loss_factor=0.0), frequency_hz)
+
+
+def travelling_wavenumber(beam: Beam, frequency_hz: float) -> float | None:
+    """The same where a wave propagates, 1/m; None below the cut-on frequency of a foundation."""
+    k = lossless_wavenumber(beam, frequency_hz)
+    return k.real if k.real > 0.0 == k.imag else None
+
+
+def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
+    """The weighted sum of fields, otherwise like the first of them."""
+    first = parts[0][1]
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        return np.asarray(sum(weight * field.shapes(x, derivative) for weight, field in parts))
+
+    def rotations(x: Array, derivative: int) -> ComplexArray:
+        return np.asarray(sum(weight * field.rotations(x, derivative) for weight, field in parts))
+
+    return replace(first, shapes=shapes, rotation_shapes=None if first.rotation_shapes is None else rotations)
+
+
+def unit_response(beam: Beam, frequency_hz: float) -> float:
+    """Scale of the response to a unit force, min(1/|k|, L)^3 / EI, m/N: what is tiny relative to it is rounding."""
+    length = min(1.0 / abs(wavenumber(beam, frequency_hz)), beam.length)
+    return float(length**3 / beam.bending_stiffness)
+
+
+def phasor(force: PointForce) -> complex:
+    """Amplitude and phase as one complex number, N."""
+    return complex(force.amplitude * np.exp(1j * np.deg2rad(force.phase_deg)))
+
+
+def point_force(position: float, value: complex) -> PointForce:
+    """The force of a complex amplitude, N."""
+    return PointForce(position=position, amplitude=abs(value), phase_deg=float(np.angle(value, deg=True)))
