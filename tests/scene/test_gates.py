@@ -110,7 +110,7 @@ def test_defect_in_a_quantity_is_a_failed_gate():
         ({"expect": {"re": inf, "im": 0.5}, "within": 1.0}, "expect.re = inf"),
         ({"at_least": 3.0, "at_most": 2.0}, "exchange them"),
         ({"expect": 1.0, "within": 0.5, "why": ""}, "why"),
-        ({"expect": 1.0, "within": "1%"}, "within = '1%': give a number"),
+        ({"expect": 1.0, "within": "1%"}, "within = '1%': give a finite number"),
     ],
 )
 def test_gate_without_a_clear_band_is_refused(band, message):

@@ -238,7 +238,7 @@ def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0, x: Number
     """
     check_kind("beam", beam, Beam)
     slope = complex_array("slope", slope, "radians")
-    check_number("turn", plain(turn, "turn"), "part of the slope")
+    check_number("turn", plain(turn), "part of the slope")
     if x is not None:
         if np.atleast_1d(x).shape != np.atleast_1d(slope).shape:
             raise InputError(f"x has the shape {np.shape(x)} and slope {slope.shape}: give a place for each")

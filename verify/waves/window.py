@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from itertools import accumulate
+from math import inf
 
 import numpy as np
 
-from verify.checks import LARGEST, plain
+from verify.checks import plain
 from verify.errors import InputError, WindowError, shown
 from verify.linear.fields import wavenumber
 from verify.problem.beam import Beam
@@ -111,8 +112,8 @@ def stated_wavenumber(field: str, given: object, span: tuple[float, float]) -> c
     Raises InputError for what is none of a wave e^{-ikx} towards +x, and where the span holds less than one of its half
     waves, or too many.
     """
-    k = plain(given, field)
-    number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) <= LARGEST
+    k = plain(given)
+    number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) < inf
     if not number or not 0.0 <= -k.imag <= k.real or not k.real:
         raise InputError(
             f"{field} = {shown(given)}: give a finite k of e^{{-ikx}} in 1/m, its real part above 0, its imaginary "
