@@ -145,7 +145,7 @@ def piece_of(fields: dict[str, Any], length: float, where: str, nu: float, base:
 
 def _derived(fields: dict[str, Any], shape: str, nu: float, where: str) -> dict[str, float]:
     """The properties that follow from all sizes of a shape and from the material. Raises InputError."""
-    for size in ALL_SIZES & set(fields) - set(SIZES[shape]):
+    for size in (field for field in fields if field in ALL_SIZES and field not in SIZES[shape]):
         owner = next(name for name, sizes in SIZES.items() if size in sizes)
         raise InputError(
             f"{where}.{size} = {fields[size]!r} is no size of a {shape}: leave it out, or give shape = {owner!r}"
