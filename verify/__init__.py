@@ -46,37 +46,11 @@ if TYPE_CHECKING:
     from verify.waves.results import WaveMeasures
 
 __all__ = [
-    "Beam",
-    "Bent",
-    "Contact",
-    "Device",
-    "Foot",
-    "FreeVibration",
-    "HarmonicField",
-    "HarmonicSweep",
-    "InputError",
-    "Modes",
-    "Motion",
-    "MotorRun",
-    "PointForce",
-    "PointMass",
-    "PointSpring",
-    "Section",
-    "Slider",
-    "WaveMeasures",
-    "__version__",
-    "analytic_modes",
-    "bend",
-    "fem_beam",
-    "free_vibration",
-    "load_scene",
-    "run_motor",
-    "run_motors",
-    "run_scene",
-    "segment_model",
-    "simulate",
-    "travelling_wave",
-]
+    "Beam", "Bent", "Contact", "Device", "Foot", "FreeVibration", "HarmonicField", "HarmonicSweep", "InputError",
+    "Modes", "Motion", "MotorRun", "PointForce", "PointMass", "PointSpring", "Section", "Slider", "WaveMeasures",
+    "__version__", "analytic_modes", "bend", "fem_beam", "free_vibration", "load_scene", "run_motor", "run_motors",
+    "run_scene", "segment_model", "simulate", "travelling_wave",
+]  # fmt: skip
 __version__ = "0.1.0"
 
 _HOMES = {
@@ -111,5 +85,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """All public names, imported or not."""
     return sorted(__all__)

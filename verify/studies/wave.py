@@ -186,7 +186,7 @@ def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
         import numpy as np
 
         from verify.linear.catalogue import MODELS
-        from verify.units import unit_of, unit_over
+        from verify.formatting import unit_of, unit_over
 
         exact = fields["analytic"]
         x_surface, height, *_ = ellipses(exact)

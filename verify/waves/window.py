@@ -10,7 +10,7 @@ from verify.checks import plain
 from verify.errors import InputError, WindowError, shown
 from verify.linear.fields import wavenumber
 from verify.problem.beam import Beam
-from verify.words import as_written
+from verify.formatting import as_written
 
 MOST_HALVES = 10_000
 """Half wavelengths of the longest window: its points are held at once."""
