@@ -83,26 +83,26 @@ def _table_errors(data: dict[str, Any], table: type[msgspec.Struct], where: str)
 
 def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
     """The message for a value that does not fit its type: field, value, remedy; `error` is msgspec's own message."""
-    told = f"{field} = {shown(value)}"
+    subject = f"{field} = {shown(value)}"
     arms = arms_of(kind)
     words = next((get_args(arm) for arm in arms if get_origin(arm) is Literal), ())
     if words and (isinstance(value, str) or len(arms) - (type(None) in arms) == 1):
-        return f"{told} is not known: {near_name(str(value), tuple(map(str, words)))}"
+        return f"{subject} is not known: {near_name(str(value), tuple(map(str, words)))}"
     if int in arms or float in arms:
         if isinstance(value, list | tuple):
-            return f"{told}: give one number, with a point before its decimals"
+            return f"{subject}: give one number, with a point before its decimals"
         if isinstance(value, str) and _WITH_UNIT.match(value):
-            return f"{told}: give a number alone, in SI units: 0.08 for 80 mm"
+            return f"{subject}: give a number alone, in SI units: 0.08 for 80 mm"
         metas = metas_of(kind)
         limits = [f"{text} {edge:g}" for name, text in _LIMITS for m in metas if (edge := getattr(m, name)) is not None]
         number = f"a {'finite' if float in arms else 'whole'} number {' and '.join(limits)}".rstrip()
-        return f"{told}: give {number}" + (f" ({unit})" if (unit := extra_of(kind, "unit")) else "")
+        return f"{subject}: give {number}" + (f" ({unit})" if (unit := extra_of(kind, "unit")) else "")
     table = table_of(kind)
     if table is not None and not isinstance(value, dict):
-        return f"{told}: give a table, a {table.__name__} in Python"
+        return f"{subject}: give a table, a {table.__name__} in Python"
     text = error.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", "")
     text = re.sub(r"`(\w[\w |]*)`", lambda m: " or ".join(_PLAIN.get(w, w) for w in m[1].split(" | ")), text)
-    return f"{told}: {text}"
+    return f"{subject}: {text}"
 
 
 def arms_of(kind: Any) -> tuple[Any, ...]:
