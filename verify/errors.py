@@ -34,7 +34,10 @@ class NoBracketError(InputError):
 
 
 class NoFigureError(InputError):
-    """One point of a sweep has no value, though its neighbours may: a gap in a map."""
+    """One point of a sweep has no value, though its neighbours may: a gap in a map.
+
+    The mesh is too coarse for the wave, nothing moves, or a standing wave has no energy flux.
+    """
 
 
 class ResonanceError(NoFigureError):
@@ -43,26 +46,6 @@ class ResonanceError(NoFigureError):
 
 class WindowError(NoFigureError):
     """The two waves cannot be separated in this window."""
-
-
-class NoTomlError(InputError):
-    """A file that is no TOML where a scene is expected."""
-
-
-class PairingError(InputError):
-    """No computed mode has the shape of the exact mode."""
-
-
-class CutOffError(NoFigureError):
-    """The mesh is too coarse for a wave of this frequency."""
-
-
-class ZeroFieldError(NoFigureError):
-    """Nothing moves, so there is no wave to measure."""
-
-
-class StandingError(NoFigureError):
-    """A standing wave has no energy flux to relate anything to."""
 
 
 def raise_all(sentences: Sequence[str], most: int = 1_000_000) -> None:

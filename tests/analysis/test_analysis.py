@@ -8,7 +8,7 @@ from verify.analysis import compare, sizing
 from verify.analysis.sizing import choose_of_all
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import Rules, Variant, every_rule
-from verify.errors import InputError, NoBracketError, PairingError
+from verify.errors import InputError, NoBracketError
 from verify.exact import error_laws
 from verify.linear.modes import Modes
 from verify.problem.cross_section import Section
@@ -57,7 +57,7 @@ def test_a_close_pair_that_mixed_a_little_is_still_paired_one_to_one():
 def test_a_shape_that_no_mode_has_is_said_to_have_no_partner():
     lost = SINES.copy()
     lost[2] = np.sin(9 * np.pi * X)
-    with pytest.raises(PairingError, match=r"mode = 3: no segment mode at count = 40 .* raise count"):
+    with pytest.raises(InputError, match=r"mode = 3: no segment mode at count = 40 .* raise count"):
         compare.paired_index(fake_modes(lost), SINES, 3, 1)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.analysis.bracket import Bracket
 from verify.arrays import Array, Indices
-from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
+from verify.errors import InputError, NoBracketError, NoFigureError
 from verify.linear.modes import Modes
 from verify.linear.search import zero_between
 
@@ -75,11 +75,11 @@ def pair_modes(likeness: Array) -> tuple[Indices, Array]:
 def paired_index(modes: Modes, exact_shapes: Array, mode: int, stride: int) -> int:
     """The index in `modes` of the mode that looks like exact mode `mode`.
 
-    exact_shapes (n_modes, n_points) at modes.points[::stride]. Raises PairingError where none does.
+    exact_shapes (n_modes, n_points) at modes.points[::stride]. Raises InputError where none does.
     """
     index, likeness = pair_modes(mac(exact_shapes, modes.sampled()[:, ::stride]))
     if likeness[mode - 1] < LIKENESS:
-        raise PairingError(
+        raise InputError(
             f"mode = {mode}: no {modes.model} mode at count = {modes.count} has its shape "
             f"(best MAC {likeness[mode - 1]:.2f}), raise count"
         )

@@ -181,7 +181,7 @@ class Discrete(Model):
         return discrete_wavenumber(self.name, beam, count, frequency_hz)
 
     def check_carried(self, beam: "Beam", count: int, frequency_hz: float) -> None:
-        """Raise CutOffError beyond the end of its dispersion."""
+        """Raise NoFigureError beyond the end of its dispersion."""
         from verify.exact.error_laws import check_carried
 
         check_carried(self.name, beam, count, frequency_hz)

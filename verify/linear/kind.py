@@ -130,7 +130,7 @@ class Model:
         return wavenumber(beam, frequency_hz)
 
     def check_carried(self, beam: "Beam", count: int, frequency_hz: float) -> None:
-        """Raise CutOffError for a frequency at which no wave runs along its parts."""
+        """Raise NoFigureError for a frequency at which no wave runs along its parts."""
 
     def _has_no(self, verb: str, what: str) -> InputError:
         from verify.linear.catalogue import MODELS

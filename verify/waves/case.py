@@ -42,6 +42,6 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
             )
 
     def check_carried(self) -> None:
-        """Raise CutOffError where no wave of this frequency runs along the model's parts."""
+        """Raise NoFigureError where no wave of this frequency runs along the model's parts."""
         if self.count is not None and self.beam.uniform:
             MODELS.named(self.model).check_carried(self.beam, self.count, self.frequency_hz)

@@ -139,7 +139,7 @@ def own_wavenumber(field: HarmonicField) -> complex:
 def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
     """(input of the forces left of the window - losses up to its middle - flux through it) over that flux.
 
-    Raises StandingError where the wave stands.
+    Raises NoFigureError where the wave stands.
     """
     field.beam.check_added("a power balance", ("mass", "spring", "tension", "foundation"))
     wave.waves.check_travelling()

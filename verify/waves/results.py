@@ -4,7 +4,7 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array, ComplexArray
-from verify.errors import StandingError
+from verify.errors import NoFigureError
 
 STANDING = 1e-12
 """A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
@@ -51,9 +51,9 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return float(standing_wave_ratios(np.asarray(self.reflection)))
 
     def check_travelling(self) -> None:
-        """Raise StandingError where the wave stands: flux and signed area are then zero but for rounding."""
+        """Raise NoFigureError where the wave stands: flux and signed area are then zero but for rounding."""
         if self.reflection >= 1.0 - STANDING:
-            raise StandingError(
+            raise NoFigureError(
                 "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
                 "phase_deg"
             )
@@ -109,7 +109,7 @@ class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def signed_area_spread(self) -> float:
         """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends.
 
-        Raises StandingError where the wave stands.
+        Raises NoFigureError where the wave stands.
         """
         self.waves.check_travelling()
         least, mean, largest = self.signed_area_range

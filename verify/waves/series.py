@@ -4,7 +4,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_number
-from verify.errors import InputError, ZeroFieldError
+from verify.errors import InputError, NoFigureError
 from verify.linear.fields import wavenumber
 from verify.linear.places import as_typed, in_a_row, places, real_array
 from verify.linear.spline import natural_or_flat
@@ -80,7 +80,7 @@ def measure_series(
     check_clear(beam, ends, f"x from {ends[0]:.6g} to {ends[1]:.6g} m", "measure over a span")
     deflection = phasors(times, values, frequency_hz)
     if not abs(deflection).max() > STILL * abs(np.asarray(values)).max():
-        raise ZeroFieldError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
+        raise NoFigureError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
     near = fitted_wavenumber(x, deflection, start) if k is None else stated_wavenumber("k", k, ends)
     waves = fit_waves(x, deflection, near)
     middle = 0.5 * (x[0] + x[-1])

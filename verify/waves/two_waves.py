@@ -14,7 +14,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind, check_number, plain
-from verify.errors import InputError, ZeroFieldError
+from verify.errors import InputError, NoFigureError
 from verify.linear.fields import HarmonicField, phasor, unit_response
 from verify.linear.intervals import Rule, extremes, mean_over, rule_over, whole_halves
 from verify.linear.places import Numbers, complex_array, in_a_row
@@ -57,7 +57,7 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
 
 
 def measured_figure(field: HarmonicField, window: tuple[float, float], wave_number: complex | None, name: str) -> float:
-    """One of `FIGURES` as `measure` has it, and nothing beside it. Raises as that, StandingError as the figure."""
+    """One of `FIGURES` as `measure` has it, and nothing beside it. Raises as that, NoFigureError as the figure."""
     return FIGURES[name](_seen(field, window, wave_number))
 
 
@@ -92,7 +92,7 @@ def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: co
 
 
 def check_moving(field: HarmonicField, deflection: ComplexArray) -> None:
-    """Raise ZeroFieldError where what was read of a field is rounding beside its forces."""
+    """Raise NoFigureError where what was read of a field is rounding beside its forces."""
     if abs(deflection).max() <= still(field):
         raise zero_field()
 
@@ -157,7 +157,7 @@ class Seen(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return low, mean_over(areas, self.window, 2 * self.halves[1]), high
 
     def signed_area_spread(self) -> float:
-        """Raises StandingError where the wave stands."""
+        """Raises NoFigureError where the wave stands."""
         self.waves.check_travelling()
         least, mean, largest = self.signed_area_range()
         return (largest - least) / abs(mean)
@@ -347,9 +347,9 @@ def _fitted(x: Array, deflection: ComplexArray, k: complex, weights: Array) -> T
     )
 
 
-def zero_field() -> ZeroFieldError:
+def zero_field() -> NoFigureError:
     """The refusal of a field in which nothing moves."""
-    return ZeroFieldError(
+    return NoFigureError(
         "the field is zero in the window: drive.force acts on a support or has no amplitude, move it or give it one"
     )
 
