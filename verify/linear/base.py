@@ -155,7 +155,7 @@ class BeamModel(ABC):
         return wavenumber(self.beam, frequency_hz)
 
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
-        """Raise CutOffError for a frequency above the cut-off of its parts."""
+        """Raise NoFigureError for a frequency above the cut-off of its parts."""
 
     def check_n_modes(self, n_modes: int) -> None:
         """Raise InputError unless it has so many elastic modes."""

@@ -34,7 +34,7 @@ def as_typed(verb: Callable[Given, Found]) -> Callable[Given, Found]:
     on_beam = fields[:1] == ("beam",)
 
     def settled(field: str, value: Any) -> Any:
-        return (value,) if isinstance(value, PointForce) else plain(value, field)
+        return (value,) if isinstance(value, PointForce) else plain(value)
 
     @wraps(verb)
     def called(*args: Given.args, **named: Given.kwargs) -> Found:

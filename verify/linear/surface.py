@@ -12,7 +12,7 @@ import numpy as np
 from verify.arrays import Array, Indices
 from verify.errors import InputError, written
 from verify.linear.places import SLACK, Numbers, places
-from verify.problem.beam import KEPT, Beam
+from verify.problem.beam import Beam
 
 LEFT_BEAM = "left the beam"
 
@@ -31,7 +31,7 @@ def standing_at(beam: Beam, x: float) -> Beam:
     return _standing(beam, int(piece_at(beam, x))) if beam.section else beam
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=4096)
 def _standing(beam: Beam, number: int) -> Beam:
     piece, own = beam.pieces[number], beam.own
     if msgspec.structs.replace(piece, length=own.length) == own:

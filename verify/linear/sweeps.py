@@ -61,7 +61,7 @@ class HarmonicSweep(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def field(self, index: int) -> HarmonicField:
         """The field at one of the frequencies, counted from 0. Raises InputError for one that is not there."""
-        index = plain(index, "index")
+        index = plain(index)
         if isinstance(index, bool) or not isinstance(index, int) or not -len(self) <= index < len(self):
             raise InputError(f"index = {shown(index)}: the sweep has {len(self)} frequencies, counted from 0")
         turned = self.turned

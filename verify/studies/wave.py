@@ -222,7 +222,7 @@ def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
         import numpy as np
 
         from verify.linear.registry import MODELS
-        from verify.units import unit_of, unit_over
+        from verify.formatting import unit_of, unit_over
 
         exact = fields["analytic"]
         x_surface, height, *_ = ellipses(exact)
