@@ -24,7 +24,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.checks import MOST_DASHPOT, MOST_PARTS, check_number, check_whole, check_word, plain
-from verify.errors import NoFigureError, InputError
+from verify.errors import InputError, NoFigureError
 from verify.linear.base import DiscreteModel
 from verify.linear.mesh import Parts, check_division, divide, part_counts
 from verify.linear.system import StructuralSystem

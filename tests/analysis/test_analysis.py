@@ -12,7 +12,7 @@ from verify.analysis.grid_convergence import grid_convergence
 from verify.analysis.sizing import choose
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import Rules, Variant
-from verify.errors import InputError, InputError
+from verify.errors import InputError
 from verify.linear.modes import Modes
 from verify.problem.point_attachments import PointMass
 from verify.scene.load import load_scene

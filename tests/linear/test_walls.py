@@ -5,10 +5,10 @@ from itertools import combinations_with_replacement, product
 import numpy as np
 import pytest
 from msgspec.structs import replace
-
-from verify.errors import NoFigureError, InputError
-from verify.exact import closed_forms
 from verify.exact.modes import mode_shapes
+
+from verify.errors import InputError, NoFigureError
+from verify.exact import closed_forms
 from verify.options import SUPPORTS, WALLS
 from verify.segment_model import SegmentModel
 from verify.segments import walls

@@ -10,7 +10,7 @@ from tests.reference import transfer
 from verify import Beam, PointForce, Section
 from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import ExactModel
-from verify.errors import NoFigureError, InputError, NoFigureError, WindowError, NoFigureError
+from verify.errors import InputError, NoFigureError, WindowError
 from verify.exact import error_laws
 from verify.fem_beam import HermiteModel
 from verify.linear.field import HarmonicField, wavenumber

@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.errors import InputError, NoFigureError, InputError
+from verify.errors import InputError, NoFigureError
 from verify.linear.modes import Modes
 
 T = TypeVar("T", float, complex)

@@ -46,8 +46,8 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
         from verify.analysis.solution_cache import EULER, comparable, theory_of
-        from verify.report.result import Column, Figure, Result, Table
         from verify.formatting import theory_name
+        from verify.report.result import Column, Figure, Result, Table
 
         progress(f"modes 1 to {self.modes}, N = {self.count}")
         models, left_out = comparable(cache.beam, (self.count,), self.modes)

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
-from verify.errors import InputError, NoFigureError, NoFigureError
+from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response
 from verify.linear.intervals import Rule, rule_over
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves

@@ -6,9 +6,9 @@ import numpy as np
 
 from verify.checks import LARGEST, check_kind, plain
 from verify.errors import InputError, WindowError, shown
+from verify.formatting import as_written
 from verify.linear.field import wavenumber
 from verify.problem.beam import Beam
-from verify.formatting import as_written
 
 Window = tuple[float, float]
 MOST_HALVES = 10_000
