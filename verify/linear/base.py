@@ -341,7 +341,7 @@ class DiscreteModel(BeamModel):
         if not positions:
             return None
         mass = [PointMass(position=position, rotary_inertia=negligible) for position in positions]
-        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))
+        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))  # type: ignore[type-var]
 
     def _responses(
         self, loads: Any, frequencies: Array, modal_damping: float, rows: Sequence[tuple[Any, complex]] = ()
