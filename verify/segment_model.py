@@ -34,7 +34,17 @@ from verify.problem.supports import HOLDS
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights, joint_weights
 from verify.segments.bodies import Attached
-from verify.segments.chain import Chain, Motions, at_joints, link_inertia, link_mass, right_of, selection, squares
+from verify.segments.chain import (
+    Chain,
+    Motions,
+    at_joints,
+    link_inertia,
+    link_mass,
+    plain_factors,
+    right_of,
+    selection,
+    squares,
+)
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
@@ -146,7 +156,7 @@ class SegmentModel(DiscreteModel):
         )
 
     def _joint_compliances(self, stiffnesses: Array) -> Array:
-        """1/k of joints 0..N by Eq. (1), (N + 1,), times the factors of the walls; `stiffnesses` (N,) are EI of links."""
+        """1/k of joints 0..N by Eq. (1), (N + 1,), times the factors of walls; `stiffnesses` (N,) are EI of links."""
         lengths = self.links.lengths
         halves = 0.5 * lengths / stiffnesses
         inner = halves[:-1] + halves[1:]
@@ -272,6 +282,9 @@ class SegmentModel(DiscreteModel):
         from scipy.sparse import csc_array, vstack
 
         beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
+        if not (motions.n_slips or beam.foundation or beam.tension or self.attached.bodies) and self.joints == "series":
+            stiffness = 1.0 / chain.compliances[self._springs]
+            return StructuralSystem(plain_factors(chain), stiffness, link_mass(motions), self._rigid(None))
         # strains over (rotations of the links, unknowns v), and what resists them
         links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
         own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
@@ -406,7 +419,7 @@ class SegmentModel(DiscreteModel):
 
         def rotations() -> Array:
             rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
-            return (rows @ self.motions.both @ vectors).T / self.unit
+            return np.asarray((rows @ self.motions.both @ vectors).T / self.unit)
 
         turns = rotations if self.beam.mass else None
         if line == "raw":
