@@ -94,8 +94,8 @@ class StructuralSystem:
 
         Raises InputError where a compression leaves no positive eigenvalue, and where Lanczos does not converge.
         """
-        by = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
-        strains, vectors = by[self.method(k)](k)
+        ways = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
+        strains, vectors = ways[self.method(k)](k)
         masses = _sums(vectors * (self.mass @ vectors))
         values = _sums(self.stiffness[:, None] * strains**2) / masses
         if values.min(initial=1.0) <= 0.0:
@@ -298,7 +298,7 @@ class StructuralSystem:
     def modal_receptances(
         self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
     ) -> tuple[ComplexArray, Array, Array]:
-        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), vectors (n, k) of load and response.
+        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), and vectors (n, k): load, response.
 
         Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
         """
