@@ -136,6 +136,6 @@ def test_sizes_beyond_the_memory_are_refused_before_anything_is_built():
     for work in (lambda: HermiteModel(STRIP, 10**12), lambda: HermiteModel(STRIP, 10**5).modes(10**5)):
         with pytest.raises(InputError, match="exceed the largest system of 10 GB"):
             work()
-    with pytest.raises(InputError, match="more than 1000"):
-        HermiteModel(STRIP, 600).time_basis()
+    with pytest.raises(InputError, match="more than 2000"):
+        HermiteModel(STRIP, 1100).time_basis()
     assert HermiteModel(replace(STRIP, supports=("free", "free")), 10**6).n_elastic == 2 * 10**6

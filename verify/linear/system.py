@@ -20,8 +20,8 @@ from verify.errors import InputError
 
 DENSE = 150
 """Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
-MOST_MODES = 1000
-"""Unknowns of which all modes are computed: beyond, the decomposition takes minutes and gigabytes."""
+MOST_MODES = 2000
+"""Unknowns of which all modes are computed: these take ten seconds, and the time grows with the cube."""
 LONG = 100_000
 """Unknowns from which strains read off a vector are worse than those that a factorisation solves for, 1e-13."""
 RESONANCE = 1e-9
