@@ -263,19 +263,21 @@ def contact_line_error(
     The chain stands in a mode of the linear one, a millionth of its length high; the exact mode is the reference.
     Order 3, beside a clamped wall 1. Raises InputError, also for a stepped beam: its exact shapes are not known here.
     """
+    from verify.analytic_modes import ExactModel
     from verify.chain.ride import touched
-    from verify.exact.modes import mode_shape
-    from verify.segments.linear import solve_modes
+    from verify.segment_model import SegmentModel
 
     check_whole("segments", n_segments, 2)
     system = build_system(beam, n_segments, wall=wall, grading=grading)
-    joints = solve_modes(beam, mode, n_segments, wall=wall, grading=grading).readings["raw"]()[mode - 1]
+    modes = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode)
+    joints = modes.readings["raw"]()[mode - 1]
     size = 1e-6 * beam.length / float(abs(joints).max())
     pieces, edges = touched(system, size * np.diff(joints), x)
     xi = np.linspace(0.0, 1.0, 17)
     found = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(pieces)) / (size * np.ptp(edges))
-    exact = mode_shape(beam, mode, edges[0] + xi * np.ptp(edges), 1)
-    largest = float(abs(mode_shape(beam, mode, system.nodes, 1)).max())
+    model = ExactModel(beam)
+    exact = model.mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
+    largest = float(abs(model.mode_shape(mode, system.nodes, 1)).max())
     return float(abs(found - exact).max()) / largest
 
 

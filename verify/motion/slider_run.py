@@ -10,8 +10,8 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, written
-from verify.linear.catalogue import MODELS, check_count
-from verify.linear.surface import standing_at
+from verify.linear.registry import MODELS
+from verify.linear.surface import section_at
 from verify.linear.time_basis import TimeBasis
 from verify.motion import records
 from verify.motion.contact import (
@@ -45,13 +45,13 @@ from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.linear.fields import HarmonicField
+    from verify.linear.field import HarmonicField
 
 
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:
     """Coupling of the slider where it starts. Raises InputError."""
     x, omega = put_on(request, slider)[0], request.omega
-    beam, slope = standing_at(request.beam, x), abs(stage.drive_shapes(np.array([x]), 1))[:2]
+    beam, slope = section_at(request.beam, x), abs(stage.drive_shapes(np.array([x]), 1))[:2]
     speed = beam.surface_distance * omega * float(np.hypot(*slope[:, 0]))
     lifted, turned = yielding_at(request, x, np.array([x]), basis)
     return coupling_of(slider, beam, request.frequency_hz, speed, complex(lifted[0]), complex(turned[0]))
@@ -86,13 +86,12 @@ def damped_field(
     damping: float | None,
 ) -> "HarmonicField":
     """The steady field of a model with this damping ratio, that of the beam itself unless given. Raises InputError."""
-    check_count(name, count)
-    model, settings = MODELS[name], {}
+    model, settings = MODELS.named(name), {}
     if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
-        by_mode = "modal_damping" in model.field_settings
+        by_mode = model.sized
         beam = replace(beam, loss_factor=0.0 if by_mode else 2.0 * damping)
         settings = {"modal_damping": damping} if by_mode else {}
-    return model.solve_harmonic(beam, forces, frequency_hz, count, **settings)
+    return model.build(beam, count).harmonic(forces, frequency_hz, **settings)
 
 
 def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Coupling | None) -> Array:
@@ -198,7 +197,7 @@ def _ran(laid: Laid, stages: list[Stage], progress: Callable[[float], None]) -> 
     began = perf_counter()
     z = begin(request, stages[0], basis, coupling)
     start, speed, stuck = put_on(request, slider)
-    law = law_of(slider, standing_at(request.beam, start))
+    law = law_of(slider, section_at(request.beam, start))
     rider = Rider(fresh_motion(speed, stuck), law, coupling.two_way or None)
     samples = sum(stage.n_steps // stage.every for stage in stages)
     booked = request.accounts and request.start == "rest"

@@ -9,15 +9,15 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.linear.catalogue import MODELS, check_count
-from verify.linear.places import SLACK
-from verify.linear.surface import LEFT_BEAM, Ground
+from verify.linear.positions import SLACK
+from verify.linear.registry import MODELS
+from verify.linear.surface import LEFT_BEAM, ContactRange
 from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 from verify.problem.beam import Beam, PointForce
 
 if TYPE_CHECKING:
-    from verify.linear.fields import HarmonicField
+    from verify.linear.field import HarmonicField
 
 Shapes = Callable[[Array, int], Array]
 ANALYTIC_DEGREE = 8
@@ -121,10 +121,9 @@ def free_at(stage: Stage, z: Array, t: float) -> Array:
     return np.array([z[0] * real - z[1] * imaginary, z[0] * imaginary + z[1] * real])
 
 
-def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = "spline") -> TimeBasis:
+def basis_of(beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline") -> TimeBasis:
     """The free modes of a model by name. Raises InputError."""
-    check_count(model, count)
-    return MODELS[model].time_basis(beam, count, modes, line)
+    return MODELS.named(model).build(beam, count).time_basis(modes=modes, line=line)
 
 
 def check_line(model: str, start: str, line: str) -> None:
@@ -220,7 +219,7 @@ def _stage(
     )
 
 
-def on_ground(stage: Stage, ground: Ground) -> Stage:
+def on_ground(stage: Stage, ground: ContactRange) -> Stage:
     """The stage for a slider that stays on a stretch of the beam: its pieces end there."""
     if ground.ends == stage.ends:  # all of the beam
         return stage

@@ -7,7 +7,7 @@ import numpy as np
 
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
 from verify.exact.error_laws import LAWS, expected_error, leading_error
-from verify.linear.fields import lossless_wavenumber
+from verify.linear.field import lossless_wavenumber
 from verify.motion.contact import Margins
 from verify.problem.beam import Beam
 from verify.problem.slider import GRAVITY
@@ -64,7 +64,7 @@ def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -
     mode = nearest_mode(beam, drive_hz)
     if wavenumber_length(beam.supports, mode) >= pi * count:
         return None
-    if "clamped" in beam.supports and LAWS[model].feels_clamps:
+    if "clamped" in beam.supports and LAWS[model].clamped_terms:
         return expected_error(model, beam, mode, count)
     return leading_error(model, beam.supports, mode, count)
 
