@@ -15,7 +15,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from msgspec.structs import replace
 
 from verify.arrays import Array, Indices
 from verify.checks import MOST_PARTS, check_whole
@@ -95,14 +94,17 @@ class HermiteModel(DiscreteModel):
     @cached_property
     def basis(self) -> Any:
         """scikit-fem's basis: w and psi of each node in turn, then the shear strains of each element."""
-        from verify.elements.element import line_basis
+        from verify.elements.element import cached_basis, line_basis
 
-        return line_basis(self.mesh.nodes, self.shear)
+        nodes = self.mesh.nodes
+        return cached_basis(nodes.tobytes(), self.shear) if len(nodes) <= 4000 else line_basis(nodes, self.shear)
 
     @cached_property
     def free(self) -> Indices:
         """Degrees of freedom that the supports leave, (n,) ascending."""
-        names = [[name for name, held in zip(("u", "u_x"), HOLDS[end], strict=True) if held] for end in self.beam.supports]
+        names = [
+            [name for name, held in zip(("u", "u_x"), HOLDS[end], strict=True) if held] for end in self.beam.supports
+        ]
         ends = [self.basis.get_dofs(end).all(held) for end, held in zip(("left", "right"), names, strict=True)]
         return np.delete(np.arange(self.basis.N), np.concatenate(ends))
 
@@ -115,30 +117,31 @@ class HermiteModel(DiscreteModel):
         Strains are theta_1 - theta_0 and theta_0 + theta_1 - 2 (w_1 - w_0)/l of each element, whose squares times EI/l
         and 3 EI/l are twice its bending energy; a constant shear strain g_0 adds 2 g_0 to the latter.
         """
-        from scipy.sparse import csr_array, diags_array, eye_array, vstack
+        from scipy.sparse import csr_array, vstack
 
-        n, lengths = self.n_elements, self.mesh.lengths
-        # differences of neighbouring deflections, which are exact, then all values
-        every = csr_array(eye_array(self.basis.N))
-        ahead = every[2 : 2 * n + 2 : 2] - every[: 2 * n : 2]
-        first = vstack([ahead, every], format="csr")[:, self.free]
-        read = csr_array(eye_array(self.basis.N, n + self.basis.N, k=n))
-        left, right = read[1 : 2 * n : 2], read[3 : 2 * n + 2 : 2]
-        chord = diags_array(1.0 / lengths) @ csr_array(eye_array(n, n + self.basis.N))
-        mean, gradient = right - left, left + right - 2.0 * chord
-        strains = [mean, gradient]
+        n, size, lengths = self.n_elements, self.basis.N, self.mesh.lengths
+        e, one = np.arange(n), np.ones(n)
+        # first factor: differences of neighbouring deflections, which are exact, then all values
+        columns, at = np.concatenate([2 * e, 2 * e + 2, np.arange(size)]), np.concatenate([e, e, n + np.arange(size)])
+        first = csr_array((np.concatenate([-one, one, np.ones(size)]), (at, columns)), shape=(n + size, size))
+        left, right, constant = n + 2 * e + 1, n + 2 * e + 3, n + 2 * n + 2 + 2 * e
+        chord = [(e, 1.0 / lengths)]
+        mean, gradient = [(left, -one), (right, one)], [(left, one), (right, one), (e, -2.0 / lengths)]
+        strains, stiffness = [mean, gradient], [self.own_stiffness]
         if self.shear:
-            constant, linear = read[2 * n + 2 :: 2], read[2 * n + 3 :: 2]
-            strains = [mean, gradient + 2.0 * constant, constant, linear]
-        stiffness = [self.own_stiffness]
+            strains = [mean, [*gradient, (constant, 2.0 * one)], [(constant, one)], [(constant + 1, one)]]
         if self.beam.tension:
             # w'^2 has the mean chord^2 + mean^2/12 + gradient^2/20
             force = self.beam.tension * self.unit**2 / self.beam.bending_stiffness * lengths
             strains, stiffness = [*strains, chord, mean, gradient], [*stiffness, force, force / 12.0, force / 20.0]
-        for row, value in self._grounded():
-            strains, stiffness = [*strains, row @ read], [*stiffness, value]
+        places, values = zip(*(entry for strain in strains for entry in strain), strict=True)
+        at = np.concatenate([i * n + e for i, strain in enumerate(strains) for _ in strain])
+        rows = [csr_array((np.concatenate(values), (at, np.concatenate(places))), shape=(len(strains) * n, n + size))]
+        for row, value in self._ground_strains():
+            rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + size)))
+            stiffness.append(value)
         return StructuralSystem(
-            [first, vstack(strains, format="csr")],
+            [first[:, self.free], vstack(rows, format="csr") if len(rows) > 1 else rows[0]],
             np.concatenate(stiffness),
             self._mass()[self.free][:, self.free].tocsc(),
             self._rigid(),
@@ -165,12 +168,17 @@ class HermiteModel(DiscreteModel):
             own += [inside[::2], inside[1::2]]
         return np.concatenate(own)
 
-    def _grounded(self) -> list[tuple[Any, Array]]:
+    def _ground_strains(self) -> list[tuple[Any, Array]]:
         """(rows over all values, stiffness of each) of foundation and springs.
 
         A foundation is read at four points of Gauss in each element, which integrate the square of a cubic.
         """
-        beam, nodes, lengths, scale = self.beam, self.mesh.nodes, self.mesh.lengths, self.unit / self.beam.bending_stiffness
+        beam, nodes, lengths, scale = (
+            self.beam,
+            self.mesh.nodes,
+            self.mesh.lengths,
+            self.unit / self.beam.bending_stiffness,
+        )
         found = []
         if beam.foundation:
             points, weights = np.polynomial.legendre.leggauss(4)
@@ -266,15 +274,15 @@ class HermiteModel(DiscreteModel):
         nodes, lengths, unit = self.mesh.nodes, self.mesh.lengths, self.unit
         inside = [(nodes[:-1, None] + lengths[:, None] * xi).ravel() * unit
                   for xi in (np.arange(4) / 4.0, 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0))]  # fmt: skip
-        points, line = np.append(inside[0], nodes[-1] * unit), self.line(vectors)
+        points = np.append(inside[0], nodes[-1] * unit)
         ends = np.minimum(nodes * unit, self.beam.length)
         return {
             "nodes": ends,
-            "readings": {"nodal": lambda: line(ends, 0)},
+            "readings": {"nodal": lambda: self.line(vectors)(ends, 0)},
             "points": points,
-            "sampled": lambda: line(points, 0),
+            "sampled": lambda: self.line(vectors)(points, 0),
             "curvature_points": inside[1],
-            "curvatures": lambda: line(inside[1], 2),
+            "curvatures": lambda: self.line(vectors)(inside[1], 2),
         }
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
@@ -286,17 +294,6 @@ class HermiteModel(DiscreteModel):
         return fields
 
     # --- Constants -----------------------------------------------------------------------------------------------
-
-    def buckling_load(self) -> float:
-        """The compression at which the elements buckle first, N, whatever the beam's own axial force.
-
-        0 where nothing keeps the beam from tilting.
-        """
-        if any(b for _, b in replace(self.beam, tension=0.0).rigid_lines):
-            return 0.0
-        load = float(self.beam.bending_stiffness / self.beam.length**2)
-        compressed = HermiteModel(replace(self.beam, tension=-load), self.n_elements, self.grading, self.theory)
-        return load * compressed.system.buckling_factor()
 
     def expected_order(self) -> int:
         """Nodes stand at steps, masses and springs: order 4."""

@@ -10,9 +10,11 @@ is stiff the strains vanish and the Hermite element remains. g_0 alone is the el
 and Kosmatka, Computers & Structures 47, 1993), whose frequencies are of order 2; with g_1 they are of order 4.
 """
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
 from scipy.interpolate import CubicHermiteSpline, PPoly
 from scipy.sparse import csr_array
 from skfem.assembly import BilinearForm, CellBasis
@@ -33,8 +35,6 @@ ROTATION = np.array([[0, -6, 6], [1, -4, 3], [0, 6, -6], [0, -2, 3], [0, -6, 6],
 
 def polynomial(table: Array, i: int, xi: Array, derivative: int = 0) -> Array:
     """Function i of a table, or a derivative, at xi (n,)."""
-    from numpy.polynomial.polynomial import polyder, polyval
-
     return np.asarray(polyval(xi, polyder(table[i], derivative)))
 
 
@@ -43,7 +43,7 @@ class HermiteLine(Element):  # type: ignore[misc]
 
     nodal_dofs = 2
     maxdeg = 3
-    dofnames = ("u", "u_x")
+    dofnames: tuple[str, ...] = ("u", "u_x")
     doflocs = np.array([[0.0], [0.0], [1.0], [1.0]])
     refdom = RefLine
 
@@ -99,6 +99,12 @@ def line_basis(nodes: Array, shear: bool) -> Any:
     ends = {"left": np.array([0]), "right": np.array([len(nodes) - 1])}
     element = TimoshenkoLine() if shear else HermiteLine()
     return CellBasis(mesh.with_boundaries(ends), element, intorder=6)
+
+
+@lru_cache(maxsize=16)
+def cached_basis(nodes: bytes, shear: bool) -> Any:
+    """`line_basis` of small meshes, which beams of many lengths share; about a kilobyte an element."""
+    return line_basis(np.frombuffer(nodes), shear)
 
 
 def assemble(basis: Any, form: Any, weight: Array) -> Any:

@@ -20,7 +20,7 @@ from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, forces_on, frequencies_on, vector_on
-from verify.linear.system import FEW, StructuralSystem, memory
+from verify.linear.system import FEW, SUPERPOSED, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_held
 from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
@@ -67,9 +67,9 @@ class BeamModel(ABC):
     def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":
         """The model of a beam by the number of parts, None for a model without. Raises InputError."""
         cls.check_count(count)
-        for name in settings:
+        for name, value in settings.items():
             if name not in cls.settings():
-                raise InputError(f"{name} = {settings[name]!r} is no setting of the {cls.name} model: leave it out")
+                raise InputError(f"{name} = {value!r} is no setting of the {cls.name} model: leave it out")
         return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
 
     @classmethod
@@ -153,7 +153,7 @@ class BeamModel(ABC):
         """Wavenumber of waves in it, 1/m; that of the exact beam unless its dispersion is known."""
         return wavenumber(self.beam, frequency_hz)
 
-    def check_propagates(self, frequency_hz: float) -> None:
+    def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
         """Raise CutOffError for a frequency above the cut-off of its parts."""
 
     def check_n_modes(self, n_modes: int) -> None:
@@ -219,11 +219,13 @@ class DiscreteModel(BeamModel):
     @cached_property
     def stable_system(self) -> StructuralSystem:
         """The system. Raises InputError where the beam's axial force buckles it."""
-        if self.beam.tension < 0.0 and (factor := self.system.buckling_factor()) <= 1.0:
-            raise InputError(
-                f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling: {self.count} "
-                f"{self.parts} buckle at {-self.beam.tension * factor:.6g} N, compress it less or hold it better"
-            )
+        if self.beam.tension < 0.0:
+            load = 0.0 if self._tilts else -self.beam.tension * self.system.buckling_factor()
+            if -self.beam.tension >= load:
+                raise InputError(
+                    f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling: {self.count} "
+                    f"{self.parts} buckle at {load:.6g} N, compress it less or hold it better"
+                )
         return self.system
 
     @abstractmethod
@@ -243,7 +245,7 @@ class DiscreteModel(BeamModel):
 
     @abstractmethod
     def lossy_stiffness(self, omega: float) -> Any:
-        """d of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
+        """D of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
 
         Real where nothing is lost.
         """
@@ -260,6 +262,11 @@ class DiscreteModel(BeamModel):
     def n_elastic(self) -> int:
         """Number of elastic modes."""
         return max(self.n_unknowns - self.beam.rigid_motions, 0)
+
+    @property
+    def _tilts(self) -> bool:
+        """Whether the beam without its axial force rotates freely as a whole."""
+        return any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines)
 
     def check_memory(self, n_modes: int = 0) -> None:
         """Raise InputError, before anything is built, for a system of more than 10 GB: `system.memory`."""
@@ -326,17 +333,14 @@ class DiscreteModel(BeamModel):
         check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
         omegas = 2.0 * pi * frequencies
         omega2 = (omegas / self._omega_unit) ** 2
-        damped, last = self.lossy_stiffness(float(omegas[0])), self.lossy_stiffness(float(omegas[-1]))
-        factors = damped / self.stable_system.stiffness
-        couples = bool(np.ptp(np.imag(factors)) > 1e-15 * abs(factors).max()) or not np.array_equal(damped, last)
-        if modal_damping and (couples or rows):
+        loss = self._shared_loss(omegas)
+        if modal_damping and (loss is None or rows):
             raise InputError(
                 f"modal_damping = {modal_damping!r} beside {'devices' if rows else 'a loss in a part of the stiffness'}"
                 ": the modes would couple, give one of the two"
             )
-        sweep = len(omegas) > FEW and not (couples or rows) and self.stable_system.stiffness.min() > 0.0
-        if modal_damping or (sweep and self.stable_system.n <= 4 * 150):
-            found = self.stable_system.harmonic_sweep(loads, omega2, float(np.imag(factors[0])), modal_damping)
+        if modal_damping or (self._superposes(omegas) and not rows):
+            found = self.stable_system.harmonic_sweep(loads, omega2, loss or 0.0, modal_damping)
             if (at := np.flatnonzero(np.isnan(found[:, 0, 0]))).size:
                 raise self._at_resonance(float(frequencies[at[0]]))
             return found
@@ -347,6 +351,17 @@ class DiscreteModel(BeamModel):
             except np.linalg.LinAlgError:
                 raise self._at_resonance(float(frequencies[i])) from None
         return found
+
+    def _shared_loss(self, omegas: Array) -> float | None:
+        """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
+        first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
+        losses = np.imag(first / self.stable_system.stiffness)
+        shared = np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last)
+        return float(losses[0]) if shared else None
+
+    def _superposes(self, omegas: Array) -> bool:
+        """Whether all modes cost less than a factorisation for each frequency, and are not coupled."""
+        return len(omegas) > FEW and self.stable_system.n <= SUPERPOSED and self._shared_loss(omegas) is not None
 
     def _at_resonance(self, frequency_hz: float) -> ResonanceError:
         return ResonanceError(
@@ -430,23 +445,14 @@ class DiscreteModel(BeamModel):
         read, scale = vector_on("x", x, self.beam.length), self.unit**3 / self.beam.bending_stiffness
         loads = self.load_rows(at).toarray().T * scale
         omegas = 2.0 * pi * frequencies
-        damped = self.lossy_stiffness(float(omegas[0]))
-        factors = damped / self.stable_system.stiffness
-        found = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
-        if (
-            self.stable_system.n <= 4 * 150
-            and np.ptp(np.imag(factors)) <= 1e-15
-            and self.stable_system.stiffness.min() > 0.0
-        ):
+        if self._superposes(omegas):
             # shapes are read once, of modes, and not of every response
-            values, vectors = self.stable_system.all_modes
-            shapes, weights = self.line(vectors)(read, 0), vectors.T @ loads
-            omega2 = (omegas / self._omega_unit) ** 2
-            denominators = values * factors[0] - omega2[:, None]
-            near = (abs(denominators) <= 2e-9 * omega2[:, None]).any(axis=1)
-            denominators[near] = np.nan
-            found = np.einsum("mp,fm,mx->fpx", weights, 1.0 / denominators, shapes, optimize=True)
+            omega2, loss = (omegas / self._omega_unit) ** 2, self._shared_loss(omegas) or 0.0
+            receptances, acting, responding = self.stable_system.modal_receptances(omega2, loss)
+            weights, shapes = acting.T @ loads, self.line(responding)(read, 0)
+            found = np.einsum("mp,fm,mx->fpx", weights, receptances, shapes, optimize=True)
             return np.asarray(found, dtype=complex)
+        found = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
         for i, omega in enumerate(omegas):
             try:
                 response = self.stable_system.harmonic(
@@ -459,7 +465,7 @@ class DiscreteModel(BeamModel):
 
     def buckling_load(self) -> float:
         """The compression at which it buckles first, N; 0 where nothing keeps the beam from tilting."""
-        if any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines):
+        if self._tilts:
             return 0.0
         load = float(self.beam.bending_stiffness / self.beam.length**2)
         compressed: DiscreteModel = replace(self, beam=structs.replace(self.beam, tension=-load))  # type: ignore[type-var]

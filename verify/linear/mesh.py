@@ -85,10 +85,11 @@ def cut_pieces(beam: Beam) -> tuple[Piece, ...]:
 
     An attachment closer than the shortest section to a step, an end or its neighbour makes no cut.
     """
+    places = sorted({*(mass.position for mass in beam.mass), *(spring.position for spring in beam.spring)})
     near, found, start = SHORTEST_SECTION * beam.length, [], 0.0
     for piece in beam.pieces:
         left, end = start, start + piece.length
-        for place in sorted({one.position for one in (*beam.mass, *beam.spring)}):
+        for place in places:
             if left + near <= place <= end - near:
                 found.append(replace(piece, length=place - left))
                 left = place

@@ -20,12 +20,16 @@ from verify.errors import InputError
 
 DENSE = 150
 """Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
-MOST_MODES = 1000
-"""Unknowns of which all modes are computed: beyond, the decomposition takes minutes and gigabytes."""
+MOST_MODES = 2000
+"""Unknowns of which all modes are computed: these take ten seconds, and the time grows with the cube."""
+LONG = 100_000
+"""Unknowns from which strains read off a vector are worse than those that a factorisation solves for, 1e-13."""
 RESONANCE = 1e-9
 """Relative distance in frequency to an undamped resonance below which a response is rounding."""
 FEW = 4
 """Frequencies up to which each is solved by itself: all modes cost more than a few factorisations."""
+SUPERPOSED = 600
+"""Unknowns up to which many frequencies are superposed from all modes."""
 
 
 def uses_dense(n: int, k: int) -> bool:
@@ -36,6 +40,11 @@ def uses_dense(n: int, k: int) -> bool:
 def memory(n: int, k: int) -> int:
     """Bytes that k modes of n unknowns take: eight dense matrices, or sparse factors and the Lanczos basis."""
     return 64 * n**2 if uses_dense(n, k) else 8 * n * (250 + 8 * k)
+
+
+def _sums(terms: Array) -> Array:
+    """Sums over rows, pairwise as contiguous sums are: one after another, a million terms leave 1e-12."""
+    return np.asarray(np.ascontiguousarray(terms.T).sum(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,15 +87,6 @@ class StructuralSystem:
             product = factor @ product
         return product.tocsc()
 
-    def rayleigh_quotients(self, vectors: Array) -> Array:
-        """Eigenvalues (k,) of vectors (n, k), accurate to rounding where the vectors are to half of the digits."""
-        energies = self.stiffness[:, None] * self.strain(vectors) ** 2
-        # pairwise sums over rows that are contiguous: one after another, a million terms leave 1e-12
-        return np.asarray(np.ascontiguousarray(energies.T).sum(axis=1) / self._modal_masses(vectors))
-
-    def _modal_masses(self, vectors: Array) -> Array:
-        return np.asarray(np.ascontiguousarray((vectors * (self.mass @ vectors)).T).sum(axis=1))
-
     # --- Modes ---------------------------------------------------------------------------------------------------
 
     def modes(self, k: int) -> tuple[Array, Array]:
@@ -94,14 +94,14 @@ class StructuralSystem:
 
         Raises InputError where a compression leaves no positive eigenvalue, and where Lanczos does not converge.
         """
-        vectors = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}[
-            self.method(k)
-        ](k)
-        values = self.rayleigh_quotients(vectors)
+        ways = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
+        strains, vectors = ways[self.method(k)](k)
+        masses = _sums(vectors * (self.mass @ vectors))
+        values = _sums(self.stiffness[:, None] * strains**2) / masses
         if values.min(initial=1.0) <= 0.0:
             raise InputError("beam.tension: the compression buckles this model, compress less or hold the beam better")
         order = np.argsort(values, kind="stable")
-        return values[order], (vectors / np.sqrt(self._modal_masses(vectors)))[:, order]
+        return values[order], (vectors / np.sqrt(masses))[:, order]
 
     def method(self, k: int) -> str:
         """How `modes` computes k vectors: "Lanczos", "singular values", or "dense" where a stiffness is negative."""
@@ -119,7 +119,7 @@ class StructuralSystem:
             )
         return self.modes(self.n - self.n_rigid)
 
-    def _by_svd(self, k: int) -> Array:
+    def _by_svd(self, k: int) -> tuple[Array, Array]:
         """From the singular values of diag(d)^(1/2) B L^-T with M = L L^T, conditioned like n^2 and not n^4."""
         from scipy.linalg import solve_triangular
 
@@ -128,9 +128,10 @@ class StructuralSystem:
         root = solve_triangular(lower, root, lower=True, check_finite=False).T
         right = np.linalg.svd(root, full_matrices=root.shape[0] < self.n)[2]
         last = self.n - self.n_rigid
-        return np.asarray(solve_triangular(lower, right[last - k : last].T, lower=True, trans="T", check_finite=False))
+        vectors = solve_triangular(lower, right[last - k : last].T, lower=True, trans="T", check_finite=False)
+        return self.strain(vectors), vectors
 
-    def _by_dense_pencils(self, k: int) -> Array:
+    def _by_dense_pencils(self, k: int) -> tuple[Array, Array]:
         """Of negative stiffnesses, which have no square root: low modes from K^-1, high ones from K.
 
         K loses the low eigenvalues and K^-1 the high ones; at their geometric mean both are conditioned like n^2.
@@ -141,42 +142,51 @@ class StructuralSystem:
         values, vectors = (
             part[..., self.n_rigid :] for part in eigh(strain.T @ (self.stiffness[:, None] * strain), mass)
         )
-        flexibility = mass @ self._inverse(0.0)(mass)
+        flexibility = mass @ self._inverse(0.0)(mass)[1]
         inverse, low = (part[..., ::-1] for part in eigh(0.5 * (flexibility + flexibility.T), mass))
         n_low = int(np.searchsorted(values, np.sqrt(values[-1] / inverse[0])))
-        return np.asarray(np.hstack([low[:, :n_low], vectors[:, n_low:]])[:, :k])
+        vectors = np.hstack([low[:, :n_low], vectors[:, n_low:]])[:, :k]
+        return self.strain(vectors), vectors
 
-    def _by_lanczos(self, k: int) -> Array:
-        """Shift and invert, from below all eigenvalues."""
+    def _by_lanczos(self, k: int) -> tuple[Array, Array]:
+        """Shift and invert, from below all eigenvalues.
+
+        The last digit of a vector is a strain, 1e-4 of it at 1e6 parts; beyond `LONG` those of the solution are better.
+        """
         from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
         shift = 0.999 * self.lower_bound
         solve = self._inverse(shift)
-        inverse = LinearOperator((self.n, self.n), matvec=lambda b: solve(b.reshape(-1, 1))[:, 0], dtype=float)
+        inverse = LinearOperator((self.n, self.n), matvec=lambda b: solve(b.reshape(-1, 1))[1][:, 0], dtype=float)
         start = self._without_rigid(np.random.default_rng(0).standard_normal(self.n))
+        sought = {"M": self.mass, "sigma": shift, "OPinv": inverse, "v0": start, "ncv": min(k + 30, self.n)}
         try:
-            return np.asarray(
-                eigsh(inverse, k, M=self.mass, sigma=shift, OPinv=inverse, v0=start, ncv=min(k + 30, self.n))[1]
-            )
+            vectors = eigsh(inverse, k, **sought)[1]
         except ArpackNoConvergence:
             raise InputError(
-                f"the lowest {k} of {self.n} modes do not converge: hold the beam better, or lower count"
+                f"the lowest {k} of {self.n} modes do not converge: hold the beam or lower count"
             ) from None
+        strains, vectors = solve(self.mass @ vectors)
+        return (self.strain(vectors) if self.n < LONG else strains), vectors
 
-    def _inverse(self, shift: float) -> Callable[[Array], Array]:
-        """(K - shift M)^-1 of loads (n, k); without a shift rigid-body motions are projected out of both sides."""
+    def _inverse(self, shift: float) -> Callable[[Array], tuple[Array, Array]]:
+        """Strains (m, k) and response (n, k) of K - shift M to loads (n, k).
+
+        Without a shift rigid-body motions are held, and projected out of loads and response.
+        """
         from scipy.sparse.linalg import splu
 
         m, free = len(self.stiffness), np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
-        matrix = self.augmented(-shift)
+        matrix, compliance = self.augmented(-shift), (self._pattern[3] / self.stiffness)[:, None]
         kept = np.concatenate([np.arange(m), m + free])
         factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
 
-        def solve(loads: Array) -> Array:
+        def solve(loads: Array) -> tuple[Array, Array]:
             right, response = np.zeros((m + len(free), loads.shape[1])), np.zeros(loads.shape)
             right[m:] = (self._without_rigid(loads, load=True) if len(free) < self.n else loads)[free]
-            response[free] = factor.solve(right)[m:]
-            return self._without_rigid(response)
+            solution = factor.solve(right)
+            response[free] = solution[m:]
+            return compliance * solution[:m], self._without_rigid(response)
 
         return solve
 
@@ -204,7 +214,7 @@ class StructuralSystem:
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
     @cached_property
-    def _pattern(self) -> tuple[Any, Array, Array, Array]:
+    def _pattern(self) -> tuple[Any, Any, Any, Array]:
         """[[-1, B], [B^T, M]] sparse by columns, where its data hold -1 and M, and the scales of the strains.
 
         Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
@@ -216,7 +226,7 @@ class StructuralSystem:
         matrix = csc_array(block_array([[diags_array(-np.ones(m)), strain], [strain.T, self.mass]], format="csc"))
         columns = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
         inertia = np.flatnonzero((columns >= m) & (matrix.indices >= m))
-        return matrix, np.flatnonzero((columns < m) & (matrix.indices < m)), inertia, scales**2
+        return matrix, np.flatnonzero((columns < m) & (matrix.indices < m)), inertia, scales
 
     def augmented(self, mass_factor: float, stiffness: Any = None) -> Any:
         """[[-1/d, B], [B^T, mass_factor M]], sparse by columns. Its pattern is made once, its data per frequency."""
@@ -225,18 +235,18 @@ class StructuralSystem:
         d = self.stiffness if stiffness is None else stiffness
         matrix, compliance, inertia, scales = self._pattern
         data = matrix.data.astype(d.dtype)
-        data[compliance] = -scales / d
+        data[compliance] = -(scales**2) / d
         data[inertia] *= mass_factor
         return csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
     def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
         """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
-        from scipy.sparse import block_array, csc_array
+        from scipy.sparse import block_array, csc_array, hstack
         from scipy.sparse.linalg import splu
 
         matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
         for row, z in devices:
-            wide = csc_array((row.data, (row.coords[0], row.coords[1] + m)), shape=(1, matrix.shape[0]))
+            wide = hstack([csc_array((1, m)), row], format="csc")
             matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide)
         if rows is not None:
             wide = block_array([[csc_array((rows.shape[0], m)), rows]], format="csc")
@@ -280,17 +290,30 @@ class StructuralSystem:
 
         `modal_damping` is the damping ratio of every mode. NaN at the frequencies of undamped resonances.
         """
+        receptances, acting, responding = self.modal_receptances(omega2, loss_factor, modal_damping)
+        shares = (acting.T @ loads)[None] * receptances[:, :, None]
+        response = responding @ shares.transpose(1, 0, 2).reshape(acting.shape[1], -1)
+        return np.asarray(response.reshape(self.n, len(omega2), -1).transpose(1, 0, 2))
+
+    def modal_receptances(
+        self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
+    ) -> tuple[ComplexArray, Array, Array]:
+        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), and vectors (n, k): load, response.
+
+        Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
+        """
         values, vectors = self.all_modes
-        denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None]
-        denominators = denominators + 2j * modal_damping * np.sqrt(values * omega2[:, None])
-        near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
-        denominators[near.any(axis=1)] = np.nan
-        shares = (vectors.T @ loads)[None] / denominators[:, :, None]
-        response = (vectors @ shares.transpose(1, 0, 2).reshape(len(values), -1)).reshape(self.n, len(omega2), -1)
-        response = response.transpose(1, 0, 2)
+        acting = responding = vectors
         if self.n_rigid:
-            response = response - (self._rigid_dual[1] @ (self.rigid.T @ loads))[None] / omega2[:, None, None]
-        return np.asarray(response)
+            values = np.concatenate([np.zeros(self.n_rigid), values])
+            acting, responding = np.hstack([self.rigid, vectors]), np.hstack([self._rigid_dual[1], vectors])
+        damping = 2j * modal_damping * np.sqrt(values * omega2[:, None])
+        denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None] + damping
+        near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
+        denominators[near] = 1.0
+        receptances = 1.0 / denominators
+        receptances[near.any(axis=1)] = np.nan
+        return receptances, acting, responding
 
     def prescribed(
         self,
@@ -325,7 +348,9 @@ class StructuralSystem:
         solve = StructuralSystem([strain[~soft]], self.stiffness[~soft], self.mass, self.rigid)._inverse(0.0)
         size = released.shape[0]
         operator = LinearOperator(
-            (size, size), dtype=float, matvec=lambda forces: released @ solve(released.T @ forces.reshape(-1, 1))[:, 0]
+            (size, size),
+            dtype=float,
+            matvec=lambda forces: released @ solve(released.T @ forces.reshape(-1, 1))[1][:, 0],
         )
         if size <= 60:
             return float(1.0 / np.linalg.eigvalsh(operator @ np.eye(size))[-1])
