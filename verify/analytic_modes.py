@@ -311,7 +311,7 @@ class ExactModel(BeamModel):
             held = [(bool(one.dashpot), bool(one.rotational_dashpot)) for one in damped]
             fixed = [(d.position / length, Station(support=support[h])) for d, h in zip(damped, held, strict=True)]
             numbers = [
-                n and m
+                n if m else 0
                 for n, m in zip(numbers, self._resonances(with_stations(layout, fixed), frequencies), strict=True)
             ]
         for frequency, number in zip(frequencies.tolist(), numbers, strict=True):
