@@ -102,20 +102,14 @@ class ExactModel(BeamModel):
         check_whole("n_modes", n_modes, 1, MOST_MODES)
         frequencies = np.array([self.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
-        def shapes(x: Array, derivative: int) -> Array:
-            blocks = [
-                self._shapes(range(first, min(first + _TOGETHER, n_modes + 1)), x, derivative)
-                for first in range(1, n_modes + 1, _TOGETHER)
-            ]
-            return np.concatenate(blocks)
-
+        blocks = [range(first, min(first + _TOGETHER, n_modes + 1)) for first in range(1, n_modes + 1, _TOGETHER)]
         empty = np.empty(0)
         return Modes(
             model=self.name,
             count=None,
             length=self.beam.length,
             frequencies_hz=frequencies,
-            shapes=shapes,
+            shapes=lambda x, derivative: np.concatenate([self._shapes(some, x, derivative) for some in blocks]),
             nodes=empty,
             points=empty,
             sampled=lambda: np.empty((n_modes, 0)),
@@ -308,12 +302,10 @@ class ExactModel(BeamModel):
         if any(numbers) and (damped := [one for one in devices if one.dashpot or one.rotational_dashpot]):
             # a motion is undamped where it is also one of the beam held at its dashpots
             support = {(True, False): "pinned", (False, True): "guided", (True, True): "clamped"}
-            held = [(bool(one.dashpot), bool(one.rotational_dashpot)) for one in damped]
-            fixed = [(d.position / length, Station(support=support[h])) for d, h in zip(damped, held, strict=True)]
-            numbers = [
-                n if m else 0
-                for n, m in zip(numbers, self._resonances(with_stations(layout, fixed), frequencies), strict=True)
-            ]
+            held = [Station(support=support[one.dashpot > 0.0, one.rotational_dashpot > 0.0]) for one in damped]
+            fixed = with_stations(layout, [(d.position / length, at) for d, at in zip(damped, held, strict=True)])
+            still = self._resonances(fixed, frequencies)
+            numbers = [n if m else 0 for n, m in zip(numbers, still, strict=True)]
         for frequency, number in zip(frequencies.tolist(), numbers, strict=True):
             if number and (mode := number if devices or drives else number - self.beam.rigid_motions):
                 where = " with its devices or imposed displacements" if devices or drives else ""
