@@ -417,8 +417,8 @@ class SegmentModel(DiscreteModel):
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
         if self.joint_dashpot:
             raise InputError(
-                f"joint_dashpot = {self.joint_dashpot!r} is for harmonic motion: leave it out in time, or give the beam a "
-                "loss_factor"
+                f"joint_dashpot = {self.joint_dashpot!r} is for harmonic motion: leave it out in time, or give the beam "
+                "a loss_factor"
             )
         index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 

@@ -87,5 +87,5 @@ def test_a_chain_that_can_drift_away_is_refused(supports):
 
 
 def test_dashpots_of_the_joints_are_for_harmonic_motion():
-    with pytest.raises(InputError, match="joint_dashpot = 0.3 is for harmonic motion"):
+    with pytest.raises(InputError, match=r"joint_dashpot = 0\.3 is for harmonic motion"):
         SegmentModel(STRIP, 20, joint_dashpot=0.3).time_basis()
