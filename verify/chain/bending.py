@@ -14,7 +14,7 @@ from verify.chain.statics import MAX_TURN, SETTLED, TOLERANCE, Forces, forces_at
 from verify.chain.system import ChainSystem, LinkLoad, build_system
 from verify.checks import check_number, check_whole, check_word
 from verify.errors import InputError, shown
-from verify.linear.places import Numbers, as_typed, in_a_row
+from verify.linear.positions import Numbers, as_vector
 from verify.options import JOINTS, Joints, Wall
 from verify.problem.beam import Beam
 
@@ -62,7 +62,6 @@ class Bent(Struct, frozen=True, eq=False, kw_only=True):
         return self.beam.length - float(self.joints[-1, 0])
 
 
-@as_typed
 def bend(
     beam: Beam,
     count: int,
@@ -119,7 +118,7 @@ def _check_cantilever(beam: Beam, joints: Joints) -> None:
 
 def _along_and_across(load: Numbers) -> tuple[float, float]:
     """The parts of a load, newton. Raises InputError."""
-    force = in_a_row("load", load, "newton")
+    force = as_vector("load", load, "newton")
     if force.shape not in ((1,), (2,)):
         raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")
     return (float(force[0]), float(force[1])) if len(force) == 2 else (0.0, float(force[0]))

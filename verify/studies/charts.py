@@ -32,14 +32,14 @@ def percent(name: str, form: str = "+.4g") -> "Column":
 
 def sized_title(model: str, count: int | None) -> str:
     """'49 segments', 'exact beam'."""
-    from verify.linear.catalogue import MODELS
+    from verify.linear.registry import MODELS
 
     return f"{count} {MODELS[model].title}" if count else MODELS[model].title
 
 
 def model_style(model: str) -> dict[str, Any]:
     """Colour and line width of a model in every chart."""
-    from verify.linear.catalogue import MODELS
+    from verify.linear.registry import MODELS
     from verify.report.plotting import MODEL_COLORS
 
     color = MODEL_COLORS.get(model, MODELS[model].colour)
@@ -61,7 +61,7 @@ def plot_lines(
     ax: "Axes", lines: Iterable[tuple[str, Any, Any, dict[str, Any]]], x: tuple[str, str], y: tuple[str, str]
 ) -> None:
     """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
-    from verify.units import unit_over
+    from verify.formatting import unit_over
 
     drawn = [line for line in lines if len(line[1])]
     x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])

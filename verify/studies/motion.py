@@ -88,8 +88,8 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Simulate the slider on every model. Raises InputError."""
         import numpy as np
 
-        from verify.exact.in_time import check_beam
-        from verify.linear.catalogue import MODELS, bounding, discrete
+        from verify.analytic_modes import check_in_time
+        from verify.linear.registry import MODELS, bounding, discrete
         from verify.motion.simulate import simulate
         from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result
@@ -98,7 +98,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         assert scene.slider is not None
         assert scene.drive is not None
         steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
-        check_beam(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
+        check_in_time(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
         runs: dict[str, Run] = {}
         for model in ("analytic", *(model.name for model in discrete("time_basis", scene.beam))):
             progress(f"slider on {MODELS[model].title}")
@@ -204,7 +204,7 @@ def _movie(run: "Run") -> "Callable[[Axes], Any]":
     def set_up(ax: "Axes") -> Any:
         import numpy as np
 
-        from verify.units import unit_of, unit_over
+        from verify.formatting import unit_of, unit_over
 
         kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
         along, up = unit_of(float(run.points[-1])), unit_over([float(abs(run.deflection).max())])
