@@ -152,7 +152,7 @@ class BeamModel(ABC):
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves in it, 1/m; that of the exact beam unless its dispersion is known."""
-        return wavenumber(self.beam, frequency_hz)
+        return wavenumber(self.beam, frequency_hz, self.theory)
 
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
         """Raise CutOffError for a frequency above the cut-off of its parts."""
@@ -373,7 +373,9 @@ class DiscreteModel(BeamModel):
         """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
         first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
         losses = np.imag(first / self.stable_system.stiffness)
-        return float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
+        return (
+            float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
+        )
 
     def _superposes(self, omegas: Array) -> bool:
         """Whether all modes cost less than a factorisation for each frequency, and are not coupled."""
