@@ -65,11 +65,10 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises CutOffError at a frequency whose waves do not run along its parts.
         """
-        beam, theory = self.beam, self.model.theory
-        if beam.uniform:
+        if self.beam.section:
+            return wavenumber(self.beam, frequency_hz, self.model.theory)
+        if self.beam.uniform:
             self.model.check_propagates(frequency_hz)
-        if theory != "euler-bernoulli" or beam.tension or beam.foundation or beam.section:
-            return wavenumber(beam, frequency_hz, theory)
         return self.model.wavenumber(frequency_hz)
 
 
