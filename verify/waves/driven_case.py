@@ -50,8 +50,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def passive(self) -> tuple[Device, ...]:
         """The devices without their own forces."""
-        impeding = (d for d in self.devices if d.turning or d.stiffness or d.mass or d.dashpot)
-        return tuple(replace(device, amplitude=0.0) for device in impeding)
+        return tuple(replace(d, amplitude=0.0) for d in self.devices if d.turning or d.stiffness or d.mass or d.dashpot)
 
     def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
         """The field under other forces (displacements) at another frequency. Raises InputError."""
