@@ -95,8 +95,8 @@ class BeamModel(ABC):
 
     @property
     def count(self) -> int | None:
-        """Number of parts; None for a model without."""
-        return None
+        """Number of parts, the field after the beam; None for a model without."""
+        return getattr(self, fields(self)[1].name) if self.sized else None  # type: ignore[arg-type]
 
     @property
     @abstractmethod
@@ -373,7 +373,9 @@ class DiscreteModel(BeamModel):
         """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
         first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
         losses = np.imag(first / self.stable_system.stiffness)
-        return float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
+        return (
+            float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
+        )
 
     def _superposes(self, omegas: Array) -> bool:
         """Whether all modes cost less than a factorisation for each frequency, and are not coupled."""
