@@ -15,7 +15,7 @@ import numpy as np
 from msgspec import structs
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number, check_whole, check_word, several
+from verify.checks import check_kind, check_number, check_whole, check_word, several
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
@@ -167,7 +167,8 @@ class BeamModel(ABC):
             )
 
     def check_theory(self) -> None:
-        """Raise InputError for an unknown theory, and for one that the beam has no figures for."""
+        """Raise InputError for what is no beam, an unknown theory, and one that the beam has no figures for."""
+        check_kind("beam", self.beam, Beam)
         check_word("theory", self.theory, THEORIES)
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(
