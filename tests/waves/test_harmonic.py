@@ -10,7 +10,6 @@ from tests.reference import transfer
 from verify.analytic_modes import ExactModel
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
-from verify.exact.modes import mode_shape
 from verify.fem_beam import HermiteModel
 from verify.linear.field import phasor
 from verify.options import SUPPORTS
@@ -59,11 +58,10 @@ def test_a_slow_force_drives_a_free_beam_as_a_rigid_body(titanium_strip):
 
 def test_the_exact_field_is_the_modal_sum_without_its_truncation(titanium_strip):
     beam = replace(titanium_strip, loss_factor=0.02)
-    omega, total = 2 * np.pi * 311.0, 0.0
-    for n in range(1, 4001):
-        shape = mode_shape(beam, n, np.array([0.3333, 0.083]))
-        stiffness = (2 * np.pi * closed_forms.frequency_hz(beam, n)) ** 2 * (1 + 0.02j)
-        total += shape[0] * shape[1] / (stiffness - omega**2)
+    n = np.arange(1, 4001) * np.pi
+    omegas2 = (beam.wave_constant * (n / 0.73) ** 2) ** 2 * (1 + 0.02j)
+    shapes = np.sin(n * 0.3333 / 0.73) * np.sin(n * 0.083 / 0.73) * 2.0 / (beam.mass_per_length * 0.73)
+    total = (shapes / (omegas2 - (2 * np.pi * 311.0) ** 2)).sum()
     assert ExactModel(beam).harmonic(PointForce(position=0.083), 311.0).deflection(0.3333)[0] == pytest.approx(
         total, rel=1e-9
     )
@@ -194,12 +192,10 @@ def test_two_displacements_at_one_place_cannot_be_imposed(titanium_strip, model)
 def test_a_displacement_near_a_node_of_a_resonance_of_the_free_beam_is_imposed(titanium_strip, off, part):
     """The field under forces has a pole there, that under displacements has none."""
     hertz, place = closed_forms.frequency_hz(titanium_strip, 7) * (1.0 + part), (3.0 + off) * 0.73 / 7
-    # one more place clear of the resonance keeps the reference away from the pole
     x = np.array([0.1, 0.33, 0.6])
     found = ExactModel(titanium_strip).imposed(PointForce(position=place), hertz).deflection(x)
-    shift = 0.0 if part else 1e-13
     reference = transfer.deflection(
-        titanium_strip, "euler-bernoulli", hertz * (1.0 + shift), (PointForce(position=place),), [*x, place], 60
+        titanium_strip, "euler-bernoulli", hertz, (PointForce(position=place),), [*x, place], 60
     )
     close(found, reference[:-1] / reference[-1], 1e-6)
 

@@ -8,7 +8,6 @@ from msgspec.structs import replace
 
 from tests.reference import transfer
 from verify import Beam, PointForce, Section
-from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import ExactModel
 from verify.errors import CutOffError, InputError, StandingError, WindowError, ZeroFieldError
 from verify.exact import error_laws
@@ -23,7 +22,6 @@ from verify.travelling_wave import (
     ellipse,
     fit_waves,
     measure,
-    measure_case,
     measure_series,
     middle_half,
     phasors,
@@ -70,6 +68,11 @@ def driven(phase=90.0, d=0.0116, eta=0.0, frequency=4276.0):
 def case(model, d=0.0116, phase=90.0, frequency=4276.0):
     forces = (PointForce(position=d), PointForce(position=0.5 - d, phase_deg=phase))
     return DrivenCase(model=model, forces=forces, frequency_hz=frequency)
+
+
+def measured(one):
+    field = one.field(one.forces, one.frequency_hz)
+    return measure(field, WINDOW, one.wavenumber(one.frequency_hz))
 
 
 @settings(max_examples=60, deadline=None)
@@ -200,7 +203,7 @@ def test_the_signed_area_is_the_energy_flux():
 
 
 def test_the_ratio_and_the_flux_of_elements_do_not_drift_with_the_mesh():
-    found = measure_case(case(HermiteModel(BEAM, 20_000)), SolutionCache(BEAM))
+    found = measured(case(HermiteModel(BEAM, 20_000)))
     assert found.standing_wave_ratio == pytest.approx(1.05635631395, rel=2e-8)
     assert found.energy_flux == pytest.approx(0.0233318340824, rel=2e-8)
 
@@ -209,8 +212,8 @@ def test_the_ratio_and_the_flux_of_elements_do_not_drift_with_the_mesh():
 def test_a_mesh_that_cannot_carry_the_wave_is_refused_with_the_fewest_parts_that_can(model, fewest):
     for count in (3, 10, 20, fewest - 1):
         with pytest.raises(CutOffError, match=f"give count = {fewest} or more"):
-            measure_case(case(model(BEAM, count)), SolutionCache(BEAM))
-    assert np.isfinite(measure_case(case(model(BEAM, fewest)), SolutionCache(BEAM)).standing_wave_ratio)
+            measured(case(model(BEAM, count)))
+    assert np.isfinite(measured(case(model(BEAM, fewest))).standing_wave_ratio)
     assert (
         error_laws.cut_off_hz(model.name, BEAM, fewest - 1) <= 4276.0 < error_laws.cut_off_hz(model.name, BEAM, fewest)
     )
@@ -240,8 +243,8 @@ def test_the_best_frequency_is_where_the_law_is_least():
 )
 def test_a_force_on_a_support_makes_no_wave_to_measure(model):
     with pytest.raises(ZeroFieldError, match="the field is zero in the window"):
-        measure_case(case(model, d=0.0), SolutionCache(BEAM))
-    assert measure_case(case(model, d=1e-6), SolutionCache(BEAM)).standing_wave_ratio < 2.0
+        measured(case(model, d=0.0))
+    assert measured(case(model, d=1e-6)).standing_wave_ratio < 2.0
 
 
 @pytest.mark.parametrize(

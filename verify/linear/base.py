@@ -152,7 +152,7 @@ class BeamModel(ABC):
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves in it, 1/m; that of the exact beam unless its dispersion is known."""
-        return wavenumber(self.beam, frequency_hz)
+        return wavenumber(self.beam, frequency_hz, self.theory)
 
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
         """Raise CutOffError for a frequency above the cut-off of its parts."""

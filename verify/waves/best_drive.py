@@ -24,7 +24,7 @@ from verify.waves.window import Window, middle_half
 HUGE = 10.0
 """Amplitude ratio, or its inverse, from which the result says so."""
 PROPORTIONAL, NEARLY = 1e-4, 0.05
-"""Independence of the unit waves below which no ratio exists but for near fields, and below which the result says so."""
+"""Independence of the unit waves below which no ratio exists, but for near fields, and that the result mentions."""
 
 
 class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):

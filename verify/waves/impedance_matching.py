@@ -52,12 +52,11 @@ def ending(
     support: str = "pinned",
     *,
     turning: bool = False,
-    position: float | None = None,
+    name: str = "",
 ) -> Ending:
     """A half-infinite beam at a device at `distance` (m) from an end on a support, against rotation with `turning`.
 
-    Raises InputError at a support without motion, naming `position` (m) where that is another number, and for a beam
-    that is not uniform.
+    Raises InputError at a support without motion, with the `name` of the position, and for a beam that is not uniform.
     """
     check_number("position", distance, "metres from the end", at_least=0)
     if not beam.uniform:
@@ -76,10 +75,8 @@ def ending(
     back = returned(-np.array([1j, 1.0]) * (-_WAYS * k if turning else 1.0))
     motion = (1.0 - 1j) * k**2 + back @ (-_WAYS * k) if turning else back.sum() - (1.0 + 1j)
     if motion == 0.0:
-        raise InputError(
-            f"position = {distance if position is None else position!r} m stands on a {support} support, where a "
-            "device does nothing: move it"
-        )
+        name = name or f"position = {distance!r} m"
+        raise InputError(f"{name} stands on a {support} support, where a device does nothing: move it")
     own = complex(unit / (1j * motion))
     back = returned(np.array([1.0, 0.0]))
     s = k * (1j - back @ _WAYS) if turning else 1.0 + back.sum()
@@ -121,5 +118,6 @@ def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning:
     check_number("position", position, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
     right = position > 0.5 * beam.length
     distance, support = max(beam.length - position, 0.0) if right else position, beam.supports[right]
-    end = ending(beam, frequency_hz, distance, support, turning=turning, position=position)
+    name = f"position = {position!r} m"
+    end = ending(beam, frequency_hz, distance, support, turning=turning, name=name)
     return of_impedance(position, end.matched, 2.0 * np.pi * frequency_hz, turning=turning)

@@ -119,13 +119,8 @@ def fit_waves(x: Array, deflection: ComplexArray, k: complex) -> TwoWaves:
     deflection, and a wavenumber that does not propagate or of which x spans less than half a wavelength.
     """
     at, values = np.asarray(x, dtype=float), np.asarray(deflection, dtype=complex)
-    if at.ndim != 1 or len(at) < 2 or values.shape != at.shape:
-        raise InputError(
-            f"x and deflection have the shapes {at.shape} and {values.shape}: give two or more numbers in a row, as "
-            "many of each"
-        )
-    if not (np.isfinite(at).all() and np.isfinite(values).all()):
-        raise InputError("x and deflection have to be finite: leave out what is not")
+    if at.ndim != 1 or len(at) < 2 or values.shape != at.shape or not np.isfinite([at, values]).all():
+        raise InputError(f"x, {at.shape}, and deflection, {values.shape}: give two or more finite numbers of each")
     if not values.any():
         raise zero_field()
     return _fit(at, values, check_wavenumber("k", k, (float(at.min()), float(at.max()))), np.ones(len(at)))
@@ -160,12 +155,11 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weight
 
 
 class Minimum(msgspec.Struct, frozen=True):
-    """Where a figure is least in an interval."""
+    """Where a figure is least in an interval; `at_edge` where it still falls at an end, which is then no minimum."""
 
     x: float
     value: float
     at_edge: bool
-    """Whether it still falls at an end of the interval, which is then no minimum."""
 
 
 def minimum_near(figure: Callable[[Array], Array], grid: Array, tolerance: float) -> Minimum:
