@@ -85,8 +85,6 @@ class ExactModel(BeamModel):
 
     def _beta_length(self, mode: int) -> float:
         """beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
-        if self.theory == "euler-bernoulli" and self.beam.uniform:
-            return closed_forms.wavenumber_length(self.beam.supports, mode)
         return wavenumber_length(self.layout, mode + self.beam.rigid_motions)
 
     def n_below(self, frequency_hz: float) -> int:
@@ -191,7 +189,7 @@ class ExactModel(BeamModel):
             raise InputError("frequency_hz has several values: with devices give one at a time")
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
-        self._check_resonance(layout, frequencies, drives, devices)
+        self._check_resonance(frequencies, drives, devices)
         imposed = [(layout.station_at(drive.position / beam.length), phasor(drive)) for drive in drives]
         loads = [(force.position, np.array([phasor(force)])) for force in forces]
         blocks = np.split(frequencies, range(_SWEPT_TOGETHER, len(frequencies), _SWEPT_TOGETHER))
@@ -233,10 +231,9 @@ class ExactModel(BeamModel):
         at, frequencies = vector_on("positions", positions, self.beam.length), frequencies_on(self.beam, frequencies_hz)
         xi = vector_on("x", x, self.beam.length) / self.beam.length
         layout = self._stationed(tuple(at.tolist()), ())
+        steady = np.flatnonzero(np.array(self._resonances(self.layout, frequencies)) == 0)
         loads = list(zip(at.tolist(), np.eye(len(at)), strict=True))
         responses = np.full((len(frequencies), len(at), len(xi)), np.nan, dtype=complex)
-        steady = np.array([number == 0 for number in self._resonances(layout, frequencies)])
-        steady = np.flatnonzero(steady)
         for block in np.split(steady, range(_SWEPT_TOGETHER, len(steady), _SWEPT_TOGETHER)) if len(steady) else ():
             responses[block] = self._solve(layout, frequencies[block], loads)[0].read(xi, 0)
         return responses
@@ -290,15 +287,23 @@ class ExactModel(BeamModel):
         """Number, rigid motions included, of the undamped resonance at each frequency; 0 where there is none."""
         if self.beam.loss_factor:
             return [0] * len(frequencies)
-        near = (self._omega2(frequencies * (1.0 + side * RESONANCE)).tolist() for side in (-1.0, 1.0))
-        counts = [[count_at(layout, omega2).below for omega2 in side] for side in near]
-        return [up_to if up_to > max(below, 0) else 0 for below, up_to in zip(*counts, strict=True)]
+        low, high = self._omega2(frequencies * (1.0 - RESONANCE)), self._omega2(frequencies * (1.0 + RESONANCE))
+        below, up_to = count_at(layout, float(low.min())).below, count_at(layout, float(high.max())).below
+        if up_to - below < len(frequencies):  # compare with every resonance in the range
+            roots = [(number, wavenumber_length(layout, number) ** 4) for number in range(below + 1, up_to + 1)]
+            numbers = np.zeros(len(frequencies), dtype=int)
+            for number, omega2 in roots:
+                numbers[(low < omega2) & (omega2 <= high)] = number
+            return [int(number) for number in numbers]
+        counts = [[count_at(layout, omega2).below for omega2 in side.tolist()] for side in (low, high)]
+        return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
     def _check_resonance(
-        self, layout: BeamLayout, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]
+        self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]
     ) -> None:
-        """Raise ResonanceError at an undamped resonance of the beam with its devices, where the drives hold it."""
+        """Raise ResonanceError at an undamped resonance of the beam with its devices, held at imposed displacements."""
         length = self.beam.length
+        layout = self._stationed(tuple(drive.position for drive in drives), devices)
         layout = with_stations(layout, [(one.position / length, Station(support="pinned")) for one in drives])
         numbers = self._resonances(layout, frequencies)
         if any(numbers) and (damped := [one for one in devices if one.dashpot or one.rotational_dashpot]):

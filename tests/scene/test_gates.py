@@ -7,8 +7,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify import Beam, load_scene, run_scene
-from verify.analysis.bracket import Bracket
-from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.convert import convert
 from verify.errors import InputError
 from verify.quantities.base import QUANTITIES, quantity

@@ -25,11 +25,14 @@ def choose(
     """
     from verify.analysis.sizing import choose as choose_sizes
     from verify.analysis.solution_cache import SolutionCache
+    from verify.exact.plate import plate_warnings
     from verify.report.result import Column, Result, Table
     from verify.scene.load import load_scene
 
     modes, largest, chosen = _modes(mode), _error(error), _rules(rules)
-    choices, skipped = choose_sizes(SolutionCache(load_scene(scene, overrides).beam), modes, largest, chosen)
+    beam = load_scene(scene, overrides).beam
+    choices, skipped = choose_sizes(SolutionCache(beam), modes, largest, chosen)
+    errors = {one.size.mode: [c.error for c in choices if c.size.mode == one.size.mode] for one in choices}
     rows = [
         (
             *(one.variant.title, one.size.count, one.size.mode, one.unknowns, one.error, one.expected_error),
@@ -44,7 +47,7 @@ def choose(
     result = Result(
         f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
         [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
-        warnings=[f"{name} is skipped: {why}" for name, why in skipped.items()],
+        warnings=[*plate_warnings(beam, errors), *(f"{name} is skipped: {why}" for name, why in skipped.items())],
     )
     show(result, **formats)
 

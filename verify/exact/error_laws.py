@@ -8,7 +8,7 @@ from cmath import asin
 from cmath import exp as cexp
 from cmath import sqrt as csqrt
 from collections.abc import Callable
-from math import ceil, cos, exp, factorial, pi, sin, sqrt
+from math import cos, exp, factorial, pi, sin, sqrt
 
 import msgspec
 
@@ -18,10 +18,8 @@ from verify.problem.beam import Beam
 
 MEAN_LIMIT = 2.187653657707005
 """mu at which the error of segments is -3 times that of Hermite elements, so that their mean has the elements' size."""
-_HERMITE_HUMP = 2.975626
-"""mu at which the Hermite elements' frequency error is largest on the lower branch, 3.7056 %."""
-KEPT, KEPT_FROM, _KEPT_TO = 1.0 / 3.0, 20, 2.5
-"""Errors keep to `expected_error` within this share of its terms, from these parts on, for these mu (tests/exact)."""
+_LAW_TO = 2.5
+"""mu up to which errors keep to `expected_error` within a third of its terms, from 20 parts on (tests/linear)."""
 _GREGORY = (-5.0 / 8.0, 1.0 / 6.0, -1.0 / 24.0)
 _BERNOULLI = {2: 1 / 6, 4: -1 / 30, 6: 1 / 42, 8: -1 / 30, 10: 5 / 66, 12: -691 / 2730, 14: 7 / 6, 16: -3617 / 510}
 _SMALL = 0.2
@@ -128,14 +126,16 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
 
 
 def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
-    """What error to expect of a uniform beam: that of the dispersion, exact between pinned and guided ends, and walls'.
+    """Expected error of a uniform beam: that of the dispersion, exact between pinned and guided ends, and the walls'.
 
     At other ends it is a law for practical sizes too: from N = 20 on errors keep to it within a third of the sum of its
-    terms' sizes. Its leading terms, `leading_error`, are right only beyond some hundred links. Where `has_law` is not
-    so it means nothing: elements have modes beyond their lower branch, of which it knows none.
+    terms' sizes. Its leading terms, `leading_error`, are right only beyond some hundred links. It holds where `has_law`
+    is true: elements have modes beyond their lower branch.
     """
-    own, walls = _terms(model, beam.supports, mode, count)
-    return own + walls
+    mu, law = wavenumber_length(beam.supports, mode) / count, law_of(model)
+    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
+    walls = -0.5 * clamped * wall_residual(mu) / count if clamped else 0.0
+    return sqrt(law.root(mu)) / mu**2 - 1.0 + walls
 
 
 def has_law(beam: Beam, mode: int, count: int) -> bool:
@@ -144,43 +144,7 @@ def has_law(beam: Beam, mode: int, count: int) -> bool:
     At other ends up to mu = 2.5, as far as errors were found to keep to it.
     """
     mu = wavenumber_length(beam.supports, mode) / count
-    return mu < pi if sine_fits(beam.supports) else mu <= _KEPT_TO
-
-
-def _terms(model: str, supports: tuple[str, str], mode: int, count: int) -> tuple[float, float]:
-    """(the dispersion's error, what clamped ends add) of a mode."""
-    mu, law = wavenumber_length(supports, mode) / count, law_of(model)
-    clamped = supports.count("clamped") if law.feels_clamps else 0
-    return sqrt(law.root(mu)) / mu**2 - 1.0, -0.5 * clamped * wall_residual(mu) / count if clamped else 0.0
-
-
-def is_kept(model: str, beam: Beam, mode: int, count: int, error: float, floor: float) -> bool:
-    """Whether an error found is within a third of the terms of `expected_error`, or `floor`, of it."""
-    own, walls = _terms(model, beam.supports, mode, count)
-    return abs(error - own - walls) <= KEPT * (abs(own) + abs(walls)) + floor
-
-
-def certain_from(model: str, beam: Beam, mode: int, error: float) -> int:
-    """The size from which on every error that keeps to `expected_error` (`is_kept`) is within `error`.
-
-    There the dispersion's error and mu^4/6 for the residual of a clamped end, which is less, only fall.
-    """
-    y, law = wavenumber_length(beam.supports, mode), law_of(model)
-    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
-
-    def reached(count: int) -> bool:
-        mu = y / count
-        own = abs(sqrt(law.root(mu)) / mu**2 - 1.0)
-        return (1.0 + KEPT) * (own + clamped * mu**4 / 12.0 / count) <= error
-
-    high = max(KEPT_FROM, ceil(y / _KEPT_TO), smallest_count(beam, mode))
-    low = high - 1
-    while not reached(high):
-        low, high = high, 2 * high
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high
+    return mu < pi if sine_fits(beam.supports) else mu <= _LAW_TO
 
 
 def wall_residual(mu: float) -> float:
@@ -212,55 +176,6 @@ def _wall_series(mu: float) -> float:
     return total
 
 
-def parts_from_here_on(model: str, beam: Beam, mode: int, error: float) -> int:
-    """The size from which on the exact or else the leading error is within `error`, there and at every larger size.
-
-    Raises InputError for an error that is as small as rounding.
-    """
-    if error < 1e-12:
-        raise InputError(f"error = {error!r} is as small as rounding: ask for 1e-12 or more")
-
-    expected = expected_error if sine_fits(beam.supports) else _leading
-
-    def reached(count: int) -> bool:
-        return abs(expected(model, beam, mode, count)) <= error
-
-    smallest = smallest_count(beam, mode)
-    falls_to, hump = last_hump(model, beam, mode)
-    beside = [max(int(hump), smallest), max(int(hump) + 1, smallest)]
-    if all(reached(count) for count in beside):
-        low, high = smallest - 1, max(falls_to, smallest)
-    else:
-        low, high = beside[0], beside[1]
-    while not reached(high):
-        low, high = high, 2 * high
-        if high > 10**9:
-            raise InputError(f"error = {error!r}: the {model} model does not reach it at any size")
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high
-
-
-def _leading(model: str, beam: Beam, mode: int, count: int) -> float:
-    """`leading_error` of a beam's supports."""
-    return leading_error(model, beam.supports, mode, count)
-
-
-def last_hump(model: str, beam: Beam, mode: int) -> tuple[int, float]:
-    """(the size down to whose error it falls at first, the size of its last hump), beyond which it falls for good.
-
-    With pinned and guided ends the chain's error only falls with the size, proven by its dispersion; that of Hermite
-    elements rises from 0.72 % at mu = pi to 3.71 % at mu = 2.9756 and then falls. Of the laws, mu^4 / 1440 only
-    falls; mu^4 (-1/1440 + c / (12 N)) is zero at N = 120 c and has a hump at 150 c. (0, 0) where it only falls.
-    """
-    law = law_of(model)
-    if sine_fits(beam.supports):
-        return 0, wavenumber_length(beam.supports, mode) / law.hump if law.hump else 0.0
-    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
-    return 120 * clamped, 150.0 * clamped
-
-
 def smallest_count(beam: Beam, mode: int) -> int:
     """The fewest parts that have the mode on their lower branch."""
     return max(int(wavenumber_length(beam.supports, mode) / pi) + 1, mode + 1, 2)
@@ -281,8 +196,6 @@ class Law(msgspec.Struct, frozen=True, kw_only=True):
     """(mu^4, clamped ends, count) -> the leading relative frequency error."""
     feels_clamps: bool
     """Whether clamped ends are in it."""
-    hump: float | None
-    """mu at which the error is largest on the lower branch; None where it only grows."""
 
 
 LAWS = {
@@ -293,7 +206,6 @@ LAWS = {
         cut_off_root=48.0,
         leading=lambda mu4, clamped, count: mu4 * (-1.0 / 1440.0 + clamped / (12.0 * count)),
         feels_clamps=True,
-        hump=None,
     ),
     "fem": Law(
         parts="elements",
@@ -302,7 +214,6 @@ LAWS = {
         cut_off_root=1680.0 / 17.0,
         leading=lambda mu4, clamped, count: mu4 / 1440.0,
         feels_clamps=False,
-        hump=_HERMITE_HUMP,
     ),
 }
 """By the name of the model."""

@@ -15,7 +15,7 @@ import numpy as np
 from msgspec import structs
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number, check_whole, check_word, several
+from verify.checks import check_kind, check_number, check_whole, check_word, several
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
@@ -95,8 +95,8 @@ class BeamModel(ABC):
 
     @property
     def count(self) -> int | None:
-        """Number of parts; None for a model without."""
-        return None
+        """Number of parts, the field after the beam; None for a model without."""
+        return getattr(self, fields(self)[1].name) if self.sized else None  # type: ignore[arg-type]
 
     @property
     @abstractmethod
@@ -167,7 +167,8 @@ class BeamModel(ABC):
             )
 
     def check_theory(self) -> None:
-        """Raise InputError for an unknown theory, and for one that the beam has no figures for."""
+        """Raise InputError for what is no beam, an unknown theory, and one that the beam has no figures for."""
+        check_kind("beam", self.beam, Beam)
         check_word("theory", self.theory, THEORIES)
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(
@@ -373,9 +374,8 @@ class DiscreteModel(BeamModel):
         """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
         first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
         losses = np.imag(first / self.stable_system.stiffness)
-        return (
-            float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
-        )
+        shared = np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last)
+        return float(losses[0]) if shared else None
 
     def _superposes(self, omegas: Array) -> bool:
         """Whether all modes cost less than a factorisation for each frequency, and are not coupled."""

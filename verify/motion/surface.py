@@ -7,6 +7,7 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.analytic_modes import EXACT_MODES
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 from verify.linear.positions import SLACK
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
 Shapes = Callable[[Array, int], Array]
 ANALYTIC_DEGREE = 8
-EXACT_MODES = 400
-"""Modes of the exact beam in time, by default."""
 
 
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):

@@ -50,6 +50,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve every variant at every size and time it. Raises InputError for a size that cannot be solved."""
         from verify.analysis.solution_cache import comparable
+        from verify.exact.plate import plate_warnings
         from verify.report.result import Column, Figure, Result, Table
 
         models, left_out = comparable(cache.beam, self.counts, max(self.modes))
@@ -57,6 +58,9 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         rows = self._rows(cache, variants, progress)
         bounds, no_bound = self._bounds(cache)
         settled, warnings = self._summarise(cache, rows)
+        finest = [row for row in rows if row["N"] == max(self.counts) and row["error"] is not None]
+        own = {mode: [row["error"] for row in finest if row["mode"] == mode] for mode in self.modes}
+        warnings += plate_warnings(cache.beam, own)
         columns = [Column("mode"), Column("model"), Column("N"), Column("frequency", "Hz", ".8g"), percent("error")]
         columns += [Column("order", format=".2f"), percent("GCI", ".3g"), percent("extrapolated", "+.3g")]
         columns += [si("solve time", "s", ".3g")]

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 MOST_COUNTED = 200
 """Modes up to which frequencies by other theories are computed where they have no closed form."""
+MOST_PLATES = 60
+"""The same for plate theory, about 0.1 s a mode."""
 THEORY_COLORS = {"rayleigh": "#8f5bd1", "timoshenko": "#cc3f76", "plate": "#008f8f"}
 CAPTIONS = {
     "mode-errors": "Signed, against the exact beam of the same theory.",
@@ -106,8 +108,9 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         for name in THEORIES[1:]:
             with suppress(InputError):
                 found[name] = [cache.exact_hz(mode, name) / cache.exact_hz(mode) - 1.0 for mode in numbers]
-        with suppress(InputError):
-            found["plate"] = [plate_error(cache.beam, mode) for mode in numbers]
+        if closed or self.modes <= MOST_PLATES:
+            with suppress(InputError):
+                found["plate"] = [plate_error(cache.beam, mode) for mode in numbers]
         return found
 
     def _shapes(self, cache: "SolutionCache", variants: tuple[Variant, ...]) -> "list[Figure]":
