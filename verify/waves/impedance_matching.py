@@ -16,8 +16,6 @@ Without losses Z_m = conj(Z_b) and |Gamma_held| = 1; with a loss factor k is com
 most power, still reflects.
 """
 
-from math import inf, sqrt
-
 import msgspec
 import numpy as np
 
@@ -87,25 +85,6 @@ def ending(
 def reflection(impedance: complex, end: Ending) -> float:
     """|Gamma| at a device of this impedance."""
     return float(abs(end.held) * abs(impedance - end.matched) / abs(impedance + end.own))
-
-
-def best_dashpot(end: Ending) -> tuple[float, float]:
-    """(resistance, |Gamma|) of the best dashpot alone; kg/s, N m s against rotation.
-
-    Without losses |Z_b| and tan(|arg Z_b| / 2): over real R, |R - Z_m|^2 / |R + Z_b|^2 is least where
-    Re(Z_m + Z_b) R^2 + (|Z_b|^2 - |Z_m|^2) R = Re(Z_m) |Z_b|^2 + Re(Z_b) |Z_m|^2 crosses zero upwards, or at no
-    dashpot, or, with losses, at infinity: a rigid device.
-    """
-    matched, own = end.matched, end.own
-    a, b = (matched + own).real, abs(own) ** 2 - abs(matched) ** 2
-    c = matched.real * abs(own) ** 2 + own.real * abs(matched) ** 2
-    root, best = sqrt(max(b * b + 4.0 * a * c, 0.0)), 0.0
-    if b >= 0.0 and b + root > 0.0:
-        best = max(2.0 * c / (b + root), 0.0)
-    elif a > 0.0:
-        best = max((root - b) / (2.0 * a), 0.0)
-    candidates = [(one, reflection(complex(one), end)) for one in (best, 0.0)]
-    return min(*candidates, (inf, abs(end.held)), key=lambda one: one[1])
 
 
 def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning: bool = False) -> Device:
