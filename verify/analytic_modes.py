@@ -9,7 +9,7 @@ factor acts on the beam's own bending and shear stiffness; springs, foundation a
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import pi, sqrt
+from math import pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -84,7 +84,7 @@ class ExactModel(BeamModel):
         return self._beta_length(mode) ** 2 * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
 
     def _beta_length(self, mode: int) -> float:
-        """beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
+        """Beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
         return wavenumber_length(self.layout, mode + self.beam.rigid_motions)
 
     def n_below(self, frequency_hz: float) -> int:
@@ -298,9 +298,7 @@ class ExactModel(BeamModel):
         counts = [[count_at(layout, omega2).below for omega2 in side.tolist()] for side in (low, high)]
         return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
-    def _check_resonance(
-        self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]
-    ) -> None:
+    def _check_resonance(self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]) -> None:
         """Raise ResonanceError at an undamped resonance of the beam with its devices, held at imposed displacements."""
         length = self.beam.length
         layout = self._stationed(tuple(drive.position for drive in drives), devices)

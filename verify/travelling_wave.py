@@ -127,7 +127,7 @@ class WaveMeasures:
     def signed_area_spread(self) -> float:
         """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends.
 
-        Raises StandingError where the wave stands.
+        Raises NoFigureError where the wave stands.
         """
         self.waves.check_travelling()
         least, mean, largest = self.signed_area_range
@@ -231,7 +231,7 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
 def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     """(power of the forces left of the window - losses up to its middle - flux through it) over that flux.
 
-    The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises StandingError where the wave
+    The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError where the wave
     stands, and InputError for a beam with sections.
     """
     beam, middle = field.beam, 0.5 * sum(measures.window)

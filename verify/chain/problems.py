@@ -263,8 +263,8 @@ def contact_line_error(
     The chain stands in a mode of the linear one, a millionth of its length high; the exact mode is the reference.
     Order 3, beside a clamped wall 1. Raises InputError, also for a stepped beam: its exact shapes are not known here.
     """
-    from verify.chain.ride import touched
     from verify.analytic_modes import ExactModel
+    from verify.chain.ride import touched
     from verify.segment_model import SegmentModel
 
     check_whole("segments", n_segments, 2)

@@ -6,12 +6,12 @@ pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model fo
 
 from math import atan, exp, pi, sqrt
 
-from verify.checks import check_word, whole_number
-from verify.errors import InputError, shown
+from verify.checks import check_whole, check_word
+from verify.errors import InputError
 from verify.options import THEORIES
 from verify.problem.beam import Beam
 
-HIGHEST = 10**30
+HIGHEST = 10**9
 """Mode of which there is a frequency."""
 # beta L = (n + c) pi + s(n) g atan(exp(-2 y/g)), the exponential form of cos y cosh y = +-1 and its kin.
 # pair -> (c, sign rule, g); the sign rule is 0, a constant, or "odd" for +1 at odd n and -1 at even n.
@@ -31,11 +31,7 @@ _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
 
 def check_mode(mode: int) -> None:
     """Raise InputError unless `mode` counts from 1, and not beyond what formulas hold."""
-    whole = whole_number(mode)
-    if whole is None or whole < 1:
-        raise InputError(f"mode = {shown(mode)}: modes are numbered from 1, elastic modes only")
-    if whole > HIGHEST:
-        raise InputError(f"mode = {shown(mode)}: no formula holds one so high, give at most {HIGHEST:.0e}")
+    check_whole("mode", mode, 1, HIGHEST)
 
 
 def check_uniform(beam: Beam) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
-from verify.errors import InputError, StandingError, ZeroFieldError
+from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response
 from verify.linear.intervals import Rule, rule_over
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
@@ -61,9 +61,9 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return float(standing_wave_ratios(np.array(self.reflection)))
 
     def check_travelling(self) -> None:
-        """Raise StandingError for a standing wave: its flux and signed area are zero but for rounding."""
+        """Raise NoFigureError for a standing wave: its flux and signed area are zero but for rounding."""
         if self.reflection >= 1.0 - STANDING:
-            raise StandingError(
+            raise NoFigureError(
                 "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
                 "phase_deg"
             )
@@ -105,9 +105,9 @@ def two_waves(field: HarmonicField, window: Window, wave_number: complex | None 
     return _fit(rule.x, deflection, k, rule.weights)
 
 
-def zero_field() -> ZeroFieldError:
+def zero_field() -> NoFigureError:
     """The error of a field without motion in the window."""
-    return ZeroFieldError(
+    return NoFigureError(
         "the field is zero in the window: drive.force acts on a support or has no amplitude, move it or give it one"
     )
 
