@@ -355,7 +355,7 @@ class SegmentModel(DiscreteModel):
 
         if not rotation:
             return joint_weights(self.chain, positions, self.load) @ self.motions.positions
-        ends = {body.position: body.end for body in self.bodies if body.end is not None and self._elastic[body.end]}
+        ends = {body.position: body.end for body in self.attached.at_ends if body.rotary_inertia}
         each = [
             self.motions.end_rotations[[ends[position]]]
             if position in ends
@@ -421,6 +421,11 @@ class SegmentModel(DiscreteModel):
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
+        if self.joint_dashpot:
+            raise InputError(
+                f"joint_dashpot = {self.joint_dashpot!r} is for harmonic motion: leave it out in time, or give the "
+                "beam a loss_factor"
+            )
         index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 
         def rotations() -> Array:
