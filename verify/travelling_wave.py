@@ -24,7 +24,7 @@ from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
 from verify.errors import InputError
 from verify.linear.field import HarmonicField, phasor
-from verify.linear.intervals import extremes, mean_over, rule_over, whole_halves
+from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
 from verify.linear.positions import Numbers
 from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
@@ -92,7 +92,7 @@ class WaveMeasures:
         (1 - Gamma) / (1 + Gamma) for two waves.
         """
         whole, halves = whole_halves(self.window, self.waves.wavenumber.real)
-        rule = rule_over(whole, 2 * halves)
+        rule = gauss_rule(whole, 2 * halves)
         w = self.deflection(rule.x)
         values = np.linalg.svd(np.stack([w.real, w.imag]) * np.sqrt(rule.weights), compute_uv=False)
         return float(values[1] / values[0]) if values[0] > 0 else 0.0

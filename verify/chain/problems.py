@@ -16,7 +16,7 @@ from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
 from verify.problem.beam import Beam, PointForce
-from verify.segments.chain import link_inertia
+from verify.segments.links import link_inertia
 
 Progress = Callable[[float], None]
 """Called with the fraction of a motion done, 0 to 1."""
@@ -269,7 +269,8 @@ def contact_line_error(
 
     check_whole("segments", n_segments, 2)
     system = build_system(beam, n_segments, wall=wall, grading=grading)
-    joints = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode).readings["raw"]()[mode - 1]
+    modes = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode)
+    joints = modes.readings["raw"]()[mode - 1]
     size = 1e-6 * beam.length / float(abs(joints).max())
     pieces, edges = touched(system, size * np.diff(joints), x)
     xi = np.linspace(0.0, 1.0, 17)

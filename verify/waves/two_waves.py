@@ -10,7 +10,7 @@ from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
 from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response
-from verify.linear.intervals import Rule, rule_over
+from verify.linear.numerics import Rule, gauss_rule
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
 STANDING = 1e-12
@@ -78,7 +78,7 @@ def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
 def window_rule(window: Window, k: float) -> Rule:
     """Gauss points and weights of a window: the fit is then in the mean square over all of it."""
     start, end = map(float, window)
-    return rule_over((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
+    return gauss_rule((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
 
 
 def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle: float) -> ComplexArray:
