@@ -76,6 +76,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "wave.signed_area_spread": ("driven", {"window": [0.2, 0.5]}), "wave.axis_ratio": ("driven", {"x": 0.31}),
     **{f"wave.{name}": ("driven", {"window": [0.2, 0.5]}) for name in ("best_ratio", "best_ratio_phase")},
     "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
+    "wave.best_ratio": ("driven", {}), "wave.best_ratio_phase": ("driven", {}),
     "wave.order": ("driven", {"model": "fem", "counts": [20, 40, 80]}),
     "wave.lumped_swr": ("bare", {"x": 0.31, "modes": [5, 6]}),
     "wave.fastest_crests": ("driven", {"limit": 0.7}), "wave.absorber_impedance": ("driven", {"position": 0.083}),
