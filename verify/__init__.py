@@ -47,36 +47,11 @@ if TYPE_CHECKING:
     from verify.travelling_wave import WaveMeasures
 
 __all__ = [
-    "Beam",
-    "Bent",
-    "Contact",
-    "Device",
-    "ExactModel",
-    "Foot",
-    "FreeVibration",
-    "HarmonicField",
-    "HermiteModel",
-    "InputError",
-    "Modes",
-    "Motion",
-    "MotorRun",
-    "PointForce",
-    "PointMass",
-    "PointSpring",
-    "Section",
-    "SegmentModel",
-    "Slider",
-    "WaveMeasures",
-    "__version__",
-    "bend",
-    "free_vibration",
-    "load_scene",
-    "run_motor",
-    "run_motors",
-    "run_scene",
-    "simulate",
-    "travelling_wave",
-]
+    "Beam", "Bent", "Contact", "Device", "ExactModel", "Foot", "FreeVibration", "HarmonicField", "HermiteModel",
+    "InputError", "Modes", "Motion", "MotorRun", "PointForce", "PointMass", "PointSpring", "Section",
+    "SegmentModel", "Slider", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_motor",
+    "run_motors", "run_scene", "simulate", "travelling_wave",
+]  # fmt: skip
 __version__ = "0.1.0"
 
 _HOMES = {

@@ -9,7 +9,8 @@ factor acts on the beam's own bending and shear stiffness; springs, foundation a
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import pi, sqrt
+from itertools import pairwise
+from math import pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -84,7 +85,7 @@ class ExactModel(BeamModel):
         return self._beta_length(mode) ** 2 * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
 
     def _beta_length(self, mode: int) -> float:
-        """beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
+        """Wavenumber beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
         return wavenumber_length(self.layout, mode + self.beam.rigid_motions)
 
     def n_below(self, frequency_hz: float) -> int:
@@ -168,7 +169,7 @@ class ExactModel(BeamModel):
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
         held = [at for at, support in zip((0.0, length), self.beam.supports, strict=True) if support[:4] in "pinnclam"]
-        close = [b - a <= _SAME * length for a, b in zip(places, places[1:], strict=False)]
+        close = [b - a <= _SAME * length for a, b in pairwise(places)]
         if any(close) or any(abs(at - end) <= _SAME * length for at in places for end in held):
             raise InputError(
                 "drive.force.position: displacements are imposed at one place twice, or at a support without "
@@ -298,9 +299,7 @@ class ExactModel(BeamModel):
         counts = [[count_at(layout, omega2).below for omega2 in side.tolist()] for side in (low, high)]
         return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
-    def _check_resonance(
-        self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]
-    ) -> None:
+    def _check_resonance(self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]) -> None:
         """Raise ResonanceError at an undamped resonance of the beam with its devices, held at imposed displacements."""
         length = self.beam.length
         layout = self._stationed(tuple(drive.position for drive in drives), devices)
@@ -311,7 +310,10 @@ class ExactModel(BeamModel):
             support = {(True, False): "pinned", (False, True): "guided", (True, True): "clamped"}
             held = [(bool(one.dashpot), bool(one.rotational_dashpot)) for one in damped]
             fixed = [(d.position / length, Station(support=support[h])) for d, h in zip(damped, held, strict=True)]
-            numbers = [n and m for n, m in zip(numbers, self._resonances(with_stations(layout, fixed), frequencies))]
+            numbers = [
+                n and m
+                for n, m in zip(numbers, self._resonances(with_stations(layout, fixed), frequencies), strict=True)
+            ]
         for frequency, number in zip(frequencies.tolist(), numbers, strict=True):
             if number and (mode := number if devices or drives else number - self.beam.rigid_motions):
                 where = " with its devices or imposed displacements" if devices or drives else ""
@@ -369,7 +371,7 @@ class ExactModel(BeamModel):
         stops = np.array(self.layout.positions) * beam.length
         stops[-1] = beam.length
         cells = np.ceil(np.diff(stops) * (omegas[-1] / beam.wave_constant * np.sqrt(ratios)) ** 0.5 / 0.4).astype(int)
-        pieces = [np.linspace(a, b, n + 2)[1:] for a, b, n in zip(stops, stops[1:], cells, strict=False)]
+        pieces = [np.linspace(a, b, n + 2)[1:] for (a, b), n in zip(pairwise(stops), cells, strict=True)]
         return TimeBasis(
             model=self.name,
             count=None,

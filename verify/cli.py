@@ -57,44 +57,36 @@ def cli() -> None:
     """
 
 
-def status_of(argv: list[str] | None = None) -> int:  # noqa: PLR0911
+def status_of(argv: list[str] | None = None) -> int:
     """Run a command line and return its exit status; messages go to the error stream."""
     try:
         cli.main(args=argv, prog_name="verify", standalone_mode=False)
         sys.stdout.flush()
+        return 0
     except InputError as error:
-        _complain(*error.sentences)
-        return BAD_INPUT
+        status, sentences = BAD_INPUT, list(error.sentences)
     except click.ClickException as error:
         text = StringIO()
         error.show(text)
         click.echo("\n".join(map(printable, text.getvalue().splitlines())), err=True)
         return error.exit_code
     except (click.Abort, KeyboardInterrupt):
-        _complain("interrupted")
-        return INTERRUPTED
+        status, sentences = INTERRUPTED, ["interrupted"]
     except (BrokenPipe, BrokenPipeError):
-        _discard_output()
-        return BROKEN_PIPE
+        status, sentences = BROKEN_PIPE, []
     except OSError as error:
         if error.errno not in (ENOSPC, EIO) or error.filename is not None:
             raise
-        _discard_output()
-        _complain(f"standard output = {error.strerror}: free disk space, or write elsewhere")
-        return BAD_INPUT
+        status = BAD_INPUT
+        sentences = [f"standard output = {error.strerror}: free disk space, or write elsewhere"]
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else BAD_INPUT
-    return 0
-
-
-def _discard_output() -> None:
-    """Nothing is left to be flushed at exit."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _complain(*sentences: str) -> None:
+    if status == BROKEN_PIPE:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing is left to be flushed at exit
     for sentence in sentences:
         click.echo(f"verify: {sentence}", err=True)
+    return status
 
 
 def main() -> NoReturn:

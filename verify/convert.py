@@ -8,11 +8,12 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
-from verify.checks import RELATIVE
 from verify.errors import InputError, near_name, raise_all, shown
 
 T = TypeVar("T")
 
+RELATIVE = "relative"
+"""Key in `extra` of a dimensionless number, which a command line accepts in per cent as well."""
 LONGEST_RANGE = 10_000
 _WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/*^]")
 _PLAIN = {
@@ -23,6 +24,7 @@ _PLAIN = {
     "array": "a list",
     "object": "a table",
 }
+_LIMITS = (("gt", "above"), ("ge", "of at least"), ("lt", "below"), ("le", "of at most"))
 
 
 def convert(data: Any, kind: type[T], where: str = "") -> T:
@@ -31,10 +33,13 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
     Raises InputError with one sentence for each unknown key, missing key and wrong value.
     """
     try:
-        return msgspec.convert(data, kind, strict=True)
+        value = msgspec.convert(data, kind, strict=True)
     except msgspec.ValidationError as error:
         raise_all(list(_errors(data, kind, where)))
         raise InputError(f"{where or 'scene'}: {error}") from None
+    if isinstance(value, float) and not isfinite(value):
+        raise InputError(sentence(where, data, kind))
+    return value
 
 
 def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
@@ -44,7 +49,7 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
     inside: list[str] = []
     if table is not None and isinstance(data, dict):
         inside = list(_table_errors(data, table, where))
-    elif lists is not None and isinstance(data, list):
+    elif lists is not None and isinstance(data, list | tuple):
         for i, one in enumerate(data):
             named = isinstance(one, dict) and isinstance(one.get("id"), str) and one["id"]
             entry = lists[0] if lists[-1] is Ellipsis else lists[min(i, len(lists) - 1)]
@@ -58,7 +63,7 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
         if isinstance(error.__cause__, InputError):
             yield from error.__cause__.sentences
         else:
-            yield f"{where} = {shown(data)}: {_remedy(str(error), data, kind)}"
+            yield sentence(where, data, kind, str(error))
 
 
 def _table_errors(data: dict[str, Any], table: type[msgspec.Struct], where: str) -> Iterator[str]:
@@ -76,20 +81,28 @@ def _table_errors(data: dict[str, Any], table: type[msgspec.Struct], where: str)
                 yield f"{f'{where}.{key}'.lstrip('.')} is missing: give it a value"
 
 
-def _remedy(message: str, value: Any, kind: Any) -> str:
-    """The end of a sentence, from msgspec's message and what is often meant by such a value."""
-    words = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is Literal), ())
-    if message.startswith("Invalid enum value"):
-        return f"it is not known, {near_name(str(value), tuple(map(str, words)))}"
-    if message.startswith("Number out of range"):
-        return "write a large number as 1e30"
-    expects_number = message.startswith(("Expected `float", "Expected `int"))
-    if expects_number and isinstance(value, list):
-        return "give one number, with a point before its decimals"
-    if expects_number and isinstance(value, str) and _WITH_UNIT.match(value):
-        return "give a number alone, in SI units: 0.08 for 80 mm"
-    text = message.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", "")
-    return re.sub(r"`(\w[\w |]*)`", lambda m: " or ".join(_PLAIN.get(w, w) for w in m[1].split(" | ")), text)
+def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
+    """The message for a value that does not fit its type: field, value, remedy; `error` is msgspec's own message."""
+    subject = f"{field} = {shown(value)}"
+    arms = arms_of(kind)
+    words = next((get_args(arm) for arm in arms if get_origin(arm) is Literal), ())
+    if words and (isinstance(value, str) or len(arms) - (type(None) in arms) == 1):
+        return f"{subject} is not known: {near_name(str(value), tuple(map(str, words)))}"
+    if int in arms or float in arms:
+        if isinstance(value, list | tuple):
+            return f"{subject}: give one number, with a point before its decimals"
+        if isinstance(value, str) and _WITH_UNIT.match(value):
+            return f"{subject}: give a number alone, in SI units: 0.08 for 80 mm"
+        metas = metas_of(kind)
+        limits = [f"{text} {edge:g}" for name, text in _LIMITS for m in metas if (edge := getattr(m, name)) is not None]
+        number = f"a {'finite' if float in arms else 'whole'} number {' and '.join(limits)}".rstrip()
+        return f"{subject}: give {number}" + (f" ({unit})" if (unit := extra_of(kind, "unit")) else "")
+    table = table_of(kind)
+    if table is not None and not isinstance(value, dict):
+        return f"{subject}: give a table, a {table.__name__} in Python"
+    text = error.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", "")
+    text = re.sub(r"`(\w[\w |]*)`", lambda m: " or ".join(_PLAIN.get(w, w) for w in m[1].split(" | ")), text)
+    return f"{subject}: {text}"
 
 
 def arms_of(kind: Any) -> tuple[Any, ...]:

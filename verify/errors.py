@@ -1,5 +1,6 @@
 """Errors that a user can cause: one sentence each, with field, value and remedy."""
 
+from collections.abc import Sequence
 from reprlib import Repr
 
 SENTENCE = 1600
@@ -11,49 +12,21 @@ VALUE = 120
 
 
 class InputError(ValueError):
-    """Bad input. The message is one sentence that names the field, its value and the remedy.
+    """Bad input: a sentence for each error, which names the field, its value and the remedy.
 
     A long message is shortened in its middle; what a terminal should not receive is escaped.
     """
 
-    def __init__(self, message: str) -> None:
-        super().__init__(one_line(message))
+    def __init__(self, *sentences: str) -> None:
+        super().__init__(*map(one_line, sentences))
+
+    def __str__(self) -> str:
+        return one_line("; ".join(self.args))
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """One for each error."""
-        return (str(self),)
-
-
-class WrongSceneError(InputError):
-    """Several errors in a scene."""
-
-    def __init__(self, sentences: "list[str]") -> None:
-        super().__init__("; ".join(sentences))
-        self._sentences = tuple(one_line(sentence) for sentence in sentences)
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """One for each error."""
-        return self._sentences
-
-
-def raise_all(sentences: "list[str]", most: int = 1_000_000) -> None:
-    """Raise InputError for one sentence, WrongSceneError for several (the first `most`); nothing for none."""
-    sentences = list(dict.fromkeys(sentences))
-    if len(sentences) > 1:
-        more = [f"and {len(sentences) - most} more"] if len(sentences) > most else []
-        raise WrongSceneError([*sentences[:most], *more])
-    if sentences:
-        raise InputError(sentences[0])
-
-
-class NoTomlError(InputError):
-    """A file that is no TOML where a scene is expected."""
-
-
-class PairingError(InputError):
-    """No computed mode has the shape of the exact mode."""
+        return self.args
 
 
 class NoBracketError(InputError):
@@ -61,36 +34,33 @@ class NoBracketError(InputError):
 
 
 class NoFigureError(InputError):
-    """One point of a sweep has no value, though its neighbours may: a gap in a map."""
+    """One point of a sweep has no value, though its neighbours may: a gap in a map.
+
+    The mesh is too coarse for the wave, nothing moves, or a standing wave has no energy flux.
+    """
 
 
 class ResonanceError(NoFigureError):
     """An undamped model is driven at one of its natural frequencies."""
 
 
-class CutOffError(NoFigureError):
-    """The mesh is too coarse for a wave of this frequency."""
-
-
-class ZeroFieldError(NoFigureError):
-    """Nothing moves, so there is no wave to measure."""
-
-
-class StandingError(NoFigureError):
-    """A standing wave has no energy flux to relate anything to."""
-
-
 class WindowError(NoFigureError):
     """The two waves cannot be separated in this window."""
 
 
-def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
+def raise_all(sentences: Sequence[str], most: int = 1_000_000) -> None:
+    """Raise InputError with the first `most` of these sentences, each once; nothing for none."""
+    sentences = list(dict.fromkeys(sentences))
+    if sentences:
+        raise InputError(*sentences[:most], *[f"and {len(sentences) - most} more"] * (len(sentences) > most))
+
+
+def near_name(word: str, known: Sequence[str]) -> str:
     """The remedy for an unknown word: the nearest known one, else the known ones, or the first of many."""
     from difflib import get_close_matches
 
     plain = {name.casefold(): name for name in known}
-    close = get_close_matches(word.casefold(), plain, n=1, cutoff=0.6)
-    if close:
+    if close := get_close_matches(word.casefold(), plain, n=1):
         return f"did you mean {plain[close[0]]!r}?"
     more = f" and {len(known) - NAMES} more" if len(known) > NAMES + 1 else ""
     return f"known are {', '.join(known[:NAMES] if more else known)}{more}"
@@ -130,7 +100,5 @@ def written(number: float) -> str:
 
 def shortened(text: str, limit: int) -> str:
     """A text without its middle where it is longer than `limit`."""
-    if len(text) <= limit:
-        return text
     kept = (limit - 5) // 2
-    return f"{text[:kept]} ... {text[-kept:]}"
+    return text if len(text) <= limit else f"{text[:kept]} ... {text[-kept:]}"

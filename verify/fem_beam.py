@@ -19,7 +19,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.checks import MOST_PARTS, check_whole
-from verify.errors import CutOffError
+from verify.errors import NoFigureError
 from verify.linear.base import DiscreteModel
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
 from verify.linear.system import StructuralSystem
@@ -316,10 +316,10 @@ class HermiteModel(DiscreteModel):
         return k if k.imag <= 0.0 else k.conjugate()
 
     def check_propagates(self, frequency_hz: float) -> None:
-        """Raise CutOffError at and beyond omega^2 = (1680/17) EI/(rho A l^4), a half wave on each element."""
+        """Raise NoFigureError at and beyond omega^2 = (1680/17) EI/(rho A l^4), a half wave on each element."""
         n, of_one = self.n_elements, sqrt(1680.0 / 17.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
         if frequency_hz >= of_one * n**2:
-            raise CutOffError(
+            raise NoFigureError(
                 f"count = {n}: {n} elements carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
                 f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
             )

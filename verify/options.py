@@ -7,7 +7,6 @@ SUPPORTS: tuple[str, ...] = get_args(Support)
 """An end of a beam. pinned: w = 0. clamped: w = w' = 0. free: no constraint. guided: w' = 0."""
 
 Shape = Literal["rectangle", "round", "tube"]
-SHAPES: tuple[str, ...] = get_args(Shape)
 """A beam's section. rectangle: width and thickness. round: a diameter. tube: a diameter and a wall_thickness."""
 
 Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko"]
@@ -77,26 +76,6 @@ Start = Literal["rest", "steady"]
 DriveKind = Literal["force", "displacement"]
 """Kind of a drive. force: N. displacement: imposed, m."""
 
-BenchSet = Literal["modes", "harmonic", "transient", "slider", "chain"]
-"""Problem of a work-precision benchmark. modes: natural frequencies. harmonic: the steady field. transient: the linear
-beam in time. slider: its displacement on that beam. chain: the nonlinear chain from rest."""
-
 Reference = Literal["closed form", "independent method", "published", "other code", "regression"]
-REFERENCES: tuple[str, ...] = get_args(Reference)
 """Reference of a gate's expected value. closed form: a formula. independent method: another derivation. published: a
 publication. other code: another program. regression: an earlier value of this package."""
-
-Exported = Literal["modes", "field", "motion", "tables"]
-EXPORTED: tuple[str, ...] = get_args(Exported)
-"""Content of an export. modes: shapes and frequencies. field: the steady state. motion: the beam in time, with its
-slider. tables: those of a run."""
-
-FileFormat = Literal["vtu", "pvd", "xdmf", "csv", "json", "npz", "tex"]
-FILE_FORMATS: tuple[str, ...] = get_args(FileFormat)
-"""File format of an export. vtu: one VTK mesh. pvd: a series of them. xdmf: a series in one file. csv, json: tables and
-text. npz: numpy arrays. tex: LaTeX tables."""
-
-Pictured = Literal["modes", "wave", "slider", "chain"]
-PICTURED: tuple[str, ...] = get_args(Pictured)
-"""Content of a picture. modes: one shape, segments above elements. wave: the driven beam over a period. slider: its run
-with the friction force. chain: a nonlinear chain rolled up, at true scale."""

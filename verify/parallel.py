@@ -24,37 +24,23 @@ def n_jobs() -> int:
 def map_processes(
     function: Callable[[Item], Result],
     items: Iterable[Item],
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int], None] = lambda done: None,
     max_workers: int | None = None,
 ) -> list[Result]:
-    """`[function(item) for item in items]`, shared among processes.
+    """`[function(item) for item in items]`, shared among `max_workers` processes, VERIFY_JOBS unless set.
 
-    The first item is done in this process, so that what it compiles and caches is there for all workers.
-
-    Parameters
-    ----------
-    function : callable
-        Picklable where the platform cannot fork (a function at module level).
-    items : iterable
-        Picklable arguments.
-    progress : callable, optional
-        Called with the number of items done, after each.
-    max_workers : int, optional
-        Number of processes, VERIFY_JOBS unless set.
-
-    Raises
-    ------
-    Whatever `function` raises of the first item that fails; pending items are cancelled, as by KeyboardInterrupt.
+    `progress` is called with the number of items done, after each. The first item is done in this process, so that
+    what it compiles and caches is there for all workers. Function and items are picklable where the platform cannot
+    fork. Raises whatever `function` raises of the first item that fails; pending items are cancelled.
     """
     todo = list(items)
-    tell = progress or (lambda done: None)
     workers = min(max_workers or n_jobs(), len(todo) - 1)
-    first = len(todo) if workers < 2 else 1
+    alone = len(todo) if workers < 2 else 1
     results = []
-    for item in todo[:first]:
+    for item in todo[:alone]:
         results.append(function(item))
-        tell(len(results))
-    if len(results) == len(todo):
+        progress(len(results))
+    if alone == len(todo):
         return results
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
@@ -63,9 +49,9 @@ def map_processes(
     context = get_context("fork" if sys.platform == "linux" else "spawn")
     with ProcessPoolExecutor(workers, mp_context=context) as pool:
         try:
-            for result in pool.map(function, todo[first:]):
+            for result in pool.map(function, todo[1:]):
                 results.append(result)
-                tell(len(results))
+                progress(len(results))
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise

@@ -1,45 +1,22 @@
 """Registries of models, quantities and studies by name, extended by entry points of other packages."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, Generic, TypeVar
 
-from verify.errors import InputError, near_name, one_line, shown
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
+from verify.errors import InputError, near_name, shown
 
 T = TypeVar("T")
 
-_UNUSABLE: dict[tuple[str, str], str] = {}
 
-
-def unusable() -> tuple[str, ...]:
-    """One sentence for each entry point that was looked up so far and cannot be loaded."""
-    return tuple(one_line(why) for why in _UNUSABLE.values())
-
-
-class Registry(MutableMapping[str, T]):
+class Registry(Mapping[str, T], Generic[T]):
     """Members by name, each imported at its first use.
 
-    Entry points of other packages are looked up only for an unknown name or where all members are listed. One that
-    cannot be loaded is left out (see `unusable`); requested by name it raises InputError with the reason.
-
-    Parameters
-    ----------
-    what : str
-        What a message calls a member.
-    group : str
-        Group of entry points.
-    own : iterable
-        Members with a `name`.
-    homes : mapping
-        'module:attribute' by name, for members that are imported lazily.
-    refuses : callable
-        Returns what is wrong with a member from outside, '' if nothing.
-    classes : bool
-        Members are classes. If False, a class found at a home or entry point is called to make the member.
+    `what` is a member's name in messages, `group` that of the entry points, which are looked up for an unknown name or
+    where all members are listed. `own` are members with a `name`, `homes` are 'module:attribute' by name. `refuses`
+    returns what is wrong with a member of another package, '' if nothing. A class that is imported is called to make
+    the member unless `classes`. An entry point that cannot be used is left out; `named` raises InputError with why.
     """
 
     def __init__(
@@ -52,18 +29,16 @@ class Registry(MutableMapping[str, T]):
         classes: bool = False,
     ) -> None:
         self._what, self._group, self._refuses, self._classes = what, group, refuses, classes
-        self._loaded: dict[str, T] = {one.name: one for one in own}  # type: ignore[attr-defined]
-        self._homes = dict(homes or {})
-        self._names = [*self._loaded, *self._homes]
-        self._searched = False
-        self.built_in = tuple(self._names)
+        self._members: dict[str, Any] = {one.name: one for one in own} | dict(homes or {})  # type: ignore[attr-defined]
+        self._unusable: dict[str, str] | None = None
+        self.built_in = tuple(self._members)
         """Names of the package's own members."""
 
     def named(self, name: str, field: str = "") -> T:
         """The member of that name. Raises InputError, with the nearest name, for an unknown one."""
         if isinstance(name, str) and name in self:
             return self[name]
-        if why := _UNUSABLE.get((self._group, str(name))):
+        if why := (self._unusable or {}).get(str(name)):
             raise InputError(why)
         nearest = near_name(name if isinstance(name, str) else "", tuple(self))
         raise InputError(f"{field or self._what} = {shown(name)} is not known: {nearest}")
@@ -75,82 +50,64 @@ class Registry(MutableMapping[str, T]):
             raise InputError(f"{self._what} = {one!r} has no name: give it one")
         if why := self._refuses(one):
             raise InputError(f"{self._what} = {name!r} {why}")
-        self[name] = one
+        self._members[name] = one
         return one
 
     @contextmanager
     def registered(self, *ones: T) -> Iterator[None]:
         """Register members within a `with` block."""
-        before = list(self._names), dict(self._loaded)
+        before = dict(self._members)
         try:
             for one in ones:
                 self.register(one)
             yield
         finally:
-            self._names, self._loaded = before
-
-    def own(self) -> tuple[str, ...]:
-        """The names known without a look-up of entry points."""
-        return tuple(self._names)
+            self._members = before
 
     def __getitem__(self, name: str) -> T:
         if name not in self:
-            if why := _UNUSABLE.get((self._group, name)):
-                raise InputError(why)
             raise KeyError(name)
-        if name not in self._loaded:
-            self._loaded[name] = self._import(self._homes[name])
-        return self._loaded[name]
-
-    def __setitem__(self, name: str, one: T) -> None:
-        if name not in self._names:
-            self._names.append(name)
-        self._loaded[name] = one
-
-    def __delitem__(self, name: str) -> None:
-        self._names.remove(name)
-        self._loaded.pop(name, None)
+        if isinstance(home := self._members[name], str):
+            self._members[name] = self._import(home)
+        one: T = self._members[name]
+        return one
 
     def __iter__(self) -> Iterator[str]:
         self._search()
-        return iter(tuple(self._names))
+        return iter(tuple(self._members))
 
     def __len__(self) -> int:
-        self._search()
-        return len(self._names)
+        return len(tuple(iter(self)))
 
     def __contains__(self, name: object) -> bool:
-        if name not in self._names:
+        if name not in self._members:
             self._search()
-        return name in self._names
+        return name in self._members
 
     def _search(self) -> None:
-        """Load the entry points of the group, once; a name of the package's own stays its own."""
-        if self._searched:
+        """Load the entry points, once; a name of the package's own stays its own."""
+        if self._unusable is not None:
             return
-        self._searched = True
+        self._unusable = {}
         from importlib.metadata import entry_points
 
         for point in entry_points(group=self._group):
-            if point.name not in self._names:
-                self._load(point)
-
-    def _load(self, point: "EntryPoint") -> None:
-        try:
-            one = self._import(point.value)
-            if getattr(one, "name", point.name) != point.name and not self._classes:
-                raise InputError(f"it is no {self._what} of that name")
-            if problem := self._refuses(one):
-                raise InputError(f"it {problem}")
-        except Exception as error:
-            package = point.dist.name if point.dist else "another package"
-            why = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-            _UNUSABLE[self._group, point.name] = (
-                f"{self._what} = {point.name!r} of {package}, {point.value}, cannot be used ({why}): mend that package "
-                "or uninstall it"
-            )
-        else:
-            self[point.name] = one
+            if point.name in self._members:
+                continue
+            try:
+                one = self._import(point.value)
+                if not self._classes and getattr(one, "name", point.name) != point.name:
+                    raise InputError(f"it is no {self._what} of that name")
+                if why := self._refuses(one):
+                    raise InputError(f"it {why}")
+                self._members[point.name] = one
+            except Exception as error:  # whatever a foreign module raises
+                package = point.dist.name if point.dist else "another package"
+                why = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+                self._unusable[point.name] = (
+                    f"{self._what} = {point.name!r} of {package}, {point.value}, cannot be used ({why}): mend that "
+                    "package or uninstall it"
+                )
 
     def _import(self, home: str) -> T:
         module, _, attribute = home.partition(":")

@@ -23,8 +23,8 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.checks import MOST_DASHPOT, MOST_PARTS, check_number, check_whole, check_word, plain
-from verify.errors import CutOffError, InputError
+from verify.checks import MOST_PARTS, check_number, check_whole, check_word, plain
+from verify.errors import InputError, NoFigureError
 from verify.linear.base import DiscreteModel
 from verify.linear.mesh import Parts, check_division, divide, part_counts
 from verify.linear.system import StructuralSystem
@@ -96,7 +96,7 @@ class SegmentModel(DiscreteModel):
         check_whole("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         for name, words in _WORDS.items():
             check_word(name, getattr(self, name), words)
-        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=MOST_DASHPOT)
+        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
         self.check_theory()
         check_division(self.beam, self.n_segments, self.grading)
         if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):
@@ -355,7 +355,7 @@ class SegmentModel(DiscreteModel):
 
         if not rotation:
             return joint_weights(self.chain, positions, self.load) @ self.motions.positions
-        ends = {body.position: body.end for body in self.bodies if body.end is not None and self._elastic[body.end]}
+        ends = {body.position: body.end for body in self.attached.at_ends if body.rotary_inertia}
         each = [
             self.motions.end_rotations[[ends[position]]]
             if position in ends
@@ -421,6 +421,11 @@ class SegmentModel(DiscreteModel):
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
+        if self.joint_dashpot:
+            raise InputError(
+                f"joint_dashpot = {self.joint_dashpot!r} is for harmonic motion: leave it out in time, or give the "
+                "beam a loss_factor"
+            )
         index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 
         def rotations() -> Array:
@@ -479,10 +484,10 @@ class SegmentModel(DiscreteModel):
         return k if k.imag <= 0.0 else k.conjugate()
 
     def check_propagates(self, frequency_hz: float) -> None:
-        """Raise CutOffError at and beyond omega^2 = 48 EI/(rho A l^4), a half wave on each link."""
+        """Raise NoFigureError at and beyond omega^2 = 48 EI/(rho A l^4), a half wave on each link."""
         n, of_one = self.n_segments, sqrt(48.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
         if frequency_hz >= of_one * n**2:
-            raise CutOffError(
+            raise NoFigureError(
                 f"count = {n}: {n} segments carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
                 f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
             )

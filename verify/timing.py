@@ -2,29 +2,24 @@
 
 import sys
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from statistics import median, quantiles
 from time import get_clock_info, perf_counter, process_time
 
-_BUDGET_S = 0.008
-"""Of all rounds but the first: three of them at N = 49."""
 _CLOCK = process_time if get_clock_info("process_time").resolution < 1e-5 else perf_counter
-_MODELS = ("verify.elements.", "verify.segments.", "verify.exact.")
-"""Modules that cache solutions."""
 
 
-def interleaved_medians(jobs: Sequence[Callable[[], object]], budget_s: float = _BUDGET_S) -> list[float]:
+def interleaved_medians(jobs: Sequence[Callable[[], object]], budget_s: float = 0.008) -> list[float]:
     """Median processor seconds of each job over alternating rounds; at least one round, at most 15."""
     rounds: list[list[float]] = []
     start = perf_counter()
     while len(rounds) < 15 and (not rounds or perf_counter() - start < budget_s):
-        rounds.append([_seconds(job) for job in jobs])
+        times = [_CLOCK()]
+        for job in jobs:
+            job()
+            times.append(_CLOCK())
+        rounds.append([after - before for before, after in pairwise(times)])
     return [median(times) for times in zip(*rounds, strict=True)]
-
-
-def _seconds(job: Callable[[], object]) -> float:
-    start = _CLOCK()
-    job()
-    return _CLOCK() - start
 
 
 def spread(times: Sequence[float]) -> float:
@@ -36,7 +31,7 @@ def spread(times: Sequence[float]) -> float:
 def forget() -> None:
     """Clear the models' caches of solutions."""
     for name, module in list(sys.modules.items()):
-        if name.startswith(_MODELS):
+        if name.startswith(("verify.elements.", "verify.segments.", "verify.exact.")):
             for value in list(vars(module).values()):
                 if callable(clear := getattr(value, "cache_clear", None)):
                     clear()

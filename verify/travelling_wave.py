@@ -24,7 +24,7 @@ from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
 from verify.errors import InputError
 from verify.linear.field import HarmonicField, phasor
-from verify.linear.intervals import extremes, mean_over, rule_over, whole_halves
+from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
 from verify.linear.positions import Numbers
 from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
@@ -92,7 +92,7 @@ class WaveMeasures:
         (1 - Gamma) / (1 + Gamma) for two waves.
         """
         whole, halves = whole_halves(self.window, self.waves.wavenumber.real)
-        rule = rule_over(whole, 2 * halves)
+        rule = gauss_rule(whole, 2 * halves)
         w = self.deflection(rule.x)
         values = np.linalg.svd(np.stack([w.real, w.imag]) * np.sqrt(rule.weights), compute_uv=False)
         return float(values[1] / values[0]) if values[0] > 0 else 0.0
@@ -127,7 +127,7 @@ class WaveMeasures:
     def signed_area_spread(self) -> float:
         """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends.
 
-        Raises StandingError where the wave stands.
+        Raises NoFigureError where the wave stands.
         """
         self.waves.check_travelling()
         least, mean, largest = self.signed_area_range
@@ -231,7 +231,7 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
 def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     """(power of the forces left of the window - losses up to its middle - flux through it) over that flux.
 
-    The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises StandingError where the wave
+    The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError where the wave
     stands, and InputError for a beam with sections.
     """
     beam, middle = field.beam, 0.5 * sum(measures.window)

@@ -12,7 +12,7 @@ from verify.analysis.grid_convergence import grid_convergence
 from verify.analysis.sizing import choose
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import Rules, Variant
-from verify.errors import InputError, PairingError
+from verify.errors import InputError
 from verify.linear.modes import Modes
 from verify.problem.point_attachments import PointMass
 from verify.scene.load import load_scene
@@ -59,7 +59,7 @@ def test_a_close_pair_that_mixed_a_little_is_still_paired_one_to_one():
 def test_a_shape_that_no_mode_has_raises_a_pairing_error():
     lost = SINES.copy()
     lost[2] = np.sin(9 * np.pi * X)
-    with pytest.raises(PairingError, match=r"mode = 3: no segment mode at count = 40 .* raise count"):
+    with pytest.raises(InputError, match=r"mode = 3: no segment mode at count = 40 .* raise count"):
         comparison.paired_index(fake_modes(lost), SINES, 3, 1)
 
 

@@ -50,7 +50,7 @@ def test_stretching_links_move_as_dense_equations():
 def test_energy_of_free_stretching_links_drifts_with_order_five():
     system = replace(build_system(STRIP, 6), gravity=(1.0, -9.81))
     bent = 0.01 * np.sin(np.pi * system.nodes / 0.5) + 0.004 * np.sin(2 * np.pi * system.nodes / 0.5)
-    axial = 1e-4 * STRIP.youngs_modulus * STRIP.area
+    axial = 1e-4 * STRIP.youngs_modulus * STRIP.own.area
     limit, drifts = elastic_step_limit(system, axial), []
     for share in (0.4, 0.2):
         motion = simulate_elastic(system, axial, np.linspace(0.0, 0.02, 11), step=share * limit, deflected=bent)

@@ -41,7 +41,7 @@ def rider(titanium_strip):
     return rider_of(titanium_strip, SLIDER)
 
 
-@pytest.fixture(params=ENGINES.own())
+@pytest.fixture(params=ENGINES.built_in)
 def engine(request):
     if why := missing(ENGINES[request.param]):
         pytest.skip(why)

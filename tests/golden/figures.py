@@ -6,7 +6,7 @@
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -79,8 +79,7 @@ FORCES = (
     PointForce(position=0.697, amplitude=0.8, phase_deg=97.0),
 )
 DRIVEN_HZ = 613.0
-Model = Callable[..., Any]
-SIZED: dict[str, Model] = {"segment": SegmentModel, "fem": HermiteModel}
+SIZED: dict[str, Any] = {"segment": SegmentModel, "fem": HermiteModel}
 
 
 def modes_of(beam: Beam, sized: dict[str, int]) -> Iterator[tuple[str, Any]]:
@@ -110,7 +109,7 @@ def settings_of(beam: Beam) -> Iterator[tuple[str, Any]]:
 
 def theories_of(beam: Beam) -> Iterator[tuple[str, Any]]:
     for theory in ("rayleigh", "timoshenko"):
-        yield f"analytic/{theory}", ExactModel(beam, theory=theory).modes(5).frequencies_hz
+        yield f"analytic/{theory}", ExactModel(beam, theory).modes(5).frequencies_hz
         for name, model in SIZED.items():
             yield f"{name}/{theory}", model(beam, 23, theory=theory).modes(5).frequencies_hz
 

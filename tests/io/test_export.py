@@ -140,7 +140,7 @@ def test_pictures_open(moving, tmp_path, kind, what, frames):
 
 REFUSED = [
     ("a.doc", {}, "no file type"),
-    ("a.toml", {}, "another name"),
+    ("a.toml", {}, "give one of .vtu"),
     ("a.vtu", {"what": "motion"}, ".pvd, .xdmf"),
     ("a.csv", {"what": "tables"}, ".json, .tex"),
     ("a.csv", {"what": "mode"}, "did you mean 'modes'"),

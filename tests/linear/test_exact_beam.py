@@ -92,8 +92,8 @@ def test_timoshenkos_frequency_solves_the_equations_of_motion(titanium_strip):
     with mpmath.workdps(40):
         k = mode * mpmath.pi / beam.length
         e_i, rho_a = mpmath.mpf(beam.bending_stiffness), mpmath.mpf(beam.mass_per_length)
-        rho_i = mpmath.mpf(beam.density) * beam.second_moment
-        shear = mpmath.mpf(5) / 6 * beam.youngs_modulus / (2 * (1 + mpmath.mpf(beam.poissons_ratio))) * beam.area
+        rho_i = mpmath.mpf(beam.density) * beam.own.second_moment
+        shear = mpmath.mpf(5) / 6 * beam.youngs_modulus / (2 * (1 + mpmath.mpf(beam.poissons_ratio))) * beam.own.area
         stiffness = mpmath.matrix([[shear * k**2, -shear * k], [-shear * k, e_i * k**2 + shear]])
         trace = stiffness[0, 0] / rho_a + stiffness[1, 1] / rho_i
         det = mpmath.det(stiffness) / (rho_a * rho_i)

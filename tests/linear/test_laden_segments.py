@@ -7,9 +7,8 @@ import pytest
 from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near, state
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError
-from verify.exact import modes as exact_modes
-from verify.exact.modes import mode_shapes
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
@@ -310,7 +309,7 @@ def test_curvatures_on_a_step_are_the_moment_over_the_sections_own_stiffness(the
     beam, found = replace(STEPPED, **added), []
     for count in (146, 292):
         modes = solve_modes(beam, 2, count, theory=theory)
-        exact = mode_shapes(beam, 2, modes.curvature_points, 2, theory)
+        exact = ExactModel(beam, theory).modes(2).shapes(modes.curvature_points, 2)
         off, largest = abs(modes.curvatures() - exact), abs(exact).max(axis=1)
         assert (off.max(axis=1) / largest < 5e-4).all()
         found.append(np.linalg.norm(off, axis=1) / np.linalg.norm(exact, axis=1))
@@ -354,7 +353,7 @@ FLANGES = replace(
 
 
 def errors_of_five(beam, count, modes=5, **settings):
-    exact = np.array(exact_modes.solve_modes(beam, modes).frequencies_hz)
+    exact = np.array(ExactModel(beam).modes(modes).frequencies_hz)
     return np.array(solve_modes(beam, modes, count, **settings).frequencies_hz) / exact - 1.0
 
 

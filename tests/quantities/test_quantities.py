@@ -10,7 +10,6 @@ from msgspec.structs import replace
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
 from verify.errors import InputError
-from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
 from verify.motion.simulate import simulate
 from verify.problem.beam import Beam, PointForce
@@ -75,6 +74,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     **{f"wave.{name}": ("device", {}) for name in ("standing_wave_ratio", "reflection", "energy_flux", "crest_speed")},
     **{f"wave.{name}": ("driven", {**SEGMENT, "count": 30}) for name in ("envelope", "travelling_index")},
     "wave.signed_area_spread": ("driven", {"window": [0.2, 0.5]}), "wave.axis_ratio": ("driven", {"x": 0.31}),
+    **{f"wave.{name}": ("driven", {"window": [0.2, 0.5]}) for name in ("best_ratio", "best_ratio_phase")},
     "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
     "wave.best_ratio": ("driven", {}), "wave.best_ratio_phase": ("driven", {}),
     "wave.order": ("driven", {"model": "fem", "counts": [20, 40, 80]}),
@@ -180,7 +180,7 @@ def test_argument_changes_value_or_is_refused(name, where, arguments):
 
 
 def test_equals_direct_call():
-    exact = frequency_hz(STRIP, 3)
+    exact = ExactModel(STRIP).frequency_hz(3)
     assert evaluate("mode.frequency", {"model": "analytic", "mode": 3}, SCENES["bare"], CACHES["bare"]) == exact
     fem = float(HermiteModel(STRIP, 9).modes(3).frequencies_hz[2])
     asked = {**FEM, "mode": np.int64(3)}

@@ -22,12 +22,10 @@ SCENE = Scene(name="strip", beam=Beam(length=0.73, width=0.031, thickness=0.0023
 
 def judged(value, **band):
     """The result of a gate on a quantity that has this value."""
-    quantity("test.value", unit="m", reads=())(lambda scene, cache: value)
-    try:
+    with QUANTITIES.registered():
+        quantity("test.value", unit="m", reads=())(lambda scene, cache: value)
         gate = Gate(id="g", quantity="test.value", why="test", **band)
         return run_gate(gate, SCENE, SolutionCache(SCENE.beam))
-    finally:
-        del QUANTITIES["test.value"]
 
 
 @pytest.mark.parametrize(
@@ -84,15 +82,13 @@ def test_gate_that_cannot_be_evaluated_fails():
 
 
 def test_defect_in_a_quantity_is_a_failed_gate():
-    @quantity("test.broken", unit="1", reads=())
     def broken(scene, cache):
         raise ZeroDivisionError("by nothing")
 
-    try:
+    with QUANTITIES.registered():
+        quantity("test.broken", unit="1", reads=())(broken)
         gate = Gate(id="g", quantity="test.broken", at_most=1.0, why="test")
         result = run_gate(gate, SCENE, SolutionCache(SCENE.beam))
-    finally:
-        del QUANTITIES["test.broken"]
     assert result.passed is False
     assert "ZeroDivisionError: by nothing" in result.reason
 
@@ -109,7 +105,7 @@ def test_defect_in_a_quantity_is_a_failed_gate():
         ({"expect": {"re": inf, "im": 0.5}, "within": 1.0}, "expect.re = inf"),
         ({"at_least": 3.0, "at_most": 2.0}, "exchange them"),
         ({"expect": 1.0, "within": 0.5, "why": ""}, "why"),
-        ({"expect": 1.0, "within": "1%"}, "within = '1%': give a number"),
+        ({"expect": 1.0, "within": "1%"}, "within = '1%': give a finite number"),
     ],
 )
 def test_gate_without_a_clear_band_is_refused(band, message):

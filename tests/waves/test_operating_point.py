@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify import Beam, PointForce, PointMass
 from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import ExactModel
-from verify.errors import InputError, ResonanceError, StandingError
+from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.fem_beam import HermiteModel
 from verify.linear.field import point_force
 from verify.problem.device import Device
@@ -228,7 +228,7 @@ def test_a_drive_says_where_an_actuator_is_near_a_node_and_where_no_ratio_exists
     assert "nearly the same standing wave" in near.note
     near.check_exists()
     assert np.isnan(none.ratio)
-    with pytest.raises(StandingError, match="both actuators make the same standing wave"):
+    with pytest.raises(NoFigureError, match="both actuators make the same standing wave"):
         none.check_exists()
     assert best_drive(brass_case()).note == ""
 

@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.errors import InputError, NoFigureError, PairingError
+from verify.errors import InputError, NoFigureError
 from verify.linear.modes import Modes
 
 T = TypeVar("T", float, complex)
@@ -63,11 +63,11 @@ def pair_modes(macs: Array) -> tuple[Indices, Array]:
 def paired_index(modes: Modes, exact_shapes: Array, mode: int, stride: int) -> int:
     """The index in `modes` of the mode that pairs with exact mode `mode`.
 
-    exact_shapes (n_modes, n_points) at modes.points[::stride]. Raises PairingError below `LEAST_MAC`.
+    exact_shapes (n_modes, n_points) at modes.points[::stride]. Raises InputError below `LEAST_MAC`.
     """
     index, macs = pair_modes(mac(exact_shapes, modes.sampled()[:, ::stride]))
     if macs[mode - 1] < LEAST_MAC:
-        raise PairingError(
+        raise InputError(
             f"mode = {mode}: no {modes.model} mode at count = {modes.count} has its shape "
             f"(best MAC {macs[mode - 1]:.2f}), raise count"
         )

@@ -151,7 +151,7 @@ class SolutionCache:
         return float(self.modes(model, count, mode, settings).frequencies_hz[index])
 
     def paired_index(self, model: str, count: int, mode: int, settings: Settings = ()) -> int:
-        """Index of the computed mode that pairs by MAC with exact mode `mode`. Raises PairingError.
+        """Index of the computed mode that pairs by MAC with exact mode `mode`. Raises InputError.
 
         By rank on beams that are not uniform and by other theories, where exact shapes are expensive.
         """

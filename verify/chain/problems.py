@@ -16,7 +16,7 @@ from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
 from verify.problem.beam import Beam, PointForce
-from verify.segments.chain import link_inertia
+from verify.segments.links import link_inertia
 
 Progress = Callable[[float], None]
 """Called with the fraction of a motion done, 0 to 1."""
@@ -263,13 +263,14 @@ def contact_line_error(
     The chain stands in a mode of the linear one, a millionth of its length high; the exact mode is the reference.
     Order 3, beside a clamped wall 1. Raises InputError, also for a stepped beam: its exact shapes are not known here.
     """
-    from verify.chain.ride import touched
     from verify.analytic_modes import ExactModel
+    from verify.chain.ride import touched
     from verify.segment_model import SegmentModel
 
     check_whole("segments", n_segments, 2)
     system = build_system(beam, n_segments, wall=wall, grading=grading)
-    joints = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode).readings["raw"]()[mode - 1]
+    modes = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode)
+    joints = modes.readings["raw"]()[mode - 1]
     size = 1e-6 * beam.length / float(abs(joints).max())
     pieces, edges = touched(system, size * np.diff(joints), x)
     xi = np.linspace(0.0, 1.0, 17)

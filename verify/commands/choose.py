@@ -32,7 +32,8 @@ def choose(
     modes, largest, chosen = _modes(mode), _error(error), _rules(rules)
     beam = load_scene(scene, overrides).beam
     choices, skipped = choose_sizes(SolutionCache(beam), modes, largest, chosen)
-    errors = {one.size.mode: [c.error for c in choices if c.size.mode == one.size.mode] for one in choices}
+    numbers = {one.size.mode for one in choices}
+    plate = plate_warnings(beam, {n: [c.error for c in choices if c.size.mode == n] for n in numbers})
     rows = [
         (
             *(one.variant.title, one.size.count, one.size.mode, one.unknowns, one.error, one.expected_error),
@@ -47,7 +48,7 @@ def choose(
     result = Result(
         f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
         [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
-        warnings=[*plate_warnings(beam, errors), *(f"{name} is skipped: {why}" for name, why in skipped.items())],
+        warnings=[*plate, *(f"{name} is skipped: {why}" for name, why in skipped.items())],
     )
     show(result, **formats)
 

@@ -7,6 +7,8 @@ import click
 from verify.commands.shared import console, print_json
 from verify.errors import printable
 
+_LIMITS = (("exclusiveMinimum", ">"), ("minimum", ">="), ("exclusiveMaximum", "<"), ("maximum", "<="))
+
 
 @click.command()
 @click.argument("section", required=False)
@@ -57,4 +59,5 @@ def _type(one: dict[str, object]) -> str:
     if one.get("type") == "array":
         items = one.get("items")
         return f"list of {_type(items)}" if isinstance(items, dict) else "list"
-    return str(one.get("type", "any"))
+    limits = "".join(f" {sign} {one[key]:g}" for key, sign in _LIMITS if key in one)
+    return f"{one.get('type', 'any')}{limits}"

@@ -291,7 +291,7 @@ def _count_at_beta(layout: BeamLayout, beta: float) -> Count:
 
 @lru_cache(maxsize=20_000)
 def wavenumber_length(layout: BeamLayout, number: int) -> float:
-    """beta L of the frequency of a number, 1 the lowest, rigid motions included: omega = beta^2 sqrt(EI / rho A).
+    """Wavenumber beta L of a frequency by its number, 1 the lowest, rigid motions included: omega = beta^2 at L = 1.
 
     In closed form for a uniform Euler-Bernoulli beam without attachments.
     """

@@ -1,7 +1,7 @@
-"""Frequencies and errors of both discrete models known without solving them, in plain floating point.
+"""Frequencies and errors of both discrete models without solving them: discrete dispersion and error laws.
 
-Exact discrete dispersion where a sine fits the ends (pinned and guided), leading error laws for the others.
-The models are not asked: this is what they are checked against.
+The dispersion is exact where a sine fits the ends (pinned and guided); leading error laws hold for the others. Both
+verify the models. mu = beta L / N throughout.
 """
 
 from cmath import asin
@@ -12,14 +12,14 @@ from math import cos, exp, factorial, pi, sin, sqrt
 
 import msgspec
 
-from verify.errors import CutOffError, InputError
+from verify.errors import InputError, NoFigureError
 from verify.exact.closed_forms import check_mode, check_uniform, wavenumber_length
 from verify.problem.beam import Beam
 
 MEAN_LIMIT = 2.187653657707005
 """mu at which the error of segments is -3 times that of Hermite elements, so that their mean has the elements' size."""
 _LAW_TO = 2.5
-"""mu up to which errors keep to `expected_error` within a third of its terms, from 20 parts on (tests/linear)."""
+"""mu up to which errors follow `expected_error` within a third of its terms from 20 parts on (measured)."""
 _GREGORY = (-5.0 / 8.0, 1.0 / 6.0, -1.0 / 24.0)
 _BERNOULLI = {2: 1 / 6, 4: -1 / 30, 6: 1 / 42, 8: -1 / 30, 10: 5 / 66, 12: -691 / 2730, 14: 7 / 6, 16: -3617 / 510}
 _SMALL = 0.2
@@ -66,30 +66,30 @@ def _hermite_root(mu: float) -> float:
 
 
 def cut_off_hz(model: str, beam: Beam, count: int) -> float:
-    """The frequency, Hz, above which no wave runs along a discrete model of equal parts: a half wave on each part."""
+    """The frequency above which no wave propagates in a discrete model of equal parts, Hz: a half wave on each."""
     return sqrt(law_of(model).cut_off_root) * beam.wave_constant * (count / beam.length) ** 2 / (2.0 * pi)
 
 
-def check_carried(model: str, beam: Beam, count: int, frequency_hz: float) -> None:
-    """Raise CutOffError, with the fewest parts that carry it, for a frequency beyond the model's cut-off."""
+def check_propagates(model: str, beam: Beam, count: int, frequency_hz: float) -> None:
+    """Raise NoFigureError, with the fewest parts that it propagates in, for a frequency beyond the model's cut-off."""
     if frequency_hz < cut_off_hz(model, beam, count):
         return
     fewest = int(count * sqrt(frequency_hz / cut_off_hz(model, beam, count)))
     fewest += cut_off_hz(model, beam, fewest) <= frequency_hz
-    raise CutOffError(
+    raise NoFigureError(
         f"count = {count!r}: {count} {law_of(model).parts} carry waves up to {cut_off_hz(model, beam, count):.6g} Hz "
         f"and frequency_hz = {frequency_hz!r} lies beyond, give count = {fewest} or more"
     )
 
 
 def discrete_wavenumber(model: str, beam: Beam, count: int, frequency_hz: float) -> complex:
-    """The wavenumber at which a wave runs along a discrete model of equal parts, 1/m, with the loss factor.
+    """The wavenumber of a wave in a discrete model of equal parts, 1/m, with the loss factor.
 
     The inverse of the discrete dispersion on its lower branch, solved for s^2 = sin^2(mu/2), which keeps its
-    digits on the finest mesh. Raises InputError for stepped beams and CutOffError where no wave runs.
+    digits on the finest mesh. Raises InputError for stepped beams and NoFigureError beyond the cut-off.
     """
     check_uniform(beam)
-    check_carried(model, beam, count, frequency_hz)
+    check_propagates(model, beam, count, frequency_hz)
     length = beam.length / count
     root = (2.0 * pi * frequency_hz / beam.wave_constant * length**2) ** 2 / (1.0 + 1j * beam.loss_factor)
     s2 = law_of(model).s2(root)
@@ -126,32 +126,27 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
 
 
 def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
-    """Expected error of a uniform beam: that of the dispersion, exact between pinned and guided ends, and the walls'.
+    """The relative frequency error of a uniform beam by the dispersion and the residual of clamped ends.
 
-    At other ends it is a law for practical sizes too: from N = 20 on errors keep to it within a third of the sum of its
-    terms' sizes. Its leading terms, `leading_error`, are right only beyond some hundred links. It holds where `has_law`
-    is true: elements have modes beyond their lower branch.
+    Exact between pinned and guided ends. At other ends errors follow it from N = 20 on within a third of the sum of its
+    terms' sizes; its leading terms, `leading_error`, hold only beyond some hundred links. Valid where `has_law`.
     """
     mu, law = wavenumber_length(beam.supports, mode) / count, law_of(model)
-    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
-    walls = -0.5 * clamped * wall_residual(mu) / count if clamped else 0.0
-    return sqrt(law.root(mu)) / mu**2 - 1.0 + walls
+    clamped = beam.supports.count("clamped") if law.clamped_terms else 0
+    return sqrt(law.root(mu)) / mu**2 - 1.0 - (0.5 * clamped * wall_residual(mu) / count if clamped else 0.0)
 
 
 def has_law(beam: Beam, mode: int, count: int) -> bool:
-    """Whether `expected_error` speaks of a mode of so many parts: on the lower branch, mu < pi, between sines' ends.
-
-    At other ends up to mu = 2.5, as far as errors were found to keep to it.
-    """
+    """Whether `expected_error` is valid: on the lower branch, mu < pi, where a sine fits the ends, else to mu = 2.5."""
     mu = wavenumber_length(beam.supports, mode) / count
     return mu < pi if sine_fits(beam.supports) else mu <= _LAW_TO
 
 
 def wall_residual(mu: float) -> float:
-    """What Gregory's sum of M^2 over the joints from a clamped end on has more than its integral, in links.
+    """Gregory's sum of M^2 over the joints from a clamped end on less its integral, in links.
 
-    M^2 = (cos z - sin z + e^-z)^2 at z = k mu, of mean 1, is the bending moment there. Half of it over N is taken off
-    the frequency. -mu^4/6 for small mu, zero at 0.42, largest 0.12 mu^4 up to mu = 2.5.
+    M^2 = (cos z - sin z + e^-z)^2 at z = k mu, of mean 1, is the bending moment there. Half of the residual over N
+    lowers the frequency. -mu^4/6 for small mu, zero at 0.42, largest 0.12 mu^4 up to mu = 2.5.
     """
     if mu < _SMALL:
         return _wall_series(mu)
@@ -182,10 +177,9 @@ def smallest_count(beam: Beam, mode: int) -> int:
 
 
 class Law(msgspec.Struct, frozen=True, kw_only=True):
-    """What is known of a discrete model of equal parts without solving it."""
+    """The dispersion and the error law of a discrete model of equal parts."""
 
     parts: str
-    """What it is made of, in a word."""
     root: Callable[[float], float]
     """mu = beta L / N -> omega^2 rho A l^4 / EI, the exact dispersion on the lower branch."""
     s2: Callable[[complex], complex]
@@ -194,8 +188,8 @@ class Law(msgspec.Struct, frozen=True, kw_only=True):
     """The root at mu = pi, the end of the lower branch."""
     leading: Callable[[float, int, int], float]
     """(mu^4, clamped ends, count) -> the leading relative frequency error."""
-    feels_clamps: bool
-    """Whether clamped ends are in it."""
+    clamped_terms: bool
+    """Whether clamped ends add to the error."""
 
 
 LAWS = {
@@ -205,7 +199,7 @@ LAWS = {
         s2=_segment_s2,
         cut_off_root=48.0,
         leading=lambda mu4, clamped, count: mu4 * (-1.0 / 1440.0 + clamped / (12.0 * count)),
-        feels_clamps=True,
+        clamped_terms=True,
     ),
     "fem": Law(
         parts="elements",
@@ -213,14 +207,14 @@ LAWS = {
         s2=_hermite_s2,
         cut_off_root=1680.0 / 17.0,
         leading=lambda mu4, clamped, count: mu4 / 1440.0,
-        feels_clamps=False,
+        clamped_terms=False,
     ),
 }
 """By the name of the model."""
 
 
 def law_of(model: str) -> Law:
-    """The law of a discrete model. Raises InputError for one of which none is known."""
+    """The law of a discrete model. Raises InputError for one without."""
     if model not in LAWS:
         raise InputError(f"model = {model!r}: no error law of it is known, choose one of {', '.join(LAWS)}")
     return LAWS[model]

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.arrays import Array, ComplexArray, Indices
+from verify.arrays import Array, Indices
 from verify.errors import InputError
 from verify.exact.layout import HELD, SAME_PLACE, BeamLayout
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from verify.errors import InputError, near_name, shown
-from verify.files import check_no_scene, whole, whole_folder, writable_folder, write_whole
+from verify.files import whole, writable_folder, write_whole
 from verify.io.data import Dataset, Request, dataset
 from verify.report.result import Table, to_json
 
@@ -35,7 +35,6 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
     file type, for content that it does not hold, and where the file cannot be written.
     """
     kind = path.suffix.lower().removeprefix(".")
-    check_no_scene(path, "to")
     if kind not in TYPES:
         raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give one of .{', .'.join(TYPES)}")
     what = request.what or _default(scene, kind)
@@ -116,12 +115,14 @@ def _pvd(data: Dataset, path: Path) -> None:
     collection = (
         f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n{rows}</Collection>\n'
     )
-    with whole(path, "to") as index, whole_folder(folder, ".vtu", "to") as fresh:
+    writable_folder(folder, "to")
+    with whole(path, "to") as index:
         index.write_text(f"{collection}</VTKFile>\n", "utf-8")
         for i, name in enumerate(names):
             mesh = _mesh(data, {"deflection": _vectors(data.deflection[i])})
             mesh.point_data |= {key: np.full(len(data.x), values[i]) for key, values in data.histories.items()}
-            meshio.write(fresh / name, mesh, file_format="vtu")
+            with whole(folder / name, "to") as part:
+                meshio.write(part, mesh, file_format="vtu")
 
 
 def _xdmf(data: Dataset, path: Path) -> None:

@@ -155,7 +155,7 @@ class BeamModel(ABC):
         return wavenumber(self.beam, frequency_hz, self.theory)
 
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
-        """Raise CutOffError for a frequency above the cut-off of its parts."""
+        """Raise NoFigureError for a frequency above the cut-off of its parts."""
 
     def check_n_modes(self, n_modes: int) -> None:
         """Raise InputError unless it has so many elastic modes."""
@@ -342,7 +342,7 @@ class DiscreteModel(BeamModel):
         if not positions:
             return None
         mass = [PointMass(position=position, rotary_inertia=negligible) for position in positions]
-        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))
+        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))  # type: ignore[type-var]
 
     def _responses(
         self, loads: Any, frequencies: Array, modal_damping: float, rows: Sequence[tuple[Any, complex]] = ()

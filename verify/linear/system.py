@@ -87,6 +87,10 @@ class StructuralSystem:
             product = factor @ product
         return product.tocsc()
 
+    def rayleigh_quotients(self, vectors: Array) -> Array:
+        """Eigenvalues (k,) of vectors (n, k)."""
+        return _sums(self.stiffness[:, None] * self.strain(vectors) ** 2) / _sums(vectors * (self.mass @ vectors))
+
     # --- Modes ---------------------------------------------------------------------------------------------------
 
     def modes(self, k: int) -> tuple[Array, Array]:

@@ -145,7 +145,7 @@ def _run(
     for _, speed, stays in put:
         if speed is not None:
             check_number("held_speed", speed, "m/s")
-        check_kind("frozen", plain(stays, "frozen"), bool)
+        check_kind("frozen", plain(stays), bool)
     if model == CHAIN:
         check_word("links", links, LINKS)
         for name, needed in (("count", True), ("modes", False)):

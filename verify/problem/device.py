@@ -1,27 +1,17 @@
 """A device on a driven beam: an impedance against deflection and rotation, and a force of its own. Values."""
 
 from collections.abc import Sequence
+from typing import Annotated
 
 import msgspec
 
-from verify.checks import check_number, settle
+from verify.checks import check_position, unit, validate
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
+from verify.problem.supports import check_moves
 
 ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
 TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")
-_UNITS = {
-    "stiffness": "N/m",
-    "mass": "kilograms",
-    "dashpot": "N s/m",
-    "rotational": "N m/rad",
-    "rotary_inertia": "kg m^2",
-    "rotational_dashpot": "N m s/rad",
-}
-HELD = ("pinned", "clamped")
-"""Supports without deflection."""
-_STILL = {"across": HELD, "turning": ("clamped", "guided")}
-"""Supports without deflection, or without rotation."""
 
 
 class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -31,32 +21,27 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     Raises InputError where a value is negative or invalid, or all are zero.
     """
 
-    position: float
+    position: Annotated[float, unit("m", ge=0)]
     """x, m from the left end."""
-    stiffness: float = 0.0
+    stiffness: Annotated[float, unit("N/m", ge=0)] = 0.0
     """Stiffness against deflection, N/m."""
-    mass: float = 0.0
+    mass: Annotated[float, unit("kg", ge=0)] = 0.0
     """Mass that moves with the deflection, kg."""
-    dashpot: float = 0.0
+    dashpot: Annotated[float, unit("N s/m", ge=0)] = 0.0
     """Damping against deflection, N s/m."""
-    rotational: float = 0.0
+    rotational: Annotated[float, unit("N m/rad", ge=0)] = 0.0
     """Stiffness against rotation, N m/rad."""
-    rotary_inertia: float = 0.0
+    rotary_inertia: Annotated[float, unit("kg m^2", ge=0)] = 0.0
     """Rotary inertia, kg m^2."""
-    rotational_dashpot: float = 0.0
+    rotational_dashpot: Annotated[float, unit("N m s/rad", ge=0)] = 0.0
     """Damping against rotation, N m s/rad."""
-    amplitude: float = 0.0
+    amplitude: Annotated[float, unit("N")] = 0.0
     """Blocked force of an actuator, N."""
-    phase_deg: float = 0.0
+    phase_deg: Annotated[float, unit("degrees")] = 0.0
     """Phase of that force, degrees (e^{+i omega t})."""
 
     def __post_init__(self) -> None:
-        settle(self)
-        check_number("device.position", self.position, "metres", at_least=0)
-        for name, unit in _UNITS.items():
-            check_number(f"device.{name}", getattr(self, name), unit, at_least=0)
-        check_number("device.amplitude", self.amplitude, "newton")
-        check_number("device.phase_deg", self.phase_deg, "degrees")
+        validate(self, "device")
         if not (self.across or self.turning):
             raise InputError(
                 f"device at position = {self.position!r} does nothing: give it one of {', '.join((*ACROSS, *TURNING))}"
@@ -95,31 +80,15 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def check_on(self, beam: Beam) -> None:
         """Raise InputError off the beam, and on a support where it has no effect."""
-        if self.position > beam.length:
-            raise InputError(
-                f"device.position = {self.position!r} lies off the beam: give a position between 0 and "
-                f"{beam.length!r} m"
-            )
-        for end, support in zip((0.0, beam.length), beam.supports, strict=True):
-            for way, names in (("across", ACROSS), ("turning", TURNING)):
-                if abs(self.position - end) <= 1e-9 * beam.length and getattr(self, way) and support in _STILL[way]:
-                    name = next(name for name in names if getattr(self, name))
-                    moves = "moves across" if way == "across" else "turns"
-                    raise InputError(
-                        f"device.position = {self.position!r} m stands on a {support} support, where nothing {moves} "
-                        f"and device.{name} = {getattr(self, name)!r} does nothing: move it, or leave that out"
-                    )
+        check_position("device.position", self.position, beam.length)
+        across, turning = ({name: getattr(self, name) for name in names} for names in (ACROSS, TURNING))
+        check_moves("device", self.position, beam.length, beam.supports, across, turning)
 
 
 def check_moved(forces: Sequence[PointForce], beam: Beam) -> None:
     """Raise InputError for a driving force on a support without deflection."""
-    for end, support in zip((0.0, beam.length), beam.supports, strict=True):
-        for force in forces:
-            if abs(force.position - end) <= 1e-9 * beam.length and support in HELD:
-                raise InputError(
-                    f"drive.force.position = {force.position!r} m stands on a {support} support, where nothing moves "
-                    "across and a force does nothing: move it, or leave it out"
-                )
+    for force in forces:
+        check_moves("drive.force", force.position, beam.length, beam.supports, {"amplitude": force.amplitude})
 
 
 def of_impedance(position: float, impedance: complex, omega: float, *, turning: bool = False) -> Device:

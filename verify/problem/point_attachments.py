@@ -1,26 +1,25 @@
 """Point masses and point springs on a beam. Values, no numerics."""
 
+from typing import Annotated
+
 import msgspec
 
-from verify.checks import check_number, settle
+from verify.checks import unit, validate
 from verify.errors import InputError
 
 
 class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A rigid body fixed to the beam at a point. Raises InputError for an invalid value, or where all are zero."""
 
-    position: float
+    position: Annotated[float, unit("m", ge=0)]
     """x of its fixing, m from the left end."""
-    mass: float = 0.0
+    mass: Annotated[float, unit("kg", ge=0)] = 0.0
     """kg."""
-    rotary_inertia: float = 0.0
+    rotary_inertia: Annotated[float, unit("kg m^2", ge=0)] = 0.0
     """About the fixing, kg m^2; it rotates with the slope of the beam."""
 
     def __post_init__(self) -> None:
-        settle(self)
-        check_number("beam.mass.position", self.position, "metres", at_least=0)
-        check_number("beam.mass.mass", self.mass, "kilograms", at_least=0)
-        check_number("beam.mass.rotary_inertia", self.rotary_inertia, "kg m^2", at_least=0)
+        validate(self, "beam.mass")
         if not (self.mass or self.rotary_inertia):
             raise InputError(f"beam.mass at position = {self.position!r} weighs nothing: give mass or rotary_inertia")
 
@@ -28,17 +27,14 @@ class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A spring from the beam to the ground at a point. Raises InputError for an invalid value, or all zero."""
 
-    position: float
+    position: Annotated[float, unit("m", ge=0)]
     """x, m from the left end."""
-    stiffness: float = 0.0
+    stiffness: Annotated[float, unit("N/m", ge=0)] = 0.0
     """Stiffness against deflection, N/m."""
-    rotational: float = 0.0
+    rotational: Annotated[float, unit("N m/rad", ge=0)] = 0.0
     """Stiffness against rotation, N m/rad."""
 
     def __post_init__(self) -> None:
-        settle(self)
-        check_number("beam.spring.position", self.position, "metres", at_least=0)
-        check_number("beam.spring.stiffness", self.stiffness, "N/m", at_least=0)
-        check_number("beam.spring.rotational", self.rotational, "N m/rad", at_least=0)
+        validate(self, "beam.spring")
         if not (self.stiffness or self.rotational):
             raise InputError(f"beam.spring at position = {self.position!r} is slack: give stiffness or rotational")

@@ -1,11 +1,11 @@
 """The slider: friction, contact and feet. Values, no numerics."""
 
-from typing import Any, get_args
+from typing import Annotated, Any
 
 import msgspec
 from msgspec.structs import replace
 
-from verify.checks import check_kind, check_number, check_whole, check_word, settle
+from verify.checks import check_number, check_position, unit, validate
 from verify.errors import InputError
 from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 from verify.problem.beam import Beam
@@ -15,65 +15,38 @@ STEEPNESS = 1e4
 """Default of K in Eq. (3), s/m."""
 OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}
 """Fields that belong to one friction law only."""
-_WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
 
 
 class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Unilateral contact of a slider that may lose contact: compliant, or hard with restitution. Raises InputError."""
 
-    stiffness: float | None = None
+    stiffness: Annotated[float, unit("N/m", gt=0)] | None = None
     """Normal stiffness of each foot, all its points together, N/m; without this and `layer_stiffness` hard contact."""
-    damping: float = 0.0
+    damping: Annotated[float, unit("N s/m", ge=0)] = 0.0
     """Normal damping of each foot, N s/m; the contact force is never tensile."""
-    tangential_stiffness: float | None = None
+    tangential_stiffness: Annotated[float, unit("N/m", gt=0)] | None = None
     """Tangential stiffness of each foot, N/m; rigid if not given."""
-    layer_stiffness: float | None = None
+    layer_stiffness: Annotated[float, unit("N/m for each metre of foot", gt=0)] | None = None
     """Normal stiffness of a layer per metre of foot, N/m^2, in place of `stiffness`."""
-    layer_tangential_stiffness: float | None = None
+    layer_tangential_stiffness: Annotated[float, unit("N/m for each metre of foot", gt=0)] | None = None
     """Tangential stiffness of a layer per metre of foot, N/m^2."""
-    restitution: float = 0.0
+    restitution: Annotated[float, unit("speed after over speed before", ge=0, le=1)] = 0.0
     """Coefficient of restitution of hard contact, 0 to 1."""
 
     def __post_init__(self) -> None:
-        settle(self)
-        of_foot, of_layer = "N/m", "N/m for each metre of foot"
-        for name, unit in (
-            ("stiffness", of_foot),
-            ("tangential_stiffness", of_foot),
-            ("layer_stiffness", of_layer),
-            ("layer_tangential_stiffness", of_layer),
-        ):
-            if (value := getattr(self, name)) is not None:
-                check_number(f"slider.contact.{name}", value, unit, above=0)
-        check_number("slider.contact.damping", self.damping, "N s/m", at_least=0)
-        check_number("slider.contact.restitution", self.restitution, "speed after over speed before", at_least=0)
-        self._check_kinds()
-
-    def _check_kinds(self) -> None:
-        """Raise InputError for contradictory fields."""
-        if self.restitution > 1.0:
-            raise InputError(
-                f"slider.contact.restitution = {self.restitution!r}: nothing leaves faster than it came, give 0 to 1"
-            )
-        for one, other in (
-            ("stiffness", "layer_stiffness"),
-            ("tangential_stiffness", "layer_tangential_stiffness"),
-        ):
-            if getattr(self, one) is not None and getattr(self, other) is not None:
-                raise InputError(
-                    f"slider.contact.{one} = {getattr(self, one)!r} and {other} = {getattr(self, other)!r}: give one"
-                )
-        if not self.hard and self.restitution:
-            name = "stiffness" if self.layer_stiffness is None else "layer_stiffness"
-            raise InputError(
-                f"slider.contact.restitution = {self.restitution!r} is of a hard contact: springs of "
-                f"slider.contact.{name} lose by damping, leave one out"
-            )
+        validate(self, "slider.contact")
+        for name in ("stiffness", "tangential_stiffness"):
+            one, other = getattr(self, name), getattr(self, f"layer_{name}")
+            if one is not None and other is not None:
+                raise InputError(f"slider.contact.{name} = {one!r} and layer_{name} = {other!r}: give one")
         for name in ("damping", "tangential_stiffness", "layer_tangential_stiffness"):
-            if self.hard and getattr(self, name):
-                raise InputError(
-                    f"slider.contact.{name} = {getattr(self, name)!r} is of springs: give slider.contact.stiffness too"
-                )
+            if self.hard and (value := getattr(self, name)):
+                raise InputError(f"slider.contact.{name} = {value!r} is of springs: give slider.contact.stiffness too")
+        if self.restitution and not self.hard:
+            raise InputError(
+                f"slider.contact.restitution = {self.restitution!r} is of a hard contact: springs lose by "
+                "slider.contact.damping, leave the stiffness or the restitution out"
+            )
 
     @property
     def hard(self) -> bool:
@@ -92,15 +65,15 @@ class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A rigid foot of a slider that may lose contact, with height and pitch of its own. Raises InputError."""
 
-    length: float = 0.0
+    length: Annotated[float, unit("m", ge=0)] = 0.0
     """Length along the beam, m."""
-    points: int = 1
+    points: Annotated[int, unit("", ge=1)] = 1
     """Number of contact points, at the middles of equal cells of the length, with equal shares of the stiffness."""
-    offset: float = 0.0
+    offset: Annotated[float, unit("m")] = 0.0
     """Position of its middle relative to the slider, m."""
-    mass: float | None = None
+    mass: Annotated[float, unit("kg", gt=0)] | None = None
     """Mass that moves across the beam, kg; default the slider's mass over the number of feet."""
-    inertia: float | None = None
+    inertia: Annotated[float, unit("kg m^2", gt=0)] | None = None
     """Rotary inertia about its middle, kg m^2; default mass length^2 / 12."""
     pitches: bool = True
     """Whether it rotates; a foot of one point does not."""
@@ -110,26 +83,12 @@ class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Whether it is between the beam and the mirror image of the beam above it."""
 
     def __post_init__(self) -> None:
-        settle(self)
-        check_number("slider.foot.length", self.length, "metres", at_least=0)
-        check_whole("slider.foot.points", self.points, 1)
-        check_number("slider.foot.offset", self.offset, "metres")
-        check_word("slider.foot.face", self.face, get_args(Face))
-        for name in ("pitches", "mirrored"):
-            check_kind(f"slider.foot.{name}", getattr(self, name), bool)
-        for name, unit in (("mass", "kg"), ("inertia", "kg m^2")):
-            if (value := getattr(self, name)) is not None:
-                check_number(f"slider.foot.{name}", value, unit, above=0)
+        validate(self, "slider.foot")
         if self.points > 1 and not self.length:
             raise InputError(f"slider.foot.points = {self.points!r} on no length: give slider.foot.length in metres")
-        if self.points == 1 and self.inertia is not None:
-            raise InputError(
-                f"slider.foot.inertia = {self.inertia!r} of a foot of one point, which does not turn: leave it out"
-            )
-        if not self.pitches and self.inertia is not None:
-            raise InputError(
-                f"slider.foot.inertia = {self.inertia!r} with pitches = false, which does not turn: leave it out"
-            )
+        if self.inertia is not None and (self.points == 1 or not self.pitches):
+            why = "of a foot of one point" if self.points == 1 else "with pitches = false"
+            raise InputError(f"slider.foot.inertia = {self.inertia!r} {why}, which does not turn: leave it out")
         if self.mirrored and self.face != "upper":
             raise InputError(
                 "slider.foot.mirrored = true on the lower face: a foot between two beams is on the upper one"
@@ -143,23 +102,23 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     preload, v is the slider's speed along the tangent. Raises InputError.
     """
 
-    mass: float
+    mass: Annotated[float, unit("kg", gt=0)]
     """m_s, kg."""
-    mu: float
+    mu: Annotated[float, unit("coefficient of friction", gt=0)]
     """Coefficient of (kinetic) friction."""
-    slope: float | None = None
+    slope: Annotated[float, unit("s/m", gt=0)] | None = None
     """K of Eq. (3), s/m, for law = 'tanh'; default 1e4."""
     law: Law = "tanh"
     """Friction law: tanh is Eq. (3), which never sticks; coulomb has stiction."""
-    mu_static: float | None = None
+    mu_static: Annotated[float, unit("coefficient of friction", gt=0)] | None = None
     """Coefficient of static friction, for law = 'coulomb'; default `mu`."""
-    position: float | None = None
+    position: Annotated[float, unit("m")] | None = None
     """Initial position, m from the left end; default mid-span."""
-    speed: float = 0.0
+    speed: Annotated[float, unit("m/s")] = 0.0
     """Initial speed along +x, m/s."""
-    preload: float = 0.0
+    preload: Annotated[float, unit("N", ge=0)] = 0.0
     """Normal force in addition to the weight, N."""
-    gravity: float = GRAVITY
+    gravity: Annotated[float, unit("m/s^2", ge=0)] = GRAVITY
     """m/s^2."""
     coupling: CouplingChoice = "auto"
     """One-way or two-way coupling; auto decides by the size of the coupling."""
@@ -171,77 +130,56 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     normal: NormalChoice = "held"
     """Normal force of a two-way coupled slider on the beam. held: m g + preload and the inertia across the beam, a
     moving mass with convective terms. massless: none, as in the paper. Friction has N = m g + preload in both."""
-
     contact: Contact | None = None
     """Unilateral contact; without it the slider never loses contact."""
     foot: tuple[Foot, ...] = ()
     """Feet of a slider with [slider.contact], all with one speed; default one point."""
-    pull: float = 0.0
+    pull: Annotated[float, unit("N along x")] = 0.0
     """External force along +x on a slider with [slider.contact], N; a braking load is negative."""
-    preload_stiffness: float = 0.0
+    preload_stiffness: Annotated[float, unit("N/m", ge=0)] = 0.0
     """Stiffness of the spring that preloads each foot of a slider with [slider.contact], N/m."""
 
     def __post_init__(self) -> None:
-        settle(self, "slider", foot=Foot)
-        if self.contact is not None:
-            check_kind("slider.contact", self.contact, Contact)
-        self._check_feet()
-        for name, kind in _WORDS.items():
-            check_word(f"slider.{name}", getattr(self, name), get_args(kind))
-        check_number("slider.mass", self.mass, "kg", above=0)
-        check_number("slider.mu", self.mu, "coefficient of friction", above=0)
-        if self.slope is not None:
-            check_number("slider.slope", self.slope, "s/m", above=0)
-            if self.law == "coulomb":
-                raise InputError(
-                    f"slider.slope = {self.slope!r} is K of Eq. (3), law = 'tanh': law = 'coulomb' has none, "
-                    "leave it out"
-                )
-        check_number("slider.speed", self.speed, "m/s")
-        check_number("slider.gravity", self.gravity, "m/s^2", at_least=0)
-        check_number("slider.preload", self.preload, "newton", at_least=0)
+        validate(self, "slider")
+        if self.slope is not None and self.law == "coulomb":
+            raise InputError(
+                f"slider.slope = {self.slope!r} is K of Eq. (3), law = 'tanh': law = 'coulomb' has none, leave it out"
+            )
         if self.mu_static is not None:
             check_number("slider.mu_static", self.mu_static, "coefficient of friction", at_least=self.mu)
             if self.law != "coulomb":
                 raise InputError(
                     f"slider.mu_static = {self.mu_static!r} is for law = 'coulomb': Eq. (3) never sticks, leave it out"
                 )
-        if self.position is not None:
-            check_number("slider.position", self.position, "metres")
         if self.mass * self.gravity + self.preload == 0.0:
             raise InputError("slider.gravity = 0.0 without slider.preload presses on nothing: give one of the two")
-
-    def _check_feet(self) -> None:
-        """Raise InputError for feet and loads without contact, and for what a slider with contact does not model."""
-        check_number("slider.pull", self.pull, "newton along x")
-        check_number("slider.preload_stiffness", self.preload_stiffness, "N/m", at_least=0)
         if self.contact is None:
             for name in ("foot", "pull", "preload_stiffness"):
                 if getattr(self, name):
                     raise InputError(
                         f"slider.{name} belongs to a slider that may lose contact: give slider.contact too"
                     )
-            return
+        else:
+            self._check_contact(self.contact)
+
+    def _check_contact(self, contact: Contact) -> None:
+        """Raise InputError for what a slider with contact does not model, and for feet that do not fit its contact."""
         for name, fixed in (("mu_static", None), ("line", "spline"), ("kinematics", "tangential"), ("normal", "held")):
             if getattr(self, name) != fixed:
                 raise InputError(
                     f"slider.{name} = {getattr(self, name)!r} belongs to a slider that never loses contact: leave it "
                     "out, or slider.contact"
                 )
-        layered = [
-            name
-            for name in ("layer_stiffness", "layer_tangential_stiffness")
-            if getattr(self.contact, name) is not None
-        ]
+        layer = next((n for n in ("layer_stiffness", "layer_tangential_stiffness") if getattr(contact, n)), None)
         for foot in self.feet:
-            if layered and not foot.length:
-                raise InputError(f"slider.contact.{layered[0]} is for each metre of foot: give slider.foot.length")
-            if foot.length and foot.points == 1 and not layered and not self.contact.hard:
+            if layer and not foot.length:
+                raise InputError(f"slider.contact.{layer} is for each metre of foot: give slider.foot.length")
+            if foot.length and foot.points == 1 and not layer and not contact.hard:
                 raise InputError(
                     f"slider.foot.length = {foot.length!r} of a foot of one point, which touches at its middle: give "
                     "slider.foot.points, or leave the length out"
                 )
-        if self.contact.hard and (len(self.foot) > 1 or any(foot.points > 1 for foot in self.foot)):
+        if contact.hard and (len(self.foot) > 1 or any(foot.points > 1 for foot in self.foot)):
             raise InputError("slider.foot: a hard contact is of one point, give slider.contact.stiffness or one point")
 
     def check_stays(self) -> None:
@@ -295,10 +233,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     def start_on(self, beam: Beam) -> float:
         """Initial position, m. Raises InputError off the beam."""
         x = 0.5 * beam.length if self.position is None else self.position
-        if not 0.0 <= x <= beam.length:
-            raise InputError(
-                f"slider.position = {x!r} lies off the beam: give a position between 0 and {beam.length!r} m"
-            )
+        check_position("slider.position", x, beam.length)
         return x
 
 

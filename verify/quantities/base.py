@@ -136,7 +136,7 @@ class Quantity:
             ):
                 raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
         supplied = {"scene": scene, "cache": cache}
-        value = plain(self.function(**{name: supplied[name] for name in self._supplied}, **bound), self.name)
+        value = plain(self.function(**{name: supplied[name] for name in self._supplied}, **bound))
         if not isinstance(value, float | int | complex | Bracket):
             raise InputError(f"quantity = {self.name!r} returns {shown(value)}: return a number or a Bracket")
         return value
@@ -216,7 +216,7 @@ def _native(value: Any, name: str) -> Any:
     """A value with Python's numbers for numpy's. Raises InputError for one that is not finite."""
     if isinstance(value, list | tuple | range):
         return [_native(one, name) for one in value]
-    value = plain(value, name)
+    value = plain(value)
     if isinstance(value, float) and not isfinite(value):
         raise InputError(f"{name} = {value!r}: give a finite number")
     return value

@@ -7,13 +7,14 @@ reports/paper/2026-03-01_14-05-09/run.json    its data (`report.summary.run_data
 
 import json
 import re
+import shutil
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from verify.errors import InputError
-from verify.files import delete_folder, exists, write_folder, write_whole
+from verify.files import exists, write_folder, write_whole
 from verify.report.summary import run_data
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def save_run(run: "RunResult", reports: Path, name: str, command: str = "", keep
         data = to_json(run_data(run, command) | {"report": name})
         folder = write_folder(home / stamp, {PAGE: page, DATA: data}, "reports")
         for old in saved_in(home)[:-keep]:
-            delete_folder(old)
+            shutil.rmtree(old, ignore_errors=True)
     write_whole(reports / f"{name}.html", page, "reports")
     return Saved(reports / f"{name}.html", folder)
 

@@ -5,9 +5,9 @@ Lengths along the beam are to scale. Heights are not; sections keep their order 
 
 from typing import TYPE_CHECKING, Any
 
+from verify.formatting import with_unit
 from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
-from verify.units import in_words
 
 if TYPE_CHECKING:
     from verify.problem.beam import Beam
@@ -50,7 +50,7 @@ def beam_figure(scene: Any, width: float = 8.4) -> Figure:
 
 
 def _length(x: float) -> str:
-    return in_words(x, form=".4g")
+    return with_unit(x, form=".4g")
 
 
 class _Sketch:
@@ -203,7 +203,7 @@ class _Sketch:
         if not slider.foot:
             x, y = self.at(start), self.half(start)
             self.box(x - 0.2, y + 0.02, 0.4, 0.2, SLIDER)
-            self.text(x, y + 0.26, [f"slider {in_words(1e3 * slider.mass, 'g', '.4g')}, μ = {slider.mu:g}"])
+            self.text(x, y + 0.26, [f"slider {with_unit(1e3 * slider.mass, 'g', '.4g')}, μ = {slider.mu:g}"])
             return
         tops = []
         for foot in slider.foot:
@@ -219,7 +219,7 @@ class _Sketch:
                 self.box(x - 0.5 * length - 0.2, far + 0.08, length + 0.4, 2 * half, BODY, alpha=0.25, linestyle="--")
                 far += 0.1 + 2 * half
             tops.append(far)
-        rows = [f"slider {in_words(1e3 * slider.mass, 'g', '.4g')}, feet: {len(slider.foot)}"]
+        rows = [f"slider {with_unit(1e3 * slider.mass, 'g', '.4g')}, feet: {len(slider.foot)}"]
         self.text(self.at(start), max(tops) + 0.08, rows)
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
-from verify.units import unit_over
+from verify.formatting import unit_over
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation

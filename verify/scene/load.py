@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from verify.convert import convert, entry_of, table_of, typed
-from verify.errors import InputError, NoTomlError, near_name, raise_all, shown
+from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.scene.model import Scene
 
@@ -41,7 +41,7 @@ def scene_path(name_or_path: str | Path) -> Path:
 def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """A packaged scene by name, any other by path, with 'key=value' overrides.
 
-    Raises InputError, or WrongSceneError with one sentence for each error.
+    Raises InputError with one sentence for each error.
     """
     return scene_from(tables_of(name_or_path, overrides))
 
@@ -104,7 +104,7 @@ def tables_of(name_or_path: str | Path, overrides: Sequence[str] = ()) -> dict[s
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file. Raises NoTomlError where it is none."""
+    """The tables of a TOML file. Raises InputError where it is none."""
     import tomllib
 
     try:
@@ -112,20 +112,20 @@ def read_toml(path: Path) -> dict[str, Any]:
     except InputError:
         raise
     except (ValueError, RecursionError) as error:
-        raise NoTomlError(f"scene file {str(path)!r} is not TOML: {error}") from None
+        raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
 
 
 def read_text(path: Path) -> str:
-    """The text of a scene file. Raises NoTomlError where it cannot be read."""
+    """The text of a scene file. Raises InputError where it cannot be read."""
     exists(path, "scene")
     if path.exists() and not (path.is_file() or path.is_dir()):
-        raise NoTomlError(f"scene file {str(path)!r} is a pipe or a device: write the scene to a file")
+        raise InputError(f"scene file {str(path)!r} is a pipe or a device: write the scene to a file")
     try:
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
-        raise NoTomlError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
+        raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise NoTomlError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
+        raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
 
 
 def override(tables: dict[str, Any], assignment: str) -> None:

@@ -61,7 +61,7 @@ def plot_lines(
     ax: "Axes", lines: Iterable[tuple[str, Any, Any, dict[str, Any]]], x: tuple[str, str], y: tuple[str, str]
 ) -> None:
     """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
-    from verify.units import unit_over
+    from verify.formatting import unit_over
 
     drawn = [line for line in lines if len(line[1])]
     x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])

@@ -204,7 +204,7 @@ def _movie(run: "Run") -> "Callable[[Axes], Any]":
     def set_up(ax: "Axes") -> Any:
         import numpy as np
 
-        from verify.units import unit_of, unit_over
+        from verify.formatting import unit_of, unit_over
 
         kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
         along, up = unit_of(float(run.points[-1])), unit_over([float(abs(run.deflection).max())])

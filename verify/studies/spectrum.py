@@ -46,8 +46,8 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
         from verify.analysis.solution_cache import EULER, comparable, theory_of
+        from verify.formatting import theory_name
         from verify.report.result import Column, Figure, Result, Table
-        from verify.words import theory_name
 
         progress(f"modes 1 to {self.modes}, N = {self.count}")
         models, left_out = comparable(cache.beam, (self.count,), self.modes)
@@ -155,7 +155,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 def draw_errors(errors: dict[Variant, list[float | None]], theories: dict[str, list[float]], ax: "Axes") -> None:
     """Errors in per cent over mode number: signed alone, as absolute values on a logarithmic axis beside theories."""
-    from verify.words import theory_name
+    from verify.formatting import theory_name
 
     def values(own: "list[float] | list[float | None]") -> list[float]:
         return [float("nan") if v is None else 100 * (abs(v) if theories else v) for v in own]

@@ -221,8 +221,8 @@ def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
     def set_up(ax: "Axes") -> Any:
         import numpy as np
 
+        from verify.formatting import unit_of, unit_over
         from verify.linear.registry import MODELS
-        from verify.units import unit_of, unit_over
 
         exact = fields["analytic"]
         x_surface, height, *_ = ellipses(exact)

@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.errors import StandingError
+from verify.errors import NoFigureError
 from verify.waves.best_phase import FirstHarmonic, squared
 from verify.waves.driven_case import DrivenCase
 from verify.waves.operating_point import check_two
@@ -58,9 +58,9 @@ class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return float(standing_wave_ratios(self.equal_reflection).max())
 
     def check_exists(self) -> None:
-        """Raise StandingError where no ratio exists."""
+        """Raise NoFigureError where no ratio exists."""
         if isnan(self.ratio):
-            raise StandingError(self.note)
+            raise NoFigureError(self.note)
 
 
 def best_drive(

@@ -62,7 +62,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     def wavenumber(self, frequency_hz: float) -> complex:
         """Of waves in the model, 1/m: by its discrete dispersion where that is known, else the beam's.
 
-        Raises CutOffError at a frequency whose waves do not run along its parts.
+        Raises NoFigureError at a frequency whose waves do not run along its parts.
         """
         if self.beam.section:
             return wavenumber(self.beam, frequency_hz, self.model.theory)

@@ -6,7 +6,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_number
-from verify.errors import InputError, ZeroFieldError
+from verify.errors import InputError, NoFigureError
 from verify.linear.field import wavenumber
 from verify.linear.positions import positions_on, real_array
 from verify.problem.beam import Beam
@@ -61,6 +61,6 @@ def field_of_series(
     check_clear(beam, span, f"x from {span[0]:.6g} to {span[1]:.6g} m")
     deflection = phasors(times, values, frequency_hz)
     if not abs(deflection).max() > ROUNDING * abs(np.asarray(values)).max():
-        raise ZeroFieldError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
+        raise NoFigureError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
     k = fitted_wavenumber(x, deflection, own) if k is None else check_wavenumber("k", k, span)
     return CubicSpline(x, deflection), fit_waves(x, deflection, k)

@@ -8,9 +8,9 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
-from verify.errors import InputError, StandingError, ZeroFieldError
+from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response
-from verify.linear.intervals import Rule, rule_over
+from verify.linear.numerics import Rule, gauss_rule
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
 STANDING = 1e-12
@@ -61,9 +61,9 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return float(standing_wave_ratios(np.array(self.reflection)))
 
     def check_travelling(self) -> None:
-        """Raise StandingError for a standing wave: its flux and signed area are zero but for rounding."""
+        """Raise NoFigureError for a standing wave: its flux and signed area are zero but for rounding."""
         if self.reflection >= 1.0 - STANDING:
-            raise StandingError(
+            raise NoFigureError(
                 "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
                 "phase_deg"
             )
@@ -78,7 +78,7 @@ def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
 def window_rule(window: Window, k: float) -> Rule:
     """Gauss points and weights of a window: the fit is then in the mean square over all of it."""
     start, end = map(float, window)
-    return rule_over((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
+    return gauss_rule((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
 
 
 def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle: float) -> ComplexArray:
@@ -105,9 +105,9 @@ def two_waves(field: HarmonicField, window: Window, wave_number: complex | None 
     return _fit(rule.x, deflection, k, rule.weights)
 
 
-def zero_field() -> ZeroFieldError:
+def zero_field() -> NoFigureError:
     """The error of a field without motion in the window."""
-    return ZeroFieldError(
+    return NoFigureError(
         "the field is zero in the window: drive.force acts on a support or has no amplitude, move it or give it one"
     )
 

@@ -1,0 +1,50 @@
+"""Numbers and names as text: SI prefixes, rounding residues, names of theories."""
+
+from collections.abc import Iterable
+from math import isfinite
+from typing import NamedTuple
+
+from verify.errors import written
+
+PREFIXES = {"G": 1e-9, "M": 1e-6, "k": 1e-3, "": 1.0, "m": 1e3, "µ": 1e6, "n": 1e9, "p": 1e12, "f": 1e15, "a": 1e18}
+LARGEST = {"m": "k", "g": "k", "s": ""}
+"""Largest prefix in use: no megametres, no kiloseconds."""
+
+
+class Unit(NamedTuple):
+    """A unit, and the factor from the SI unit to it."""
+
+    name: str
+    factor: float
+
+
+def unit_of(size: float, symbol: str = "m") -> Unit:
+    """The unit in which `size` (in the SI unit `symbol`) is at least one; `symbol` itself for 0 and NaN."""
+    if size == 0.0 or not isfinite(size):
+        return Unit(symbol, 1.0)
+    names = list(PREFIXES)
+    allowed = names[names.index(LARGEST.get(symbol, "G")) :]
+    prefix = next((one for one in allowed if abs(size) * PREFIXES[one] >= 1.0), "a")
+    return Unit(prefix + symbol, PREFIXES[prefix])
+
+
+def unit_over(values: Iterable[float | None], symbol: str = "m") -> Unit:
+    """The unit for the largest of these values; None and what is not finite are ignored."""
+    return unit_of(max((abs(v) for v in values if v is not None and isfinite(v)), default=0.0), symbol)
+
+
+def with_unit(value: float, symbol: str = "m", form: str = ".3g") -> str:
+    """'1.53 mm': a value with its prefix, rounded first (0.9999 mm is 1 mm)."""
+    rounded = float(format(value, form))
+    unit = unit_of(rounded, symbol)
+    return f"{unit.factor * rounded:{'+' if form.startswith('+') else ''}g} {unit.name}"
+
+
+def as_written(numbers: Iterable[float]) -> str:
+    """Numbers without rounding residues: '[0.03425, 0.10275]' for 0.10275000000000001."""
+    return str([float(written(one)) for one in numbers])
+
+
+def theory_name(theory: str) -> str:
+    """'Euler-Bernoulli' for 'euler-bernoulli'."""
+    return "-".join(part.capitalize() for part in theory.split("-"))
