@@ -95,8 +95,8 @@ class SegmentModel(DiscreteModel):
         for name, words in _WORDS.items():
             check_word(name, getattr(self, name), words)
         check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
-        check_division(self.beam, self.n_segments, self.grading)
         self.check_theory()
+        check_division(self.beam, self.n_segments, self.grading)
         if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
                 "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"

@@ -115,7 +115,13 @@ class SolutionCache:
         key = self._key(model, count, settings)
         stored = self._modes.get(key)
         if stored is None or stored.n_modes < n_modes:
-            self._modes[key] = MODELS.named(model).build(self.beam, count, **dict(key[2])).modes(n_modes)
+            built = MODELS.named(model).build(self.beam, count, **dict(key[2]))
+            if n_modes > built.n_elastic:
+                raise InputError(
+                    f"mode = {n_modes}: the {model} model at count = {count} has {built.n_elastic} elastic modes, "
+                    "raise count"
+                )
+            self._modes[key] = built.modes(n_modes)
         return self._modes[key]
 
     def _key(self, model: str, count: int, settings: Settings) -> tuple[str, int, Settings]:
@@ -222,9 +228,7 @@ class SolutionCache:
 
     def exact_shape(self, mode: int, x: "Array", derivative: int = 0, theory: str = EULER) -> "Array":
         """The exact mass-normalised shape or a derivative at x (m), (len(x),), by a theory. Raises InputError."""
-        from verify.analytic_modes import ExactModel
-
-        return ExactModel(self.beam, theory).mode_shape(mode, x, derivative)
+        return self._exact_model(theory).mode_shape(mode, x, derivative)
 
     def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
         """Zeros of a mode between the ends, (n_nodes,), m, ascending. Raises InputError."""

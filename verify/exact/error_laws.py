@@ -12,7 +12,7 @@ from math import cos, exp, factorial, pi, sin, sqrt
 
 import msgspec
 
-from verify.errors import CutOffError, InputError
+from verify.errors import InputError, NoFigureError
 from verify.exact.closed_forms import check_mode, check_uniform, wavenumber_length
 from verify.problem.beam import Beam
 
@@ -71,12 +71,12 @@ def cut_off_hz(model: str, beam: Beam, count: int) -> float:
 
 
 def check_propagates(model: str, beam: Beam, count: int, frequency_hz: float) -> None:
-    """Raise CutOffError, with the fewest parts that it propagates in, for a frequency beyond the model's cut-off."""
+    """Raise NoFigureError, with the fewest parts that it propagates in, for a frequency beyond the model's cut-off."""
     if frequency_hz < cut_off_hz(model, beam, count):
         return
     fewest = int(count * sqrt(frequency_hz / cut_off_hz(model, beam, count)))
     fewest += cut_off_hz(model, beam, fewest) <= frequency_hz
-    raise CutOffError(
+    raise NoFigureError(
         f"count = {count!r}: {count} {law_of(model).parts} carry waves up to {cut_off_hz(model, beam, count):.6g} Hz "
         f"and frequency_hz = {frequency_hz!r} lies beyond, give count = {fewest} or more"
     )
@@ -86,7 +86,7 @@ def discrete_wavenumber(model: str, beam: Beam, count: int, frequency_hz: float)
     """The wavenumber of a wave in a discrete model of equal parts, 1/m, with the loss factor.
 
     The inverse of the discrete dispersion on its lower branch, solved for s^2 = sin^2(mu/2), which keeps its
-    digits on the finest mesh. Raises InputError for stepped beams and CutOffError beyond the cut-off.
+    digits on the finest mesh. Raises InputError for stepped beams and NoFigureError beyond the cut-off.
     """
     check_uniform(beam)
     check_propagates(model, beam, count, frequency_hz)

@@ -15,7 +15,7 @@ import numpy as np
 from msgspec import structs
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number, check_whole, check_word, several
+from verify.checks import check_kind, check_number, check_whole, check_word, several
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
@@ -95,8 +95,8 @@ class BeamModel(ABC):
 
     @property
     def count(self) -> int | None:
-        """Number of parts; None for a model without."""
-        return None
+        """Number of parts, the field after the beam; None for a model without."""
+        return getattr(self, fields(self)[1].name) if self.sized else None  # type: ignore[arg-type]
 
     @property
     @abstractmethod
@@ -152,7 +152,7 @@ class BeamModel(ABC):
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves in it, 1/m; that of the exact beam unless its dispersion is known."""
-        return wavenumber(self.beam, frequency_hz)
+        return wavenumber(self.beam, frequency_hz, self.theory)
 
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
         """Raise NoFigureError for a frequency above the cut-off of its parts."""
@@ -167,7 +167,8 @@ class BeamModel(ABC):
             )
 
     def check_theory(self) -> None:
-        """Raise InputError for an unknown theory, and for one that the beam has no figures for."""
+        """Raise InputError for what is no beam, an unknown theory, and one that the beam has no figures for."""
+        check_kind("beam", self.beam, Beam)
         check_word("theory", self.theory, THEORIES)
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(

@@ -8,16 +8,65 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
-from verify.errors import InputError, ZeroFieldError
+from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response
 from verify.linear.numerics import Rule, gauss_rule
-from verify.waves.results import TwoWaves
-from verify.waves.window import Window, check_field_window, check_wavenumber
+from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
+STANDING = 1e-12
+"""Distance of a reflection from 1 below which the wave is a standing one: its ratio is infinite."""
 ROUNDING = 1e-13
 """Deflection relative to the response to the forces below which it is rounding."""
 _REACH = 0.04
 """Relative distance from the beam's own up to which a wavenumber is fitted."""
+
+
+def reflections(forward: ComplexArray, backward: ComplexArray) -> Array:
+    """Gamma of amplitudes of one shape: the weaker over the stronger; 1 where both are zero."""
+    sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
+    return np.asarray(np.where(sizes[1] == 0.0, 1.0, sizes[0] / np.where(sizes[1] == 0.0, 1.0, sizes[1])))
+
+
+def standing_wave_ratios(gammas: Array) -> Array:
+    """(1 + Gamma) / (1 - Gamma) of reflections of any shape, infinite from 1 - `STANDING` on."""
+    stands = gammas >= 1.0 - STANDING
+    return np.asarray(np.where(stands, np.inf, (1.0 + gammas) / np.where(stands, 1.0, 1.0 - gammas)))
+
+
+class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
+
+    wavenumber: complex
+    """k, 1/m, the one used."""
+    forward: complex
+    """A+ of e^{-ik(x - middle)}, m."""
+    backward: complex
+    """A- of e^{+ik(x - middle)}, m."""
+    residual: float
+    """Part of the field that the two waves do not explain, rms over rms."""
+
+    @property
+    def direction(self) -> int:
+        """+1 where the stronger wave runs towards +x, else -1."""
+        return 1 if abs(self.forward) >= abs(self.backward) else -1
+
+    @property
+    def reflection(self) -> float:
+        """Gamma, the weaker amplitude over the stronger, 0 to 1."""
+        return float(reflections(np.array(self.forward), np.array(self.backward)))
+
+    @property
+    def standing_wave_ratio(self) -> float:
+        """(1 + Gamma) / (1 - Gamma), 1 for a pure travelling wave, infinite for a standing one."""
+        return float(standing_wave_ratios(np.array(self.reflection)))
+
+    def check_travelling(self) -> None:
+        """Raise NoFigureError for a standing wave: its flux and signed area are zero but for rounding."""
+        if self.reflection >= 1.0 - STANDING:
+            raise NoFigureError(
+                "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
+                "phase_deg"
+            )
 
 
 def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
@@ -42,54 +91,47 @@ def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle
 def two_waves(field: HarmonicField, window: Window, wave_number: complex | None = None) -> TwoWaves:
     """The two waves of a field in a window, fitted in the mean square. Raises as `travelling_wave.measure`."""
     check_kind("field", field, HarmonicField)
-    check_field_window(field, window)
+    hertz = float(field.frequency_hz)
+    check_span(field.beam, [force.position for force in field.forces], window, field.couples, field.theory)
+    check_waves(field.beam, hertz, window, field.theory)
     k = None if wave_number is None else check_wavenumber("wave_number", wave_number, window)
     rule = window_rule(window, field.wavenumber.real)
     deflection = field.deflection(rule.x)
     force = sum(abs(phasor(force)) for force in field.forces)
-    if abs(deflection).max() <= ROUNDING * force * unit_response(field.beam, field.frequency_hz):
+    if abs(deflection).max() <= ROUNDING * force * unit_response(field.beam, hertz):
         raise zero_field()
     if k is None:
         k = fitted_wavenumber(rule.x, deflection, field.wavenumber, rule.weights)
     return _fit(rule.x, deflection, k, rule.weights)
 
 
-def zero_field() -> ZeroFieldError:
+def zero_field() -> NoFigureError:
     """The error of a field without motion in the window."""
-    return ZeroFieldError(
+    return NoFigureError(
         "the field is zero in the window: drive.force acts on a support or has no amplitude, move it or give it one"
     )
 
 
-def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | None = None) -> TwoWaves:
-    """Forward and backward amplitude by least squares on the phasors, exact on two-wave fields.
+def fit_waves(x: Array, deflection: ComplexArray, k: complex) -> TwoWaves:
+    """Forward and backward amplitude by least squares on phasors (n,) at x (n,), m: exact on two-wave fields.
 
-    x (n,), m, in any order; deflection (n,), complex; weights (n,), of each point, equal by default. Amplitudes refer
-    to the middle. Raises InputError for other shapes, values that are not finite, weights that are not positive, a zero
+    Amplitudes refer to the middle of x. Raises InputError for other shapes, values that are not finite, a zero
     deflection, and a wavenumber that does not propagate or of which x spans less than half a wavelength.
     """
     at, values = np.asarray(x, dtype=float), np.asarray(deflection, dtype=complex)
-    counted = np.ones(at.shape) if weights is None else np.asarray(weights, dtype=float)
-    if at.ndim != 1 or len(at) < 2 or values.shape != at.shape or counted.shape != at.shape:
-        raise InputError(
-            f"x, deflection and weights have the shapes {at.shape}, {values.shape} and {counted.shape}: give two or "
-            "more numbers in a row, as many of each"
-        )
-    if not (np.isfinite(at).all() and np.isfinite(values).all() and np.isfinite(counted).all() and counted.min() > 0):
-        raise InputError("x, deflection and weights have to be finite and weights above 0: leave out what is not")
+    if at.ndim != 1 or len(at) < 2 or values.shape != at.shape or not np.isfinite([at, values]).all():
+        raise InputError(f"x, {at.shape}, and deflection, {values.shape}: give two or more finite numbers of each")
     if not values.any():
         raise zero_field()
-    return _fit(at, values, check_wavenumber("k", k, (float(at.min()), float(at.max()))), counted)
+    return _fit(at, values, check_wavenumber("k", k, (float(at.min()), float(at.max()))), np.ones(len(at)))
 
 
 def _fit(x: Array, deflection: ComplexArray, k: complex, weights: Array) -> TwoWaves:
-    root, middle = np.sqrt(weights), 0.5 * float(x.min() + x.max())
-    basis, values = wave_basis(x, k, middle) * root[:, None], deflection * root
-    amplitudes = np.linalg.lstsq(basis, values, rcond=None)[0]
-    residual = float(np.linalg.norm(values - basis @ amplitudes) / np.linalg.norm(values))
-    return TwoWaves(
-        wavenumber=complex(k), forward=complex(amplitudes[0]), backward=complex(amplitudes[1]), residual=residual
-    )
+    root = np.sqrt(weights)
+    basis, values = wave_basis(x, k, 0.5 * float(x.min() + x.max())) * root[:, None], deflection * root
+    forward, backward = np.linalg.lstsq(basis, values, rcond=None)[0].tolist()
+    residual = float(np.linalg.norm(values - basis @ [forward, backward]) / np.linalg.norm(values))
+    return TwoWaves(wavenumber=complex(k), forward=forward, backward=backward, residual=residual)
 
 
 def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weights: Array | None = None) -> complex:
@@ -112,13 +154,12 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weight
     return complex(least.x * start)
 
 
-class Minimum(msgspec.Struct, frozen=True, kw_only=True):
-    """Where a figure is least in an interval."""
+class Minimum(msgspec.Struct, frozen=True):
+    """Where a figure is least in an interval; `at_edge` where it still falls at an end, which is then no minimum."""
 
     x: float
     value: float
     at_edge: bool
-    """Whether it still falls at an end of the interval, which is then no minimum."""
 
 
 def minimum_near(figure: Callable[[Array], Array], grid: Array, tolerance: float) -> Minimum:
@@ -130,12 +171,11 @@ def minimum_near(figure: Callable[[Array], Array], grid: Array, tolerance: float
     best, low, high = (float(grid[j]) for j in (i, max(i - 1, 0), min(i + 1, len(grid) - 1)))
     # the square: a figure that falls to zero has a corner there, its square a parabola; steps from the best of the
     # grid, so that no digits are lost to the size of x
-    found = minimize_scalar(
+    least = minimize_scalar(
         lambda step: float(figure(np.array([best + step]))[0]) ** 2,
         bounds=(low - best, high - best),
         method="bounded",
         options={"xatol": tolerance},
     )
-    x, value = (best + found.x, found.fun**0.5) if found.fun < values[i] ** 2 else (best, float(values[i]))
-    at_edge = min(x - grid[0], grid[-1] - x) < 0.01 * (grid[1] - grid[0])
-    return Minimum(x=float(x), value=float(value), at_edge=bool(at_edge))
+    x, value = (best + least.x, least.fun**0.5) if least.fun < values[i] ** 2 else (best, values[i])
+    return Minimum(float(x), float(value), bool(min(x - grid[0], grid[-1] - x) < 0.01 * (grid[1] - grid[0])))
