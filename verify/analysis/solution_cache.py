@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import msgspec
 
 from verify.errors import InputError, NoBracketError
-from verify.linear.registry import EXACT, MEAN, MODELS, bounding, discrete
+from verify.linear.registry import MEAN, MODELS, bounding, discrete
 from verify.problem.beam import Beam
 
 if TYPE_CHECKING:
+    from verify.analytic_modes import ExactModel
     from verify.arrays import Array
     from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
@@ -134,8 +135,10 @@ class SolutionCache:
             self._exact[mode, theory] = self._exact_model(theory).frequency_hz(mode)
         return self._exact[mode, theory]
 
-    def _exact_model(self, theory: str) -> Any:
-        return MODELS[EXACT].build(self.beam, theory=theory)
+    def _exact_model(self, theory: str) -> "ExactModel":
+        from verify.analytic_modes import ExactModel
+
+        return ExactModel(self.beam, theory)
 
     def frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """The frequency of mode number `mode` by rank, Hz; model "mean" is the middle of the bracket."""

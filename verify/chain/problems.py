@@ -16,7 +16,7 @@ from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
 from verify.problem.beam import Beam, PointForce
-from verify.segments.links import link_inertia
+from verify.segments.chain import link_inertia
 
 Progress = Callable[[float], None]
 """Called with the fraction of a motion done, 0 to 1."""

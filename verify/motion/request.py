@@ -54,7 +54,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     frequency_hz: float
     model: str
     count: int | None
-    modes: int
+    modes: int | None
     start: str
     damping: float
     """Ratio of every mode: as given, else half the beam's loss factor."""

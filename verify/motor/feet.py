@@ -254,7 +254,7 @@ def sag_of(request: Request, placed: Sequence[Placed]) -> float | None:
 
     None where they would push away, or turn away, a beam that nothing holds.
     """
-    beam, n = request.beam, min(request.modes, SAGGING)
+    beam, n = request.beam, min(request.modes or SAGGING, SAGGING)
     if beam.rigid_motions and any(_moves(one) for one in placed):
         return None
     if request.model == "analytic" and set(beam.added) - {"section", "mass"}:  # no exact modes of these
