@@ -4,10 +4,9 @@ What there is (`help` of each says its fields, shapes and units; everything is S
 
   Beam, Section, PointMass, PointSpring, PointForce, Slider    what exists
   Device                                                       what takes up a wave, or drives it, beside the forces
-  analytic_modes, fem_beam, segment_model                      the three models: solve_modes, solve_harmonic, ...
+  ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, receptance, ...
   Modes, HarmonicField                                         what those return
-  sweep_harmonic, sweep_modes of each                          many frequencies (HarmonicSweep) or beams in one call
-  travelling_wave                                              what kind of wave a field carries: measure, WaveMeasures
+  travelling_wave                                              the wave that a field carries: measure, WaveMeasures
   simulate, Motion                                             a driven beam in time, with a slider or without
   run_motor, run_motors, MotorRun, Contact, Foot               sliders that may leave the beam, on feet of many points
   free_vibration, FreeVibration                                a beam let go from a shape, without forces
@@ -16,7 +15,7 @@ What there is (`help` of each says its fields, shapes and units; everything is S
   InputError                                                   bad input, in one sentence
 
   beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
-  segment_model.solve_modes(beam, n_modes=22, n_segments=49).frequencies_hz
+  SegmentModel(beam, n_segments=49).modes(22).frequencies_hz
 
 The command line is `verify --help`.
 """
@@ -25,12 +24,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from verify import analytic_modes, fem_beam, segment_model, travelling_wave
+    from verify import travelling_wave
+    from verify.analytic_modes import ExactModel
     from verify.chain.bending import Bent, bend
     from verify.errors import InputError
-    from verify.linear.fields import HarmonicField
+    from verify.fem_beam import HermiteModel
+    from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
-    from verify.linear.sweeps import HarmonicSweep
     from verify.motion.free_vibration import FreeVibration, free_vibration
     from verify.motion.result import Motion
     from verify.motion.simulate import simulate
@@ -43,26 +43,29 @@ if TYPE_CHECKING:
     from verify.problem.slider import Contact, Foot, Slider
     from verify.scene.load import load_scene
     from verify.scene.run import run_scene
-    from verify.waves.results import WaveMeasures
+    from verify.segment_model import SegmentModel
+    from verify.travelling_wave import WaveMeasures
 
 __all__ = [
-    "Beam", "Bent", "Contact", "Device", "Foot", "FreeVibration", "HarmonicField", "HarmonicSweep", "InputError",
-    "Modes", "Motion", "MotorRun", "PointForce", "PointMass", "PointSpring", "Section", "Slider", "WaveMeasures",
-    "__version__", "analytic_modes", "bend", "fem_beam", "free_vibration", "load_scene", "run_motor", "run_motors",
-    "run_scene", "segment_model", "simulate", "travelling_wave",
+    "Beam", "Bent", "Contact", "Device", "ExactModel", "Foot", "FreeVibration", "HarmonicField", "HermiteModel",
+    "InputError", "Modes", "Motion", "MotorRun", "PointForce", "PointMass", "PointSpring", "Section", "SegmentModel",
+    "Slider", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_motor", "run_motors",
+    "run_scene", "simulate", "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
 
 _HOMES = {
-    "verify": ("analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"),
+    "verify": ("simulate", "travelling_wave"),
+    "verify.analytic_modes": ("ExactModel",),
+    "verify.fem_beam": ("HermiteModel",),
+    "verify.segment_model": ("SegmentModel",),
     "verify.problem.point_attachments": ("PointMass", "PointSpring"),
     "verify.problem.beam": ("Beam", "PointForce"),
     "verify.chain.bending": ("Bent", "bend"),
     "verify.problem.device": ("Device",),
     "verify.errors": ("InputError",),
-    "verify.linear.fields": ("HarmonicField",),
+    "verify.linear.field": ("HarmonicField",),
     "verify.linear.modes": ("Modes",),
-    "verify.linear.sweeps": ("HarmonicSweep",),
     "verify.motion.free_vibration": ("FreeVibration", "free_vibration"),
     "verify.motion.result": ("Motion",),
     "verify.motor.result": ("MotorRun",),
@@ -71,7 +74,7 @@ _HOMES = {
     "verify.scene.run": ("run_scene",),
     "verify.problem.cross_section": ("Section",),
     "verify.problem.slider": ("Contact", "Foot", "Slider"),
-    "verify.waves.results": ("WaveMeasures",),
+    "verify.travelling_wave": ("WaveMeasures",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -1,27 +1,300 @@
-"""Hermite and Timoshenko elements by scikit-fem: modes, fields, motion in time. The room is `verify.elements`."""
+"""The finite-element model of a beam: cubic Hermite elements, or Timoshenko elements, by scikit-fem.
 
-from verify.elements.in_time import time_basis
-from verify.elements.linear import (
-    buckling_load,
-    check,
-    n_elastic,
-    solve_harmonic,
-    solve_modes,
-    sweep_harmonic,
-    sweep_modes,
-    unit_responses,
-    unknowns,
-)
+scikit-fem makes the mesh and the degrees of freedom and assembles stiffness and mass. Its K alone would lose the low
+eigenvalues to rounding like N^4; so the stiffness d of every element strain (mean curvature, its gradient, two shear
+strains) is read off its entries, and K = B^T diag(d) B stays factored, B being differences of differences.
 
-__all__ = [
-    "buckling_load",
-    "check",
-    "n_elastic",
-    "solve_harmonic",
-    "solve_modes",
-    "sweep_harmonic",
-    "sweep_modes",
-    "time_basis",
-    "unit_responses",
-    "unknowns",
-]
+Elements end at the steps of the beam and at masses and springs: a mass makes the shear force jump and a rotary inertia
+the moment, and a cubic bends linearly. With the jump inside an element frequencies are of order 3 and 1, with a node
+there of order 4. Lengths are in mean element lengths L/N: nodes of equal elements are whole numbers, exact at any N.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from verify.arrays import Array, Indices
+from verify.checks import MOST_PARTS, check_whole
+from verify.linear.base import DiscreteModel
+from verify.linear.mesh import Parts, check_division, cut_pieces, divide
+from verify.linear.system import StructuralSystem
+from verify.options import Theory
+from verify.problem.beam import Beam
+from verify.problem.supports import HOLDS
+
+RIGID = 1e14
+"""Times the stiffness of an element: what is stiffer moves no frequency by 1e-13, and its strain is rounding."""
+
+
+@dataclass(frozen=True)
+class HermiteModel(DiscreteModel):
+    """A beam of `n_elements` elements with consistent mass; its frequencies are upper bounds and of order 4.
+
+    `grading` is the length of a stretch's last element over its first. Theories `euler-bernoulli`, `rayleigh` (rotary
+    inertia) and `timoshenko` (shear as well). Raises InputError for a size that the beam cannot be divided into, or
+    that exceeds the memory, and for what a theory lacks.
+    """
+
+    beam: Beam
+    n_elements: int
+    grading: float = 1.0
+    theory: Theory = "euler-bernoulli"
+
+    name = "fem"
+    parts = "elements"
+    title = "Hermite elements"
+    colour = "#e8760c"
+    bounds = "above"
+    library = "scikit-fem"
+    modal_settings = ("grading", "theory")
+
+    def __post_init__(self) -> None:
+        check_whole("n_elements", self.n_elements, 1, MOST_PARTS)
+        self.check_theory()
+        check_division(self.beam, self.n_elements, self.grading, len(cut_pieces(self.beam)))
+        self.check_memory()
+
+    # --- Mesh ----------------------------------------------------------------------------------------------------
+
+    @property
+    def count(self) -> int:
+        """Number of elements."""
+        return self.n_elements
+
+    @property
+    def unit(self) -> float:
+        """L/N, m."""
+        return self.beam.length / self.n_elements
+
+    @property
+    def shear(self) -> bool:
+        """Whether these are Timoshenko elements."""
+        return self.theory == "timoshenko"
+
+    @property
+    def n_unknowns(self) -> int:
+        """Nodal values that the supports leave free, and two shear strains in each Timoshenko element."""
+        return (4 if self.shear else 2) * self.n_elements + 2 - sum(sum(HOLDS[end]) for end in self.beam.supports)
+
+    @cached_property
+    def mesh(self) -> Parts:
+        """The elements; nodes at steps, masses and springs."""
+        pieces = cut_pieces(self.beam)
+        return divide(self.beam, self.n_elements, self.grading, pieces if len(pieces) > len(self.beam.pieces) else ())
+
+    def of_elements(self, field: str, scale: float) -> Array:
+        """A figure of each element's piece of the beam over `scale`, (N,)."""
+        ends = np.cumsum([piece.length for piece in self.beam.pieces])[:-1] / self.unit
+        figures = np.array([getattr(piece, field) for piece in self.beam.pieces]) / scale
+        return np.asarray(figures[ends.searchsorted(self.mesh.nodes[:-1] + 0.5 * self.mesh.lengths)])
+
+    @cached_property
+    def basis(self) -> Any:
+        """scikit-fem's basis: w and psi of each node in turn, then the shear strains of each element."""
+        from verify.elements.element import cached_basis, line_basis
+
+        nodes = self.mesh.nodes
+        return cached_basis(nodes.tobytes(), self.shear) if len(nodes) <= 4000 else line_basis(nodes, self.shear)
+
+    @cached_property
+    def free(self) -> Indices:
+        """Degrees of freedom that the supports leave, (n,) ascending."""
+        names = [
+            [name for name, held in zip(("u", "u_x"), HOLDS[end], strict=True) if held] for end in self.beam.supports
+        ]
+        ends = [self.basis.get_dofs(end).all(held) for end, held in zip(("left", "right"), names, strict=True)]
+        return np.delete(np.arange(self.basis.N), np.concatenate(ends))
+
+    # --- Stiffness and mass --------------------------------------------------------------------------------------
+
+    @cached_property
+    def system(self) -> StructuralSystem:
+        """K = B^T diag(d) B and M over the free degrees of freedom, B in two factors.
+
+        Strains are theta_1 - theta_0 and theta_0 + theta_1 - 2 (w_1 - w_0)/l of each element, whose squares times EI/l
+        and 3 EI/l are twice its bending energy; a constant shear strain g_0 adds 2 g_0 to the latter.
+        """
+        from scipy.sparse import csr_array, vstack
+
+        n, size, lengths = self.n_elements, self.basis.N, self.mesh.lengths
+        e, one = np.arange(n), np.ones(n)
+        # first factor: differences of neighbouring deflections, which are exact, then all values
+        columns, at = np.concatenate([2 * e, 2 * e + 2, np.arange(size)]), np.concatenate([e, e, n + np.arange(size)])
+        first = csr_array((np.concatenate([-one, one, np.ones(size)]), (at, columns)), shape=(n + size, size))
+        left, right, constant = n + 2 * e + 1, n + 2 * e + 3, n + 2 * n + 2 + 2 * e
+        chord = [(e, 1.0 / lengths)]
+        mean, gradient = [(left, -one), (right, one)], [(left, one), (right, one), (e, -2.0 / lengths)]
+        strains, stiffness = [mean, gradient], [self.own_stiffness]
+        if self.shear:
+            strains = [mean, [*gradient, (constant, 2.0 * one)], [(constant, one)], [(constant + 1, one)]]
+        if self.beam.tension:
+            # w'^2 has the mean chord^2 + mean^2/12 + gradient^2/20
+            force = self.beam.tension * self.unit**2 / self.beam.bending_stiffness * lengths
+            strains, stiffness = [*strains, chord, mean, gradient], [*stiffness, force, force / 12.0, force / 20.0]
+        places, values = zip(*(entry for strain in strains for entry in strain), strict=True)
+        at = np.concatenate([i * n + e for i, strain in enumerate(strains) for _ in strain])
+        rows = [csr_array((np.concatenate(values), (at, np.concatenate(places))), shape=(len(strains) * n, n + size))]
+        for row, value in self._ground_strains():
+            rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + size)))
+            stiffness.append(value)
+        return StructuralSystem(
+            [first[:, self.free], vstack(rows, format="csr") if len(rows) > 1 else rows[0]],
+            np.concatenate(stiffness),
+            self._mass()[self.free][:, self.free].tocsc(),
+            self._rigid(),
+            self._lower_bound(),
+        )
+
+    @property
+    def own_stiffness(self) -> Array:
+        """D of the elements' own strains, (2N,) or (4N,), read off what scikit-fem assembles.
+
+        Between its two nodes K has one element alone: -4 d_1 / l^2 for the deflections, d_1 - d_0 for the slopes.
+        """
+        from verify.elements import element as el
+
+        n, unit, stiffness = self.n_elements, self.unit, self.beam.bending_stiffness
+        bending = el.assemble(self.basis, el.bending, self.mesh.stiffnesses)[: 2 * n + 2, : 2 * n + 2]
+        between = bending.diagonal(2)
+        gradient = -0.25 * self.mesh.lengths**2 * between[::2]
+        own = [gradient - between[1::2], gradient]
+        if self.shear:
+            shear = self.of_elements("shear_stiffness", stiffness / unit**2)
+            shear = np.minimum(shear, RIGID * self.mesh.stiffnesses.max())
+            inside = el.assemble(self.basis, el.shear, shear).diagonal()[2 * n + 2 :]
+            own += [inside[::2], inside[1::2]]
+        return np.concatenate(own)
+
+    def _ground_strains(self) -> list[tuple[Any, Array]]:
+        """(rows over all values, stiffness of each) of foundation and springs.
+
+        A foundation is read at four points of Gauss in each element, which integrate the square of a cubic.
+        """
+        beam, nodes, lengths, scale = (
+            self.beam,
+            self.mesh.nodes,
+            self.mesh.lengths,
+            self.unit / self.beam.bending_stiffness,
+        )
+        found = []
+        if beam.foundation:
+            points, weights = np.polynomial.legendre.leggauss(4)
+            x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
+            shares = (lengths[:, None] * 0.5 * weights).ravel()
+            found.append((self._rows(x), beam.foundation * self.unit**3 * scale * shares))
+        for spring in beam.spring:
+            at = np.array([spring.position / self.unit])
+            for value, rotation in ((spring.stiffness * self.unit**2, False), (spring.rotational, True)):
+                if value:
+                    most = RIGID * self.mesh.stiffnesses.max()
+                    found.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
+        return found
+
+    def _mass(self) -> Any:
+        """M over all degrees of freedom by scikit-fem, with rotary inertia and attached bodies."""
+        from verify.elements import element as el
+
+        beam, unit = self.beam, self.unit
+        mass = el.assemble(self.basis, el.inertia, self.mesh.masses_per_length)
+        if self.theory != "euler-bernoulli":
+            rotary = self.of_elements("rotary_inertia", beam.mass_per_length * unit**2)
+            mass = mass + el.assemble(self.basis, el.rotary_inertia, rotary)
+        for body in beam.mass:
+            at = np.array([body.position / unit])
+            for value, rotation in ((body.mass / unit, False), (body.rotary_inertia / unit**3, True)):
+                row = self._rows(at, rotation=rotation)
+                mass = mass + (value / beam.mass_per_length) * (row.T @ row)
+        return mass.tocsr()
+
+    def _rigid(self) -> Array:
+        """Rigid motions over the free degrees of freedom, (n, 0 to 2)."""
+        lines, nodes = self.beam.rigid_lines, self.mesh.nodes
+        shapes = np.zeros((self.basis.N, len(lines)))
+        for j, (a, b) in enumerate(lines):
+            shapes[: 2 * len(nodes) : 2, j] = a / self.unit + b * nodes if b else a
+            shapes[1 : 2 * len(nodes) : 2, j] = b
+        return shapes[self.free]
+
+    def _lower_bound(self) -> float:
+        """Of all eigenvalues, by the foundation; 0 where masses or compression may lower them again."""
+        beam = self.beam
+        if not beam.foundation or beam.mass or beam.tension < 0.0 or self.theory != "euler-bernoulli":
+            return 0.0
+        return beam.foundation * self.unit**4 / beam.bending_stiffness / float(self.mesh.masses_per_length.max())
+
+    def lossy_stiffness(self, omega: float) -> Any:
+        """D with the beam's loss factor on its own bending and shear, (m,)."""
+        stiffness, own = self.system.stiffness, (4 if self.shear else 2) * self.n_elements
+        if not self.beam.loss_factor:
+            return stiffness
+        return np.concatenate([stiffness[:own] * (1.0 + 1j * self.beam.loss_factor), stiffness[own:]])
+
+    # --- Readings ------------------------------------------------------------------------------------------------
+
+    def _rows(self, x: Array, derivative: int = 0, *, rotation: bool = False) -> Any:
+        from verify.elements.element import rows
+
+        return rows(self.mesh.nodes, x, self.shear, derivative, rotation=rotation)
+
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+        """Weights of the free degrees of freedom at positions in m, sparse (n_positions, n)."""
+        return self._rows(np.asarray(positions) / self.unit, rotation=rotation)[:, self.free]
+
+    def _polynomials(self, unknowns: Any) -> Any:
+        """Deflection and rotation of unknowns (n, k) as piecewise polynomials of x in m."""
+        from verify.elements.element import piecewise
+
+        values = np.zeros((self.basis.N, unknowns.shape[1]), dtype=unknowns.dtype)
+        values[self.free] = unknowns
+        return piecewise(self.mesh.nodes, values, self.unit)
+
+    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+        """The elements' own cubics, (x in m, derivative) -> (k, len(x)); at a node the element on its right."""
+        deflection = self._polynomials(unknowns)[0]
+        return lambda x, derivative: np.ascontiguousarray(deflection(x, derivative).T)
+
+    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+        """The rotation of Timoshenko elements likewise; None where it is the slope."""
+        if not self.shear:
+            return None
+        rotation = self._polynomials(unknowns)[1]
+        return lambda x, derivative: np.ascontiguousarray(rotation(x, derivative).T)
+
+    def leading_sign(self, vectors: Array) -> Array:
+        """+-1 for each mode: by the first of deflection, slope, curvature that the left end leaves free."""
+        clamped = self.beam.supports[0] == "clamped"
+        leading = (self._rows(np.zeros(1), 2)[:, self.free] @ vectors)[0] if clamped else vectors[0]
+        return np.where(leading < 0.0, -1.0, 1.0)
+
+    def modes_of(self, vectors: Array) -> dict[str, Any]:
+        """Nodes, five points and two points of Gauss, where the curvature is of order 4, in each element."""
+        nodes, lengths, unit = self.mesh.nodes, self.mesh.lengths, self.unit
+        inside = [(nodes[:-1, None] + lengths[:, None] * xi).ravel() * unit
+                  for xi in (np.arange(4) / 4.0, 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0))]  # fmt: skip
+        points = np.append(inside[0], nodes[-1] * unit)
+        ends = np.minimum(nodes * unit, self.beam.length)
+        return {
+            "nodes": ends,
+            "readings": {"nodal": lambda: self.line(vectors)(ends, 0)},
+            "points": points,
+            "sampled": lambda: self.line(vectors)(points, 0),
+            "curvature_points": inside[1],
+            "curvatures": lambda: self.line(vectors)(inside[1], 2),
+        }
+
+    def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
+        """The cubics of all modes for motion in time, right-continuous at nodes."""
+        fields = {"shapes": self.line(vectors), "edges": self.mesh.nodes * self.unit, "degree": 3}
+        if self.shear and self.beam.mass:
+            at = np.array([mass.position for mass in self.beam.mass])
+            fields["turns"] = lambda: (self.load_rows(at, rotation=True) @ vectors).T / self.unit
+        return fields
+
+    # --- Constants -----------------------------------------------------------------------------------------------
+
+    def expected_order(self) -> int:
+        """Nodes stand at steps, masses and springs: order 4."""
+        return 4

@@ -1,34 +1,518 @@
-"""Finite segments: rigid links and joint springs about the straight chain. The room is `verify.segments`."""
+"""The finite-segment model of a beam (Section II.A of the paper): rigid links, revolute joints and their springs.
 
-from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, THEORIES, WALLS
-from verify.segments.buckling import buckling_load
-from verify.segments.in_time import time_basis
-from verify.segments.linear import (
-    check,
-    n_elastic,
-    solve_harmonic,
-    solve_modes,
-    sweep_harmonic,
-    sweep_modes,
-    unit_responses,
-    unknowns,
-)
+A beam of N links has N + 1 joints. Between two links i and j of lengths l and bending stiffnesses EI a spring resists
+their relative angle, two half links in series:
 
-__all__ = [
-    "ATTACHMENTS",
-    "JOINTS",
-    "LOADS",
-    "READINGS",
-    "THEORIES",
-    "WALLS",
-    "buckling_load",
-    "check",
-    "n_elastic",
-    "solve_harmonic",
-    "solve_modes",
-    "sweep_harmonic",
-    "sweep_modes",
-    "time_basis",
-    "unit_responses",
-    "unknowns",
-]
+    k_ij = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i),    k = EI / l between identical ones.    (1), (2)
+
+At a clamped end the wall has joints too (`segments.walls`). Each link has its mass m at its middle and its own inertia
+m l^2/12. In small motion about the straight chain the unknowns are the transverse positions y of the joints that the
+supports leave free; the links' rotations are their differences.
+
+The angle of a joint is l times the mean curvature around it: the beam's deflection at the joint is y + l^2 y''/12, order
+4 (`segments.reading`). Between the joints the paper's C2 spline of Section II.B goes through it.
+"""
+
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass, fields, replace
+from functools import cached_property
+from math import pi, sqrt
+from typing import Any, ClassVar, Literal
+
+import msgspec
+import numpy as np
+
+from verify.arrays import Array
+from verify.checks import MOST_PARTS, check_number, check_whole, check_word, plain
+from verify.errors import InputError, NoFigureError
+from verify.linear.base import DiscreteModel
+from verify.linear.mesh import Parts, check_division, divide, part_counts
+from verify.linear.system import StructuralSystem
+from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
+from verify.problem.beam import Beam
+from verify.problem.supports import HOLDS
+from verify.segments import shear
+from verify.segments.attachments import Body, attachment_weights, bodies_on, joint_weights
+from verify.segments.chain import Chain, Motions, at_joints, link_inertia, link_mass, right_of, selection, squares
+from verify.segments.orders import order_of
+from verify.segments.reading import corrected_reading, line_through, rigid_links
+from verify.segments.walls import reading_factors, tension_excess, wall_factors
+
+_WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
+_MOST_UNKNOWNS = 5_000_000
+"""Above, the factorisation takes more than 10 GB."""
+_FEWEST_CORRECTED = 6
+"""Links of which tensioned joints that slip leave a positive mass, whatever is at the ends."""
+_PASSES, _CONVERGED = 60, 1e-13
+"""Of the buckling load of joints that depend on it."""
+
+
+@dataclass(frozen=True)
+class SegmentModel(DiscreteModel):
+    """A beam as `n_segments` rigid links. Raises InputError for settings that are unknown or contradict each other."""
+
+    name: ClassVar[str] = "segment"
+    parts: ClassVar[str] = "segments"
+    title: ClassVar[str] = "segments"
+    colour: ClassVar[str] = "#2f80ed"
+    bounds: ClassVar[Literal["below", "above"] | None] = "below"
+    fewest: ClassVar[int] = 2
+    lines: ClassVar[tuple[str, ...]] = ("spline", "raw")
+    modal_settings: ClassVar[tuple[str, ...]] = ("wall", "joints", "grading", "theory", "attachment")
+
+    beam: Beam
+    n_segments: int
+    _: KW_ONLY
+    wall: Wall = "gregory"
+    """Joints beside a clamped end, by their weights."""
+    joints: Joints = "series"
+    """Eq. (1) with its indices put right ("series") or as "printed"; "tensioned" has order 4 under axial force too."""
+    grading: float = 1.0
+    """Last link of a section over its first, in geometric progression."""
+    theory: Theory = "euler-bernoulli"
+    attachment: Attachment = "reciprocal"
+    """Attached bodies and springs on the joints around them, order 4, or on their rigid link ("lever")."""
+    load: Load = "reciprocal"
+    """Point forces on four joints, order 4, or on those of their link ("lever"), order 2."""
+    reading: Reading = "corrected"
+    """Deflection of the beam: by the "corrected" joints, the "raw" ones, or the rigid "links"."""
+    joint_dashpot: float = 0.0
+    """c of a dashpot at every joint, N m s, in harmonic motion."""
+
+    def __post_init__(self) -> None:
+        for one in fields(self):
+            object.__setattr__(self, one.name, plain(getattr(self, one.name)))
+        check_whole("n_segments", self.n_segments, self.fewest, MOST_PARTS)
+        for name, words in _WORDS.items():
+            check_word(name, getattr(self, name), words)
+        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0)
+        check_division(self.beam, self.n_segments, self.grading)
+        self.check_theory()
+        if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):
+            raise InputError(
+                "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
+            )
+        if self.joints == "tensioned" and self.theory == "timoshenko" and self.n_segments < _FEWEST_CORRECTED:
+            raise InputError(
+                f"n_segments = {self.n_segments}: joints = 'tensioned' with theory = 'timoshenko' take "
+                f"{_FEWEST_CORRECTED} or more, raise it or choose joints = 'series'"
+            )
+        if self.n_unknowns > _MOST_UNKNOWNS:
+            raise InputError(
+                f"n_segments = {self.n_segments}: {self.n_unknowns} unknowns exceed the largest system of 10 GB, lower "
+                "n_segments"
+            )
+
+    @property
+    def count(self) -> int:
+        """N."""
+        return self.n_segments
+
+    @property
+    def unit(self) -> float:
+        """Mean length of a link, m; of a "welded" wall half a link at each clamped end is a part."""
+        return self.beam.length / (self.n_segments + 0.5 * sum(self._welded))
+
+    @property
+    def _welded(self) -> list[bool]:
+        return [self.wall == "welded" and support == "clamped" for support in self.beam.supports]
+
+    # --- Links, joints and walls ---------------------------------------------------------------------------------
+
+    @cached_property
+    def links(self) -> Parts:
+        """Lengths and properties of the links, which end on the beam's steps."""
+        return divide(self.beam, self.n_segments, self.grading)
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The links and joints by themselves. Raises InputError where a tensioned joint has no stiffness left."""
+        lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
+        compliances = self._own_compliances.copy()
+        compliances[[0, -1]] += self._end_springs
+        inertias = link_inertia(masses, lengths)
+        if self.theory != "euler-bernoulli":
+            inertias = inertias + self._thick
+        return Chain(
+            supports=self.beam.supports,
+            unit=self.unit,
+            start=0.5 * self._welded[0],
+            lengths=lengths,
+            compliances=compliances,
+            masses=masses,
+            inertias=inertias,
+            elastic=self._elastic,
+            reading_factors=reading_factors(self._elastic, self.n_segments, self.wall) if any(self._elastic) else None,
+        )
+
+    def _joint_compliances(self, stiffnesses: Array) -> Array:
+        """1/k of joints 0..N by Eq. (1), (N + 1,), of an end joint as if the end link continued, times its wall's factor.
+
+        `stiffnesses` (N,) are EI of the links.
+        """
+        l, ei = self.links.lengths, stiffnesses
+        if self.joints == "printed":
+            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) has the right unit and the wrong pairing: order 1 where
+            # both E I and E / l differ
+            e, i = self.links.moduli, self.links.second_moments
+            inner = l[1:] / (2.0 * e[1:] * i[:-1]) + l[:-1] / (2.0 * e[:-1] * i[1:])
+        else:
+            inner = l[:-1] / (2.0 * ei[:-1]) + l[1:] / (2.0 * ei[1:])
+        return np.concatenate([[l[0] / ei[0]], inner, [l[-1] / ei[-1]]]) * self._wall_factors
+
+    @cached_property
+    def _wall_factors(self) -> Array:
+        return wall_factors(self.beam.supports, self.n_segments, self.wall, self._elastic)
+
+    @cached_property
+    def _beam_compliances(self) -> Array:
+        """1/k of the joints by the beam's own stiffness, (N + 1,)."""
+        return self._joint_compliances(self.links.stiffnesses)
+
+    @cached_property
+    def _own_compliances(self) -> Array:
+        """The same, of tensioned joints EI - T l^2/12 in place of EI, of a wall's first a little less (`walls`)."""
+        if self.joints != "tensioned" or not self.beam.tension:
+            return self._beam_compliances
+        tension, lengths, factors = self._tension, self.links.lengths, self._wall_factors
+        stiffnesses = self.links.stiffnesses - tension * lengths**2 / 12.0
+        found = self._joint_compliances(stiffnesses)
+        for end, (support, turns) in enumerate(zip(self.beam.supports, self._elastic, strict=True)):
+            if support == "clamped" or turns:
+                excess = tension * lengths[-end] * tension_excess(self.wall) / 12.0 / factors[-end] ** 2
+                found[-end] = 1.0 / (1.0 / found[-end] - excess)
+        if stiffnesses.min() <= 0.0 or found.min() <= 0.0:
+            raise InputError(
+                f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
+                f"{self.n_segments} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of it: "
+                "give more segments or choose joints = 'series'"
+            )
+        return found
+
+    @property
+    def _tension(self) -> float:
+        return self.beam.tension * self.unit**2 / self.beam.bending_stiffness
+
+    @property
+    def _foundation(self) -> float:
+        return self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
+
+    def _of_links(self, figure: str) -> Array:
+        """A property of the beam's pieces for every link, (N,), SI."""
+        counts = part_counts([piece.length for piece in self.beam.pieces], self.n_segments)
+        return np.repeat([float(getattr(piece, figure)) for piece in self.beam.pieces], counts)
+
+    @cached_property
+    def _thick(self) -> Array:
+        """Rotary inertia rho I l of the links, (N,)."""
+        return self.links.lengths * self._of_links("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
+
+    # --- Attachments ---------------------------------------------------------------------------------------------
+
+    @cached_property
+    def bodies(self) -> tuple[Body, ...]:
+        """Attached bodies and springs, those at one position together."""
+        return bodies_on(self.beam, self.unit, ends=self.attachment == "reciprocal")
+
+    @cached_property
+    def _at_ends(self) -> tuple[Body, Body]:
+        left, right = (next((b for b in self.bodies if b.end == end), Body(0.0)) for end in (0, 1))
+        return left, right
+
+    @property
+    def _elastic(self) -> tuple[bool, bool]:
+        """Ends with a joint of their own, and a rotational spring or a rotary inertia beyond it."""
+        left, right = (body.rotational + body.rotary_inertia > 0.0 for body in self._at_ends)
+        return left, right
+
+    @property
+    def _end_springs(self) -> Array:
+        """Compliances of rotational springs in series with an end joint, (2,): those without an inertia between."""
+        return np.array([b.rotational and not b.rotary_inertia and 1.0 / b.rotational for b in self._at_ends], float)
+
+    @property
+    def n_unknowns(self) -> int:
+        """Free joint positions, rotations beyond elastic ends, slips of joints and of bodies."""
+        held = sum(HOLDS[support].deflection for support in self.beam.supports)
+        found = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self._at_ends)
+        if self.theory == "timoshenko":
+            slipping = self.attachment == "reciprocal"
+            found += self.n_segments - 1 + held + sum(slipping and body.mass > 0.0 for body in self.bodies)
+        return found
+
+    @cached_property
+    def _weights(self) -> tuple[Any, Any]:
+        """Of joint positions (bodies, N + 1) and link rotations (bodies, N) for bodies and springs."""
+        return attachment_weights(self.chain, [body.position for body in self.bodies], self.attachment)
+
+    @cached_property
+    def _rotations(self) -> Any:
+        """Rotations of the bodies over (rotations of the links, unknowns), sparse (bodies, N + n)."""
+        from scipy.sparse import diags_array, hstack
+
+        beyond = np.array([body.end is not None and self._elastic[body.end] for body in self.bodies])
+        at = np.flatnonzero(beyond)
+        ends = selection(at, [self.bodies[i].end for i in at], (len(beyond), 2))
+        inside = diags_array(np.where(beyond, 0.0, 1.0)) @ self._weights[1]
+        return hstack([inside, ends @ self.motions.end_rotations], format="csr")
+
+    # --- Stiffness and mass --------------------------------------------------------------------------------------
+
+    @cached_property
+    def _shears(self) -> Array:
+        """Kappa G A of the links, (N,)."""
+        return self._of_links("shear_stiffness") * self.unit**2 / self.beam.bending_stiffness
+
+    @cached_property
+    def _softness(self) -> Array:
+        """Compliances of joints 0..N against slip by Eq. (1), without walls, (N + 1,)."""
+        return at_joints(self.links.lengths / self._shears)
+
+    @cached_property
+    def _slips(self) -> tuple[Array, Array]:
+        """Compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without."""
+        if self.theory != "timoshenko":
+            return np.zeros(0), np.zeros(len(self.bodies))
+        bodies = self.bodies if self.attachment == "reciprocal" else ()
+        return shear.slip_compliances(self.chain, self._softness, bodies, self._weights[0].toarray(), self.wall)
+
+    @cached_property
+    def motions(self) -> Motions:
+        """Positions, rotations and slips as linear maps of the unknowns."""
+        slips, gives = self._slips
+        rotating = [end for end, body in enumerate(self._at_ends) if body.rotary_inertia]
+        return Motions(self.chain, rotating, slips, np.array([c for c, b in zip(gives, self.bodies) if c and b.mass]))
+
+    @property
+    def system(self) -> StructuralSystem:
+        """Its stiffness and mass. Raises InputError for a compression beyond buckling."""
+        if self.beam.tension < 0.0 and self._buckling_factor <= 1.0:
+            raise InputError(
+                f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling load: the chain of "
+                f"{self.n_segments} segments buckles at {self.buckling_load():.6g} N, lower the compression or hold "
+                "the beam better"
+            )
+        return self._assembled
+
+    @cached_property
+    def _assembled(self) -> StructuralSystem:
+        from scipy.sparse import csc_array, vstack
+
+        beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
+        # strains over (rotations of the links, unknowns v), and what resists them
+        links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
+        own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
+        strains = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
+        strains.append((own[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
+        bound = 0.0
+        if beam.foundation:
+            ground = self._foundation * lengths
+            strains += [(motions.middles @ own, ground), (links, ground * lengths**2 / 12.0)]
+            if beam.tension >= 0.0 and not beam.mass:
+                bound = np.minimum(ground / chain.masses, ground * lengths**2 / (12.0 * chain.inertias)).min()
+        if beam.tension:
+            strains.append((links, self._tension * lengths))
+        mass, across = link_mass(motions), None
+        if self.joints == "tensioned" and self.theory != "euler-bernoulli":
+            inertias = shear.joint_inertias(self._thick, self._wall_factors, self._own_share, self.wall)
+            mass = mass - squares(motions.angles_of @ motions.both, inertias)
+            if motions.n_slips:
+                mass = mass - squares(motions.joint_slips, shear.slip_masses(chain, motions.slips))
+        if self.bodies:
+            masses, rotary, lateral, rotational = np.array([body[2:] for body in self.bodies]).T
+            gives = self._slips[1]
+            # a spring without a mass is in series with its slip, or with its end's joint: no unknown is without mass
+            lateral = lateral / (1.0 + lateral * np.where(masses, 0.0, gives))
+            rotational = np.where([b.end is not None and self._end_springs[b.end] for b in self.bodies], 0.0, rotational)
+            slipping = np.flatnonzero((gives > 0.0) & (masses > 0.0))
+            own_slips = selection(slipping, np.arange(len(slipping)), (len(gives), len(slipping))) @ motions.body_slips
+            across = self._weights[0] @ motions.positions + own_slips
+            strains += [((across @ own)[lateral > 0.0], lateral[lateral > 0.0])]
+            strains += [(self._rotations[rotational > 0.0], rotational[rotational > 0.0])]
+            mass = mass + squares(across, masses) + squares(self._rotations @ motions.both, rotary)
+        rows, stiffnesses = zip(*strains, strict=True)
+        factors = [*motions.factors, vstack(rows, format="csr")]
+        return StructuralSystem(factors, np.concatenate(stiffnesses), csc_array(mass), self._rigid(across), bound)
+
+    @cached_property
+    def _springs(self) -> Any:
+        """Joints that have a spring."""
+        return np.flatnonzero(np.isfinite(self.chain.compliances))
+
+    @cached_property
+    def _own_share(self) -> Array:
+        """Part of each joint's angle that is the beam's and not a spring's beyond its end, (N + 1,)."""
+        own, whole = self._own_compliances, self.chain.compliances
+        return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
+
+    def _rigid(self, across: Any) -> Array:
+        """Motions that nothing resists, (n, 0 to 2)."""
+        x, motions = self.chain.nodes / self.unit, self.motions
+        found = np.zeros((motions.n, self.beam.rigid_motions))
+        for column, (start, tilt) in enumerate(self.beam.rigid_lines):
+            found[: len(motions.free), column] = start / self.unit + tilt * x[motions.free]
+            found[len(motions.free) : len(motions.free) + len(motions.rotating), column] = tilt
+        springs = [i for i, body in enumerate(self.bodies) if body.stiffness]
+        if springs and found.size:  # about the one spring, which unequal links read a little off its position
+            found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
+        return found
+
+    def lossy_stiffness(self, omega: float) -> Any:
+        """D with the loss factor of the beam and the dashpots of the joints; springs, ground and tension lose nothing."""
+        d, dashpots = self._assembled.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
+        if not (self.beam.loss_factor or dashpots):
+            return d
+        there, series, found = self._springs, np.zeros(self.n_segments + 1), d.astype(complex)
+        series[[0, -1]] = self._end_springs
+        loss = self.beam.loss_factor / self._beam_compliances[there] + dashpots
+        found[: len(there)] = 1.0 / (1.0 / (1.0 / self._own_compliances[there] + 1j * loss) + series[there])
+        found[len(there) : len(there) + self.motions.n_slips] *= 1.0 + 1j * self.beam.loss_factor
+        return found
+
+    # --- Loads and readings --------------------------------------------------------------------------------------
+
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+        """Weights of the unknowns, by the rule of `load`; of couples, those of attachments."""
+        from scipy.sparse import vstack
+
+        if not rotation:
+            return joint_weights(self.chain, positions, self.load) @ self.motions.positions
+        each = [attachment_weights(self.chain, [float(position)], self.load)[1] for position in positions]
+        return vstack(each, format="csr") @ self.motions.rotations
+
+    def _joints(self, unknowns: Any) -> Any:
+        """Positions of joints 0..N of unknowns (n, k), (k, N + 1)."""
+        return (self.motions.positions @ unknowns).T
+
+    def _corrected(self, unknowns: Any) -> Any:
+        """The beam's deflection there, (k, N + 1)."""
+        if self.theory != "timoshenko":
+            return corrected_reading(self.chain, self._joints(unknowns))
+        change = shear.shear_change(self.motions, self._softness, unknowns)
+        return corrected_reading(self.chain, self._joints(unknowns), (self.motions.rotations @ unknowns).T, change)
+
+    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+        """The C2 spline through the joints by the rule of `reading`, or the links."""
+        if self.reading == "links":
+            return self._links(unknowns)
+        read = self._corrected if self.reading == "corrected" else self._joints
+        return line_through(self.chain, lambda: read(unknowns), slipping=self.theory == "timoshenko")
+
+    def _links(self, unknowns: Any, *, both_sides: bool = True) -> Callable[[Array, int], Any]:
+        middles, rotations = ((m @ unknowns).T for m in (self.motions.middles, self.motions.rotations))
+        return rigid_links(self.chain, middles, rotations / self.unit, both_sides=both_sides)
+
+    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+        """The rotation of the section under Timoshenko's theory."""
+        if self.theory != "timoshenko":
+            return None
+        if self.reading == "links":
+            links = self._links(unknowns)
+            return lambda x, derivative: links(x, derivative + 1)
+        corrected = self.reading == "corrected"
+        return shear.section_rotation(self.motions, self._wall_factors, self._own_share, unknowns, corrected=corrected)
+
+    def leading_sign(self, vectors: Array) -> Array:
+        """By the first free joint."""
+        return np.where(vectors[0] < 0.0, -1.0, 1.0)
+
+    def modes_of(self, vectors: Array) -> dict[str, Any]:
+        """Joints as nodes, their readings, and the curvature M/EI of every joint's moment."""
+        nodes = np.clip(self.chain.nodes, 0.0, self.beam.length)
+
+        def curvatures() -> Array:
+            angles = self._assembled.strain(vectors)[: len(self._springs)].T
+            bent = np.zeros((vectors.shape[1], self.n_segments + 1))
+            stiffness = right_of(self.links.stiffnesses)[self._springs] * self._beam_compliances[self._springs]
+            bent[:, self._springs] = angles * self._own_share[self._springs] / stiffness
+            if self.theory == "timoshenko":
+                values = self._assembled.rayleigh_quotients(vectors)
+                joints = self._corrected(vectors)
+                bent += shear.modal_shear_change(self.chain, self._shears, self._foundation, joints, values)
+            return bent / self.unit**2
+
+        readings = {"corrected": lambda: self._corrected(vectors), "raw": lambda: self._joints(vectors)}
+        return {
+            "nodes": nodes,
+            "readings": readings,
+            "points": nodes,
+            "sampled": readings["corrected"],
+            "curvature_points": nodes,
+            "curvatures": curvatures,
+        }
+
+    def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
+        """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
+        index = {body.position: i for i, body in enumerate(self.bodies)}
+
+        def rotations() -> Array:
+            rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
+            return (rows @ self.motions.both @ vectors).T / self.unit
+
+        spline = replace(self, reading="corrected").line
+        return {
+            "shapes": self._links(vectors, both_sides=False) if line == "raw" else spline(vectors),
+            "edges": self.chain.nodes,
+            "degree": 1 if line == "raw" else 3,
+            "turns": rotations if self.beam.mass else None,
+        }
+
+    # --- Buckling, order, waves ----------------------------------------------------------------------------------
+
+    @property
+    def _buckling_factor(self) -> float:
+        """On its own compression; 0 where nothing but the axial force resists a rotation as a whole."""
+        free = msgspec.structs.replace(self.beam, tension=0.0).rigid_lines
+        return 0.0 if any(tilt for _, tilt in free) else self._assembled.buckling_factor()
+
+    def buckling_load(self) -> float:
+        """The compression at which the chain buckles first, N, whatever the beam's own axial force.
+
+        Between pinned ends (4 EI/l^2) sin^2(pi/(2N)), order 2; tensioned joints stiffen as the force grows: order 4.
+        """
+        force = self.beam.bending_stiffness / self.beam.length**2
+        for _ in range(_PASSES):
+            compressed = msgspec.structs.replace(self.beam, tension=-force)
+            factor = replace(self, beam=compressed, theory="euler-bernoulli")._buckling_factor
+            force *= factor
+            if self.joints != "tensioned" or factor == 0.0 or abs(factor - 1.0) < _CONVERGED:
+                break
+        return force
+
+    def expected_order(self) -> int | None:
+        """Order of its frequencies in N (`segments.orders`); None where it depends on N."""
+        return order_of(
+            self.beam,
+            wall=self.wall,
+            joints=self.joints,
+            grading=self.grading,
+            theory=self.theory,
+            attachment=self.attachment,
+        )
+
+    def wavenumber(self, frequency_hz: float) -> complex:
+        """Wavenumber of waves along equal links of the beam's own section, 1/m.
+
+        With s = sin(k l/2): 16 s^4 EI/l^4 + 4 s^2 T/l^2 = (rho A omega^2 - k_f) (1 - 2 s^2/3). Thick beams: the exact.
+        """
+        if self.theory != "euler-bernoulli":
+            return super().wavenumber(frequency_hz)
+        link = self.beam.length / self.n_segments
+        load = (2.0 * pi * frequency_hz / self.beam.wave_constant * link**2) ** 2
+        load -= self.beam.foundation * link**4 / self.beam.bending_stiffness
+        tension = self.beam.tension * link**2 / self.beam.bending_stiffness
+        a, b = 16.0 * (1.0 + 1j * self.beam.loss_factor), 4.0 * tension + 2.0 * load / 3.0
+        if self.joints == "tensioned":
+            a -= 4.0 * tension / 3.0
+        k = complex(2.0 * np.arcsin(np.sqrt(2.0 * load / (b + np.sqrt(b * b + 4.0 * a * load + 0j)))) / link)
+        return k if k.imag <= 0.0 else k.conjugate()
+
+    def check_propagates(self, frequency_hz: float) -> None:
+        """Raise NoFigureError at and beyond omega^2 = 48 EI/(rho A l^4), a half wave on each link."""
+        highest = sqrt(48.0) * self.beam.wave_constant / self.beam.length**2 / (2.0 * pi)
+        if frequency_hz >= highest * self.n_segments**2:
+            raise NoFigureError(
+                f"count = {self.n_segments}: {self.n_segments} segments carry waves up to "
+                f"{highest * self.n_segments**2:.6g} Hz and frequency_hz = {frequency_hz!r} lies beyond, give count = "
+                f"{int(sqrt(frequency_hz / highest)) + 1} or more"
+            )

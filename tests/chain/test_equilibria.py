@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import jn_zeros
 
-from verify import bend, segment_model
+from verify import bend
 from verify.chain.dynamics import accelerations, at_rest, linearise, positions, project
 from verify.chain.problems import cantilever_tip, hanging_frequency, rollup_gap, turning_frequency
 from verify.chain.statics import solve_static
@@ -19,6 +19,7 @@ from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass
+from verify.segment_model import SegmentModel
 
 ROD = Beam(
     length=0.83, width=0.013, thickness=0.0021, youngs_modulus=113e9, density=4470.0, supports=("clamped", "free")
@@ -148,7 +149,7 @@ def test_small_motion_at_rest_is_that_of_the_segment_model(supports):
     beam = structs.replace(ROD, supports=supports)
     system = build_system(beam, 14)
     found = linearise(system, at_rest(system)).frequencies()
-    exact = 2 * np.pi * segment_model.solve_modes(beam, 8, 14).frequencies_hz
+    exact = 2 * np.pi * SegmentModel(beam, 14).modes(8).frequencies_hz
     assert found[:8] == pytest.approx(exact, rel=1e-9)
 
 

@@ -10,24 +10,23 @@ from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near
 from verify import analytic_modes
-from verify.elements import linear as fem_beam
 from verify.exact import closed_forms, error_laws
-from verify.linear import catalogue, eigen
+from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.segments import linear as segment_model
+from verify.segment_model import SegmentModel
 
 # --- Discrete models ---
 
-MODELS = {"segment": segment_model, "fem": fem_beam}
+MODELS = {"segment": SegmentModel, "fem": HermiteModel}
 
 
 def test_two_links_swing_as_worked_out_by_hand(titanium_strip):
     """One unknown y: spring (2 y / l)^2 k, kinetic energy 2 m y'^2 / 3, so omega^2 = 6 EI / (rho A l^4)."""
     length = titanium_strip.length / 2
     omega = sqrt(6) * titanium_strip.wave_constant / length**2
-    modes = segment_model.solve_modes(titanium_strip, 1, 2)
+    modes = SegmentModel(titanium_strip, 2).modes(1)
     assert modes.frequencies_hz[0] == pytest.approx(omega / (2 * pi), rel=1e-15)
 
 
@@ -78,7 +77,7 @@ def test_every_frequency_of_a_small_model_agrees_with_extended_precision(titaniu
     with mpmath.workdps(40):
         stiffness, mass = matrices(n)
     expected = extended_precision_frequencies(titanium_strip, stiffness, mass, titanium_strip.length / n)
-    found = MODELS[model].solve_modes(titanium_strip, len(expected), n).frequencies_hz
+    found = MODELS[model](titanium_strip, n).modes(len(expected)).frequencies_hz
     assert found == pytest.approx(expected, rel=2e-14)
 
 
@@ -86,38 +85,35 @@ def test_every_frequency_of_a_small_model_agrees_with_extended_precision(titaniu
 @pytest.mark.parametrize("count", [3, 8, 49, 130, 260, 700])
 def test_eigenvalues_are_those_of_the_exact_discrete_dispersion(titanium_strip, model, count):
     n_modes = min(count - 1, 40)
-    found = MODELS[model].solve_modes(titanium_strip, n_modes, count).frequencies_hz
+    found = MODELS[model](titanium_strip, count).modes(n_modes).frequencies_hz
     exact = [error_laws.dispersion_frequency_hz(model, titanium_strip, n, count) for n in range(1, n_modes + 1)]
     assert found == pytest.approx(exact, rel=1e-13)
 
 
 def test_most_of_the_modes_of_a_long_chain_keep_their_digits(titanium_strip):
-    found = segment_model.solve_modes(titanium_strip, 250, 300)
-    assert found.method == "dense SVD"
+    found = SegmentModel(titanium_strip, 300).modes(250)
+    assert found.method == "singular values"
     exact = [error_laws.dispersion_frequency_hz("segment", titanium_strip, n, 300) for n in range(1, 251)]
     assert found.frequencies_hz == pytest.approx(exact, rel=1e-13)
 
 
 def test_an_assembled_stiffness_loses_what_the_factored_one_keeps(titanium_strip):
-    """The reason for eigen.py: at 2000 links LAPACK on K = B^T B is off by more than 1e-8 in mode 1."""
+    """At 2000 links LAPACK on K = B^T B is off by more than 1e-8 in mode 1."""
     from scipy.linalg import eigh
 
-    chain = segment_model.build_chain(titanium_strip, 2000)
-    pencil = segment_model.chain_pencil(chain)
-    strain = pencil.strain_matrix()
-    plain = eigh(
-        (strain.T @ strain).toarray(), pencil.mass_matrix().toarray(), eigvals_only=True, subset_by_index=(0, 0)
-    )
+    system = SegmentModel(titanium_strip, 2000).system
+    strain = system.strain_matrix.toarray()
+    plain = eigh(strain.T @ (system.stiffness[:, None] * strain), system.mass.toarray(), eigvals_only=True)
     exact = (2 * sin(pi / 4000) ** 2 * sqrt(12 / (3 - 2 * sin(pi / 4000) ** 2))) ** 2
     assert abs(plain[0] / exact - 1) > 1e-8
-    assert eigen.lowest(pencil, 3).values[0] == pytest.approx(exact, rel=5e-14)
+    assert system.modes(3)[0][0] == pytest.approx(exact, rel=5e-14)
 
 
 def test_segments_lie_below_and_hermite_elements_above_for_every_mode_a_chain_has(titanium_strip):
     for count in range(2, 30):
         exact = np.array([closed_forms.frequency_hz(titanium_strip, n) for n in range(1, count)])
-        below = segment_model.solve_modes(titanium_strip, count - 1, count).frequencies_hz
-        above = fem_beam.solve_modes(titanium_strip, count - 1, count).frequencies_hz
+        below = SegmentModel(titanium_strip, count).modes(count - 1).frequencies_hz
+        above = HermiteModel(titanium_strip, count).modes(count - 1).frequencies_hz
         assert (below < exact).all(), count
         assert (exact < above).all(), count
 
@@ -126,7 +122,7 @@ def test_segments_lie_below_and_hermite_elements_above_for_every_mode_a_chain_ha
 def test_the_leading_error_is_mu_to_the_fourth_over_1440(titanium_strip, model, sign):
     mode, count = 2, 60
     exact = closed_forms.frequency_hz(titanium_strip, mode)
-    error = MODELS[model].solve_modes(titanium_strip, mode, count).frequencies_hz[-1] / exact - 1
+    error = MODELS[model](titanium_strip, count).modes(mode).frequencies_hz[-1] / exact - 1
     assert error == pytest.approx(sign * (mode * pi / count) ** 4 / 1440, rel=6e-3)
 
 
@@ -134,7 +130,7 @@ def test_the_leading_error_is_mu_to_the_fourth_over_1440(titanium_strip, model, 
 def test_deflection_and_slope_between_the_nodes_follow_the_exact_mode(titanium_strip, model, bound):
     x = np.array([0.0, 0.0171, 0.2003, 0.4444, 0.73])
     exact = analytic_modes.solve_modes(titanium_strip, 5)
-    found = MODELS[model].solve_modes(titanium_strip, 5, 49)
+    found = MODELS[model](titanium_strip, 49).modes(5)
     assert found.deflection(x) == pytest.approx(exact.deflection(x), rel=bound, abs=bound * exact.deflection(x).max())
     slope = exact.slope(x)
     assert found.slope(x) == pytest.approx(slope, rel=40 * bound, abs=40 * bound * abs(slope).max())
@@ -145,7 +141,7 @@ def test_raw_joints_are_of_order_two_and_corrected_ones_of_order_four(titanium_s
     for reading, leading in (("raw", 1 / 12), ("corrected", None)):
         errors = []
         for count in (30, 60):
-            modes = segment_model.solve_modes(titanium_strip, mode, count)
+            modes = SegmentModel(titanium_strip, count).modes(mode)
             exact = analytic_modes.mode_shape(titanium_strip, mode, modes.nodes)
             errors.append(np.linalg.norm(modes.readings[reading]()[mode - 1]) / np.linalg.norm(exact) - 1)
         order = np.log2(errors[0] / errors[1])
@@ -161,7 +157,7 @@ def test_raw_joints_are_of_order_two_and_corrected_ones_of_order_four(titanium_s
 def test_hermite_elements_take_every_support(titanium_strip, supports, count):
     beam = replace(titanium_strip, supports=supports)
     exact = analytic_modes.solve_modes(beam, 4)
-    found = fem_beam.solve_modes(beam, 4, count)
+    found = HermiteModel(beam, count).modes(4)
     mu = np.array([closed_forms.wavenumber_length(supports, n) for n in range(1, 5)]) / count
     excess = found.frequencies_hz / exact.frequencies_hz - 1
     assert (excess > -1e-13).all()
@@ -201,9 +197,10 @@ def mean_is_nearest(supports, mode, count):
 def test_the_mean_of_both_is_nearer_than_elements_up_to_seven_tenths_of_the_modes(titanium_strip, supports, count):
     """Every mode that both have: exactly where it is said on pinned and guided ends, at most a mode later on free ones."""
     beam = replace(titanium_strip, supports=supports)
-    n_modes = min(module.n_elastic(beam, count) for module in (segment_model, fem_beam))
+    models = [SegmentModel(beam, count), HermiteModel(beam, count)]
+    n_modes = min(model.n_elastic for model in models)
     exact = [closed_forms.frequency_hz(beam, n) for n in range(1, n_modes + 1)]
-    below, above = (module.solve_modes(beam, n_modes, count).frequencies_hz for module in (segment_model, fem_beam))
+    below, above = (model.modes(n_modes).frequencies_hz for model in models)
     nearer = [abs((b + a) / 2 / e - 1) < abs(a / e - 1) for b, a, e in zip(below, above, exact, strict=True)]
     said = [mean_is_nearest(supports, n, count) for n in range(1, n_modes + 1)]
     assert sum(nearer) - supports.count("free") <= sum(said) <= sum(nearer)
@@ -221,7 +218,6 @@ ALIKE = replace(BAR, section=(Section(length=0.3), Section(length=0.4)))
 DENSER = replace(BAR, section=(Section(length=0.3, density=8000.0), Section(length=0.4)))
 PULLED, GROUNDED = replace(BAR, tension=4e5), replace(BAR, foundation=1e8)
 TIMOSHENKO, TENSIONED, LEVER = {"theory": "timoshenko"}, {"joints": "tensioned"}, {"attachment": "lever"}
-order_of = catalogue.MODELS["segment"].order
 COUNTS = (70, 140, 280, 560)
 
 
@@ -240,10 +236,10 @@ def spring(beam, at, **given):
 def seen(beam, settings):
     """Orders of mode 2 from size to size, (3,), of the worst of three sizes each."""
     theory = settings.get("theory", "euler-bernoulli")
-    exact = frequency_near(beam, theory, segment_model.solve_modes(beam, 2, 560, **settings).frequencies_hz[-1])
+    exact = frequency_near(beam, theory, SegmentModel(beam, 560, **settings).modes(2).frequencies_hz[-1])
 
     def worst(count):
-        found = [segment_model.solve_modes(beam, 2, n, **settings).frequencies_hz[-1] for n in range(count, count + 3)]
+        found = [SegmentModel(beam, n, **settings).modes(2).frequencies_hz[-1] for n in range(count, count + 3)]
         return max(abs(f / exact - 1.0) for f in found)
 
     return [float(np.log2(one / other)) for one, other in pairwise(map(worst, COUNTS))]
@@ -273,13 +269,13 @@ def seen(beam, settings):
     ],
 )
 def test_the_order_that_is_due_is_the_one_that_a_chain_has(beam, settings, due):
-    assert order_of(beam, **settings) == due
+    assert SegmentModel(beam, 70, **settings).expected_order() == due
     orders = seen(beam, settings)
     assert orders[-1] == pytest.approx(due, abs=0.25)
     assert abs(orders[-1] - due) <= abs(orders[0] - due) + 0.1
 
 
 def test_what_is_lower_for_another_reason_is_told_where_two_would_meet():
-    assert order_of(body(STEPPED, 0.3), theory="timoshenko") == 1
-    assert order_of(replace(body(STEPPED, 0.2), tension=4e5), joints="tensioned") == 2
-    assert order_of(body(PULLED, 0.2)) == 2
+    assert SegmentModel(body(STEPPED, 0.3), 70, theory="timoshenko").expected_order() == 1
+    assert SegmentModel(replace(body(STEPPED, 0.2), tension=4e5), 70, joints="tensioned").expected_order() == 2
+    assert SegmentModel(body(PULLED, 0.2), 70).expected_order() == 2

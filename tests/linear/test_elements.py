@@ -7,18 +7,16 @@ from msgspec.structs import replace
 from numpy.polynomial import Polynomial
 
 from tests.reference.transfer import frequency_near, state
-from verify.elements import linear
-from verify.elements.in_time import time_basis
 from verify.elements.stock import stock_frequency_hz
 from verify.errors import InputError
+from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.scene.load import load_scene
 
 # --- Scikit fem ---
 
-PAPER = load_scene("paper").beam
+PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
 STEPS = (Section(length=0.16), Section(length=0.04, thickness=0.0031), Section(length=0.23, youngs_modulus=61e9))
 STEPPED = replace(STRIP, section=STEPS, supports=("clamped", "guided"))
@@ -28,12 +26,12 @@ FORCES = [PointForce(position=0.0137), PointForce(position=0.2911, amplitude=0.7
 def works():
     """Everything the model is asked for, by name."""
     return {
-        "modes": lambda: linear.solve_modes(STRIP, 5, 23).frequencies_hz,
-        "modes of many elements": lambda: linear.solve_modes(STEPPED, 5, 300, grading=1.4).frequencies_hz,
-        "field": lambda: linear.solve_harmonic(STRIP, FORCES, 777.0, 23).deflection([0.1417]),
-        "unit responses": lambda: linear.unit_responses(STRIP, [0.1], np.array([777.0]), np.array([0.1417]), 23),
-        "motion on equal elements": lambda: time_basis(STRIP, 23).omegas,
-        "motion on a stepped beam": lambda: time_basis(STEPPED, 23).omegas,
+        "modes": lambda: HermiteModel(STRIP, 23).modes(5).frequencies_hz,
+        "modes of many elements": lambda: HermiteModel(STEPPED, 300, grading=1.4).modes(5).frequencies_hz,
+        "field": lambda: HermiteModel(STRIP, 23).harmonic(FORCES, 777.0).deflection([0.1417]),
+        "unit responses": lambda: HermiteModel(STRIP, 23).receptance([0.1], np.array([777.0]), np.array([0.1417])),
+        "motion on equal elements": lambda: HermiteModel(STRIP, 23).time_basis().omegas,
+        "motion on a stepped beam": lambda: HermiteModel(STEPPED, 23).time_basis().omegas,
     }
 
 
@@ -55,7 +53,7 @@ def test_without_scikit_fems_assembly_there_is_no_model(form, work, monkeypatch)
 @pytest.mark.parametrize(("count", "least", "most"), [(49, 1e-13, 1e-9), (400, 3e-11, 1e-6), (3000, 3e-7, 3e-3)])
 def test_scikit_fems_own_element_loses_digits_with_the_size(beam, count, least, most):
     """Mode 1 of the paper's beam: 1e-11, 7e-9, 3e-5. Rounding, so that the bands are wide; it grows about like N^4."""
-    off = stock_frequency_hz(beam, 1, count) / linear.solve_modes(beam, 1, count).frequencies_hz[0] - 1
+    off = stock_frequency_hz(beam, 1, count) / HermiteModel(beam, count).modes(1).frequencies_hz[0] - 1
     assert least < abs(off) < most
 
 
@@ -141,7 +139,7 @@ def sine(beam, mode, shear=True):
 @pytest.mark.parametrize(("count", "digits"), [(7, 5e-15), (49, 1e-14), (300, 5e-14), (2000, 2e-13)])
 def test_frequencies_of_pinned_beams_are_the_discrete_dispersion_slender_or_thick(thickness, count, digits):
     beam = replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=thickness)
-    found = linear.solve_modes(beam, 4, count, theory="timoshenko").frequencies_hz
+    found = HermiteModel(beam, count, theory="timoshenko").modes(4).frequencies_hz
     off = [float(hertz / discrete_hz(beam, n + 1, count) - 1) for n, hertz in enumerate(found)]
     assert off == pytest.approx([0.0] * 4, abs=digits)
 
@@ -151,7 +149,7 @@ def test_frequencies_of_pinned_beams_are_the_discrete_dispersion_slender_or_thic
 def test_their_error_is_the_hermite_elements(thickness, theory):
     """mu^4 / 1440 with mu = n pi / N, slender or thick."""
     beam, count = replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=thickness), 40
-    found = linear.solve_modes(beam, 5, count, theory=theory).frequencies_hz
+    found = HermiteModel(beam, count, theory=theory).modes(5).frequencies_hz
     for mode, hertz in enumerate(found, 1):
         exact = sine(beam, mode, theory == "timoshenko")[0]
         assert float(hertz / exact - 1) * 1440 / (mode * np.pi / count) ** 4 == pytest.approx(0.997, abs=0.004)
@@ -161,9 +159,9 @@ def test_their_error_is_the_hermite_elements(thickness, theory):
 @pytest.mark.parametrize("theory", ["rayleigh", "timoshenko"])
 def test_frequencies_are_of_order_four_from_above(name, theory):
     beam, counts = STOCKY[name], [10, 20, 40, 80]
-    fine = linear.solve_modes(beam, 5, 100, theory=theory).frequencies_hz
+    fine = HermiteModel(beam, 100, theory=theory).modes(5).frequencies_hz
     exact = np.array([frequency_near(beam, theory, hertz) for hertz in fine])
-    found = np.array([linear.solve_modes(beam, 5, n, theory=theory).frequencies_hz / exact - 1 for n in counts])
+    found = np.array([HermiteModel(beam, n, theory=theory).modes(5).frequencies_hz / exact - 1 for n in counts])
     assert (found > 0).all()
     orders = np.log2(found[:-1] / found[1:])
     assert (orders > 3.8).all()
@@ -179,10 +177,10 @@ def test_where_shear_is_stiff_the_element_is_rayleighs(count):
         replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=0.03, supports=("clamped", "guided")),
         min(3, 2 * count - 1),
     )
-    rayleigh = linear.solve_modes(stocky, modes, count, theory="rayleigh").frequencies_hz
+    rayleigh = HermiteModel(stocky, count, theory="rayleigh").modes(modes).frequencies_hz
     off = {}
     for stiff in (1e10, 1e12, 1e40):
-        sheared = linear.solve_modes(replace(stocky, shear_stiffness=stiff), modes, count, theory="timoshenko")
+        sheared = HermiteModel(replace(stocky, shear_stiffness=stiff), count, theory="timoshenko").modes(modes)
         off[stiff] = sheared.frequencies_hz / rayleigh - 1
     assert (off[1e10] < -1e-5).all()
     assert off[1e12] == pytest.approx(0.01 * off[1e10], rel=1e-3)
@@ -193,8 +191,8 @@ def test_where_shear_is_stiff_the_element_is_rayleighs(count):
 def test_a_slender_beam_is_euler_bernoullis_less_its_two_small_terms(theory):
     """Omega falls by k^2 (I/A) / 2, and under shear by k^2 EI / (kappa G A) / 2 more."""
     beam = replace(STRIP_TIMOSHENKO_ELEMENTS, thickness=0.00013)
-    plain = linear.solve_modes(beam, 3, 40).frequencies_hz
-    found = linear.solve_modes(beam, 3, 40, theory=theory).frequencies_hz / plain - 1
+    plain = HermiteModel(beam, 40).modes(3).frequencies_hz
+    found = HermiteModel(beam, 40, theory=theory).modes(3).frequencies_hz / plain - 1
     own, k = beam.own, np.arange(1, 4) * np.pi / L
     small = own.rotary_inertia / own.mass_per_length
     small += own.bending_stiffness / own.shear_stiffness if theory == "timoshenko" else 0.0
@@ -205,14 +203,14 @@ def test_a_slender_beam_is_euler_bernoullis_less_its_two_small_terms(theory):
 @pytest.mark.parametrize("name", ["everything", "free and thick"])
 def test_driven_fields_are_of_order_four_with_loss_in_bending_and_shear(name, loss):
     beam = replace(STOCKY[name], loss_factor=loss)
-    hertz = 1.31 * linear.solve_modes(beam, 2, 40, theory="timoshenko").frequencies_hz[1]
+    hertz = 1.31 * HermiteModel(beam, 40, theory="timoshenko").modes(2).frequencies_hz[1]
     x, force = np.array([0.1, 0.7, 0.95]) * L, [PointForce(position=0.4 * L)]
     exact = np.array([state(beam, "timoshenko", hertz, 0.4 * L, at)[0] for at in x])
-    found = [linear.solve_harmonic(beam, force, hertz, n, theory="timoshenko").deflection(x) for n in (20, 40, 80)]
+    found = [HermiteModel(beam, n, theory="timoshenko").harmonic(force, hertz).deflection(x) for n in (20, 40, 80)]
     off = np.array([abs(one - exact).max() / abs(exact).max() for one in found])
     assert np.log2(off[:-1] / off[1:]) == pytest.approx(4.0, abs=0.1)
     assert 1e-10 < off[-1] < 3e-6
-    unit = linear.unit_responses(beam, [0.4 * L], np.array([hertz]), x, 40, theory="timoshenko")
+    unit = HermiteModel(beam, 40, theory="timoshenko").receptance([0.4 * L], np.array([hertz]), x)
     assert unit[0, 0] == pytest.approx(found[1], rel=1e-9)
 
 
@@ -223,7 +221,7 @@ def test_at_a_force_inside_an_element_shear_is_of_order_one():
         exact = state(beam, "timoshenko", hertz, 0.5 * L, at * L)[0]
         force = [PointForce(position=0.5 * L)]
         off = [
-            abs(linear.solve_harmonic(beam, force, hertz, n, theory="timoshenko").deflection([at * L])[0] / exact - 1)
+            abs(HermiteModel(beam, n, theory="timoshenko").harmonic(force, hertz).deflection([at * L])[0] / exact - 1)
             for n in (45, 135)
         ]
         assert least < np.log(off[0] / off[1]) / np.log(3) < most
@@ -251,10 +249,10 @@ PLAIN = Beam(length=L, bending_stiffness=EI, mass_per_length=MASS / L)
 )
 def test_what_a_theory_lacks_is_refused_by_name(beam, theory, message):
     for work in (
-        lambda: linear.check(beam, 1, 20, theory=theory),
-        lambda: linear.solve_modes(beam, 1, 20, theory=theory),
-        lambda: linear.solve_harmonic(beam, [PointForce(position=0.1)], 70.0, 20, theory=theory),
-        lambda: linear.unit_responses(beam, [0.1], np.array([70.0]), np.array([0.2]), 20, theory=theory),
+        lambda: HermiteModel(beam, 20, theory=theory),
+        lambda: HermiteModel(beam, 20, theory=theory).modes(1),
+        lambda: HermiteModel(beam, 20, theory=theory).harmonic([PointForce(position=0.1)], 70.0),
+        lambda: HermiteModel(beam, 20, theory=theory).receptance([0.1], np.array([70.0]), np.array([0.2])),
     ):
         with pytest.raises(InputError, match=message):
             work()

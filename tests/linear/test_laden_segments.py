@@ -7,16 +7,19 @@ import pytest
 from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near, state
-from verify import analytic_modes as exact_modes
 from verify.errors import InputError
+from verify.exact import modes as exact_modes
 from verify.exact.modes import mode_shapes
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.segments.attached import felt_at
-from verify.segments.buckling import buckling_load
-from verify.segments.crowded import _groups
-from verify.segments.linear import solve_harmonic, solve_modes
+from verify.segment_model import SegmentModel
+
+
+
+def solve_modes(beam, n_modes, n_segments, **settings):
+    return SegmentModel(beam, n_segments, **settings).modes(n_modes)
+
 
 # --- Laden segments ---
 
@@ -189,7 +192,7 @@ BUCKLING = {"PP": pi, "CF": pi / 2, "CC": 2 * pi}
 def test_a_chain_buckles_at_order_two_and_a_tensioned_one_at_four(supports):
     exact = EI * (BUCKLING[supports] / L) ** 2
     beam = replace(STRIP, supports=ENDS[supports])
-    series, mended = ([buckling_load(beam, n, joints=j) / exact - 1 for n in (40, 80)] for j in ("series", "tensioned"))
+    series, mended = ([SegmentModel(beam, n, joints=j).buckling_load() / exact - 1 for n in (40, 80)] for j in ("series", "tensioned"))
     assert np.log2(series[0] / series[1]) == pytest.approx(2.0, abs=0.03)
     assert series[1] == pytest.approx(-((BUCKLING[supports] / 80) ** 2) / 12, rel=0.03)
     assert abs(mended[1]) < 0.02 * abs(series[1])
@@ -200,7 +203,7 @@ def test_a_chain_buckles_at_order_two_and_a_tensioned_one_at_four(supports):
 @pytest.mark.parametrize("count", [5, 49, 400])
 def test_pinned_links_buckle_where_their_closed_form_says(count):
     expected = 4 * EI * (count / L) ** 2 * sin(pi / (2 * count)) ** 2
-    assert buckling_load(STRIP, count) == pytest.approx(expected, rel=2e-12)
+    assert SegmentModel(STRIP, count).buckling_load() == pytest.approx(expected, rel=2e-12)
     just = replace(STRIP, tension=-(1 - 1e-6) * expected)
     assert solve_modes(just, 1, count).frequencies_hz[0] == pytest.approx(
         discrete_hz(1, count, just.tension, 0.0), rel=1e-9
@@ -213,7 +216,7 @@ def test_nothing_holds_a_compressed_pendulum():
     beam = replace(STRIP, supports=ENDS["PF"], tension=-1e-3)
     with pytest.raises(InputError, match="buckles at 0 N"):
         solve_modes(beam, 1, 20)
-    assert buckling_load(beam, 20) == 0.0
+    assert SegmentModel(beam, 20).buckling_load() == 0.0
 
 
 # --- Laden segment fields ---
@@ -234,7 +237,7 @@ AT = 0.5 * L_LADEN_SEGMENT_FIELDS
 
 def field_error(beam, theory, count, frequency_hz=40.0, **settings):
     exact = np.array([state(beam, theory, frequency_hz, AT, float(x))[0] for x in X])
-    found = solve_harmonic(beam, (PointForce(position=AT),), frequency_hz, count, theory=theory, **settings)
+    found = SegmentModel(beam, count, theory=theory, **settings).harmonic(PointForce(position=AT), frequency_hz)
     return abs(found.deflection(X) - exact).max() / abs(exact).max()
 
 
@@ -379,10 +382,6 @@ def test_two_flanges_closer_than_a_link_keep_order_four():
     assert np.log2(coarse / fine) / 2 > 3.9
 
 
-def alone(chain, positions, rule):
-    return felt_at(chain, positions, rule)
-
-
 def strewn(draw):
     """A beam with bodies and a spring anywhere, on any supports that hold it or not."""
     supports = tuple(str(one) for one in draw.choice(["pinned", "clamped", "free", "guided"], 2))
@@ -412,18 +411,3 @@ def test_bodies_that_come_together_are_one_body():
         for off in (1e-7, 0.0)
     ]
     assert apart[0].frequencies_hz == pytest.approx(apart[1].frequencies_hz, rel=1e-5)
-
-
-@pytest.mark.parametrize("supports", [("clamped", "free"), ("pinned", "guided"), ("free", "free")])
-def test_bodies_crowd_each_other_and_an_end_alike_from_either_side(supports):
-    """One or two on 40 links, at joints and between, at ends; 25 links in the middle are far from both ends."""
-    n = 40
-    for places in ([k / 4.0] for k in range(4 * n + 1)):
-        mirrored = [n - place for place in places]
-        assert list(_groups(n, supports, places)) == list(_groups(n, supports[::-1], mirrored))
-    for gap in (k / 4.0 for k in range(60)):
-        there, back = [14.25, 14.25 + gap], [n - 14.25, n - 14.25 - gap]
-        one, other = list(_groups(n, supports, there)), list(_groups(n, supports[::-1], back))
-        assert sorted(map(sorted, one)) == sorted(map(sorted, other))
-    alone = [place for place in range(n + 1) if not list(_groups(n, supports, [float(place)]))]
-    assert set(range(15, 26)) <= set(alone)

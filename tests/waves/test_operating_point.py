@@ -1,4 +1,4 @@
-"""Operating points: frequency, phase, two-mode approximation."""
+"""Operating points: frequency, phase and amplitude ratio of two drives; two-mode approximation."""
 
 import numpy as np
 import pytest
@@ -6,12 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import Beam, PointForce, PointMass, analytic_modes, travelling_wave
-from verify.errors import InputError, ResonanceError
-from verify.linear.catalogue import MODELS
-from verify.waves.best_phase import TRIED, phases_to_try
-from verify.waves.driven import own_wavenumber
-from verify.waves.operating_point import Landscape
+from verify import Beam, PointForce, PointMass
+from verify.analytic_modes import ExactModel
+from verify.errors import InputError, NoFigureError, ResonanceError
+from verify.exact.modes import mode_shape
+from verify.fem_beam import HermiteModel
+from verify.linear.field import point_force
+from verify.problem.device import Device
+from verify.segment_model import SegmentModel
+from verify.travelling_wave import DrivenCase, OperatingMap, best_drive, measure, middle_half
+from verify.waves.best_phase import fastest_candidates
 from verify.waves.two_modes import TwoModes, local_swr, local_waves
 
 # --- Operating point ---
@@ -30,9 +34,15 @@ def reflection(beam, frequency, phase_deg):
     return sizes[0] / sizes[1]
 
 
+def built(model, beam, count):
+    return (
+        ExactModel(beam) if model == "analytic" else {"segment": SegmentModel, "fem": HermiteModel}[model](beam, count)
+    )
+
+
 def land(beam, model="analytic", count=None):
     drives = (PointForce(position=0.021, amplitude=1.3), PointForce(position=0.709, amplitude=1.3))
-    return Landscape(beam=beam, forces=drives, model=model, count=count)
+    return OperatingMap(DrivenCase(model=built(model, beam, count), forces=drives, frequency_hz=1510.0))
 
 
 def mean_change(beam, frequency, phase, hertz, degrees):
@@ -46,14 +56,14 @@ def mean_change(beam, frequency, phase, hertz, degrees):
 def test_sensitivities_are_the_mean_changes_of_the_closed_form(titanium_strip, turns, phase):
     """In size, on a slope and in the least reflection alike: there both sides rise, and no change is less than zero."""
     frequency = (turns * np.pi / 0.73) ** 2 * titanium_strip.wave_constant / (2 * np.pi)
-    found = land(titanium_strip).point(frequency, phase, "here")
+    found = land(titanium_strip).point(frequency, phase)
     assert found.reflection == pytest.approx(reflection(titanium_strip, frequency, phase), rel=1e-4, abs=1e-6)
     assert found.per_hertz == pytest.approx(mean_change(titanium_strip, frequency, phase, 1.0, 0.0), rel=1e-4, abs=1e-7)
     assert found.per_degree == pytest.approx(
         mean_change(titanium_strip, frequency, phase, 0.0, 1.0), rel=1e-4, abs=1e-7
     )
     assert min(found.per_hertz, found.per_degree) > 5e-4
-    assert (found.frequency_hz, found.phase_deg, found.what, found.note) == (frequency, phase, "here", "")
+    assert (found.frequency_hz, found.phase_deg) == (frequency, phase)
 
 
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("fem", 60), ("segment", 75)])
@@ -61,14 +71,13 @@ def test_a_point_reads_what_the_field_itself_measures(titanium_strip, model, cou
     """The sum over unit forces against one field solved directly, with losses and unequal forces."""
     beam = replace(titanium_strip, loss_factor=0.013)
     drives = (PointForce(position=0.021, amplitude=1.3, phase_deg=0.0), PointForce(position=0.66, amplitude=0.9))
-    here = Landscape(beam=beam, forces=drives, model=model, count=count)
+    case = DrivenCase(model=built(model, beam, count), forces=drives, frequency_hz=1510.0)
     frequency = 1510.0
-    found = here.point(frequency, 68.0, "here")
+    found = OperatingMap(case).point(frequency, 68.0)
 
     def measured(frequency, phase):
         turned = (drives[0], replace(drives[1], phase_deg=phase))
-        field = MODELS[model].solve_harmonic(beam, turned, frequency, count)
-        return travelling_wave.measure(field, WINDOW, own_wavenumber(field))
+        return measure(case.model.harmonic(turned, frequency), WINDOW, case.wavenumber(frequency))
 
     direct = measured(frequency, 68.0)
     assert found.reflection == pytest.approx(direct.reflection, rel=1e-6)
@@ -89,28 +98,27 @@ def test_the_fastest_point_says_whether_it_is_one_or_where_the_search_ends(titan
     lossy = replace(titanium_strip, loss_factor=1e-3)
     middle = (17.5 * np.pi / 0.73) ** 2 * lossy.wave_constant / (2 * np.pi)
     frequencies = np.linspace(*search, 61) * middle
-    found = land(lossy).fast_point(frequencies, 90.0, 0.1)
+    found = land(lossy).fastest(frequencies, 1.0, 0.1)
     assert found.reflection <= 0.1 + 1e-12
     reflection, speed = land(lossy).over(frequencies, np.linspace(5.0, 175.0, 681))
     assert abs(found.crest_speed) >= abs(speed)[reflection <= 0.1].max()
     if edge is None:
         assert frequencies[1] < found.frequency_hz < frequencies[-2]
-        assert found.note == ""
+        assert not found.at_edge
     else:
         assert found.frequency_hz == pytest.approx(edge * middle, rel=1e-6)
-        assert f"grows off the search, at its edge, {found.frequency_hz:.6g} Hz" in found.note
-        assert found.what == "crest speed with a reflection up to 0.1, grows off the search, at its edge"
+        assert found.at_edge
 
 
 @pytest.mark.parametrize("model", ["analytic", "fem", "segment"])
 def test_a_point_that_resonates_or_whose_neighbour_does_says_so(titanium_strip, model):
     """A change is read half a hertz to both sides."""
     here = land(titanium_strip, model, None if model == "analytic" else 90)
-    resonance = float(MODELS[model].solve_modes(titanium_strip, 18, 90).frequencies_hz[17])
+    resonance = float(built(model, titanium_strip, 90).modes(18).frequencies_hz[17])
     for away in (-0.5, 0.0, 0.5):
         with pytest.raises(ResonanceError, match="undamped resonance"):
-            here.point(resonance + away, 77.0, "there")
-    assert here.point(resonance + 0.7, 77.0, "there").per_hertz > 0.0
+            here.point(resonance + away, 77.0)
+    assert here.point(resonance + 0.7, 77.0).per_hertz > 0.0
 
 
 # --- Best phase ---
@@ -142,8 +150,8 @@ def fastest(forward, backward, limit, phases):
 @pytest.mark.parametrize("ends", [(0.087, 3.05), (-3.05, -0.087), (0.4, 1.7)])
 def test_no_phase_of_a_fine_circle_beats_the_ten_that_are_tried(limit, ends):
     forward, backward = waves(11)
-    tried = phases_to_try(forward, backward, limit, ends)
-    assert tried.shape == (CASES, TRIED)
+    tried = fastest_candidates(forward, backward, limit, ends)
+    assert tried.shape == (CASES, 10)
     assert ((tried >= ends[0]) & (tried <= ends[1])).all()
     found = fastest(forward, backward, limit, tried)
     every = fastest(forward, backward, limit, np.linspace(*ends, CIRCLE))
@@ -156,10 +164,105 @@ def test_no_phase_of_a_fine_circle_beats_the_ten_that_are_tried(limit, ends):
 @pytest.mark.parametrize("scale", [1e-60, 1.0, 1e60, 1e-190, 1e160])
 def test_amplitudes_of_any_size_have_the_same_best_phase(scale):
     forward, backward = waves(7, 1.0)
-    plain = phases_to_try(forward, backward, 0.3, (0.1, 3.0))
-    assert np.sort(phases_to_try(scale * forward, scale * backward, 0.3, (0.1, 3.0))) == pytest.approx(
+    plain = fastest_candidates(forward, backward, 0.3, (0.1, 3.0))
+    assert np.sort(fastest_candidates(scale * forward, scale * backward, 0.3, (0.1, 3.0))) == pytest.approx(
         np.sort(plain), abs=1e-7
     )
+
+
+# --- Best drive ---
+
+
+def brass(tip=0.002, loss_factor=0.0):
+    return Beam(
+        length=0.3,
+        width=0.012,
+        thickness=0.0008,
+        youngs_modulus=100e9,
+        density=8500.0,
+        supports=("clamped", "free"),
+        mass=(PointMass(position=0.3, mass=tip),),
+        loss_factor=loss_factor,
+    )
+
+
+def brass_case(model=ExactModel, positions=(0.02, 0.28), frequency=2000.0, loss_factor=0.0, **settings):
+    forces = tuple(PointForce(position=p) for p in positions)
+    return DrivenCase(model=model(brass(loss_factor=loss_factor)), forces=forces, frequency_hz=frequency, **settings)
+
+
+def swr(case, ratio, phase_deg, frequency=None):
+    """Of the field solved with both actuators at once."""
+    second = point_force(case.forces[1].position, ratio * np.exp(1j * np.deg2rad(phase_deg)))
+    hertz = frequency or case.frequency_hz
+    field = case.field((case.forces[0], second), hertz)
+    return measure(field, middle_half(case.beam), case.wavenumber(hertz)).standing_wave_ratio
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_ratio_leaves_no_reflection_where_equal_amplitudes_leave_1_8(direction):
+    """A brass cantilever with a tip mass; no phase on a fine circle does better at equal amplitudes."""
+    case = brass_case()
+    best = best_drive(case, direction=direction)
+    assert best.equal_standing_wave_ratio == pytest.approx(1.763, abs=1e-3)
+    circle = [swr(case, 1.0, phase) for phase in np.arange(-180.0, 180.0, 3.0)]
+    assert 0.0 <= min(circle) / best.equal_standing_wave_ratio - 1.0 < 3e-3
+    assert swr(case, 1.0, best.equal_phase_deg) == pytest.approx(best.equal_standing_wave_ratio, rel=1e-6)
+    assert best.standing_wave_ratio == pytest.approx(1.0, abs=1e-12)
+    assert swr(case, best.ratio, best.phase_deg) == pytest.approx(1.0, abs=1e-6)
+    assert (best.ratio, best.phase_deg) == pytest.approx((1.538, 47.957 * direction), abs=1e-3)
+    field = case.field(
+        (case.forces[0], point_force(0.28, best.ratio * np.exp(1j * np.deg2rad(best.phase_deg)))), 2000.0
+    )
+    assert measure(field, middle_half(case.beam)).waves.direction == direction
+
+
+@pytest.mark.parametrize("model", [ExactModel, lambda b: SegmentModel(b, 80), lambda b: HermiteModel(b, 80)])
+@pytest.mark.parametrize(
+    "settings", [{}, {"kind": "displacement"}, {"devices": (Device(position=0.26, dashpot=0.02),)}]
+)
+def test_every_model_has_its_best_ratio_under_forces_displacements_and_devices(model, settings):
+    case = brass_case(model, positions=(0.02, 0.28), loss_factor=0.01, **settings)
+    window = (0.08, 0.24)
+    best = best_drive(case, window)
+    second = point_force(0.28, best.ratio * np.exp(1j * np.deg2rad(best.phase_deg)))
+    field = case.field((case.forces[0], second), 2000.0)
+    assert measure(field, window, case.wavenumber(2000.0)).standing_wave_ratio == pytest.approx(1.0, abs=1e-6)
+    assert best.equal_standing_wave_ratio > 1.02
+
+
+def test_one_ratio_over_a_band_beats_every_other_in_the_mean_square():
+    case, band = brass_case(), np.linspace(1950.0, 2050.0, 7)
+    best = best_drive(case, frequencies_hz=band)
+    assert best.reflection.max() > 1e-3
+
+    def mean_square(ratio, phase_deg):
+        """Backward over forward power, of fields solved with both actuators at once."""
+        second = point_force(0.28, ratio * np.exp(1j * np.deg2rad(phase_deg)))
+        waves = [
+            measure(case.field((case.forces[0], second), f), middle_half(case.beam), case.wavenumber(f)).waves
+            for f in band
+        ]
+        return sum(abs(w.backward) ** 2 for w in waves) / sum(abs(w.forward) ** 2 for w in waves)
+
+    least = mean_square(best.ratio, best.phase_deg)
+    for ratio, phase in ((1.02, 0.0), (0.98, 0.0), (1.0, 1.5), (1.0, -1.5), (1.01, 1.0)):
+        assert mean_square(best.ratio * ratio, best.phase_deg + phase) > least
+    assert best_drive(case, frequencies_hz=band[:1]).reflection == pytest.approx([0.0], abs=1e-12)
+
+
+def test_a_drive_says_where_an_actuator_is_near_a_node_and_where_no_ratio_exists():
+    node = best_drive(brass_case(positions=(0.02, 0.28), frequency=5000.0))
+    assert node.ratio < 0.1
+    assert "the amplitude at 0.02 m is 15.9 times the other: it acts near a node, move it" in node.note
+    resonance = float(ExactModel(brass()).modes(10).frequencies_hz[9])
+    near, none = (best_drive(brass_case(frequency=resonance * (1.0 + off))) for off in (1e-4, 1e-7))
+    assert "nearly the same standing wave" in near.note
+    near.check_exists()
+    assert np.isnan(none.ratio)
+    with pytest.raises(NoFigureError, match="both actuators make the same standing wave"):
+        none.check_exists()
+    assert best_drive(brass_case()).note == ""
 
 
 # --- Lumped ---
@@ -179,7 +282,7 @@ def test_neighbours_of_a_pinned_beam_have_the_ratio_of_a_tangent(lower, part):
 
 def test_it_is_right_at_mid_span_of_the_papers_beam_and_wrong_at_a_quarter():
     """REFERENCE-motor, section 2: 1 and 2.414 where the field has 1.056 everywhere."""
-    field = analytic_modes.solve_harmonic(PAPER, TWO, 4276.0)
+    field = ExactModel(PAPER).harmonic(TWO, 4276.0)
     everywhere = local_swr(field, np.linspace(0.03, 0.47, 45))
     assert np.ptp(everywhere) < 1e-9
     assert everywhere[0] == pytest.approx(1.0563563, abs=1e-6)
@@ -198,7 +301,7 @@ def test_of_any_ends_the_near_fields_are_left_out(supports):
     parts = []
     for mode in picture.modes:
         k = picture.wavenumber(mode)
-        shape = analytic_modes.mode_shape(beam, mode, x)
+        shape = mode_shape(beam, mode, x)
         middle = slice(150, 250)
         basis = np.stack([np.exp(-1j * k * x[middle]), np.exp(1j * k * x[middle])], axis=1)
         parts.append(np.linalg.lstsq(basis, shape[middle].astype(complex), rcond=None)[0][:, None] * [[1.0]])
@@ -210,8 +313,8 @@ def test_of_any_ends_the_near_fields_are_left_out(supports):
 
 def test_local_waves_of_a_field_are_those_that_are_fitted_in_a_window():
     forces = [PointForce(position=0.04), PointForce(position=0.78, amplitude=0.7, phase_deg=55.0)]
-    field = analytic_modes.solve_harmonic(STRIP, forces, 2390.0)
-    fitted = travelling_wave.measure(field, window=(0.3, 0.5)).waves
+    field = ExactModel(STRIP).harmonic(forces, 2390.0)
+    fitted = measure(field, window=(0.3, 0.5)).waves
     plus, minus = (wave[0] for wave in local_waves(field, 0.4))
     assert (plus, minus) == (pytest.approx(fitted.forward, rel=1e-6), pytest.approx(fitted.backward, rel=1e-6))
 

@@ -7,23 +7,38 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from tests.reference import transfer
-from verify import Beam, PointForce, analytic_modes, fem_beam, load_scene, segment_model
+from verify import Beam, PointForce, Section
 from verify.analysis.solution_cache import SolutionCache
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError, NoFigureError, WindowError
 from verify.exact import error_laws
-from verify.linear.fields import HarmonicField, wavenumber
-from verify.problem.point_attachments import PointMass
-from verify.quantities.base import evaluate
-from verify.scene.load import scene_from
-from verify.waves.driven import measures, power_imbalance
-from verify.waves.series import measure_series, phasors
-from verify.waves.two_waves import ellipse, fit_waves, fitted_wavenumber, measure, surface_motion
-from verify.waves.waveguide import Medium
+from verify.fem_beam import HermiteModel
+from verify.linear.field import HarmonicField, wavenumber
+from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass, PointSpring
+from verify.segment_model import SegmentModel
+from verify.travelling_wave import (
+    DrivenCase,
+    best_frequency,
+    ellipse,
+    fit_waves,
+    measure,
+    measure_case,
+    measure_series,
+    middle_half,
+    phasors,
+    power_imbalance,
+    surface_motion,
+)
+from verify.travelling_wave import (
+    two_waves as fitted_waves,
+)
+from verify.waves.two_waves import fitted_wavenumber
+from verify.waves.waveguide import Waveguide
 
 # --- Travelling wave ---
 
-PAPER = load_scene("paper")
-BEAM = PAPER.beam
+BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 WINDOW = (0.125, 0.375)
 
 
@@ -49,7 +64,12 @@ def two_waves(forward, backward, k=135.2):
 def driven(phase=90.0, d=0.0116, eta=0.0, frequency=4276.0):
     beam = replace(BEAM, loss_factor=eta)
     forces = (PointForce(position=d), PointForce(position=0.5 - d, phase_deg=phase))
-    return analytic_modes.solve_harmonic(beam, forces, frequency)
+    return ExactModel(beam).harmonic(forces, frequency)
+
+
+def case(model, d=0.0116, phase=90.0, frequency=4276.0):
+    forces = (PointForce(position=d), PointForce(position=0.5 - d, phase_deg=phase))
+    return DrivenCase(model=model, forces=forces, frequency_hz=frequency)
 
 
 @settings(max_examples=60, deadline=None)
@@ -93,7 +113,8 @@ def test_the_same_from_time_series_with_trend_noise_and_broken_periods(gamma, pe
     found = measure_series(BEAM, x, times, series, 4276.0, k=135.2)
     assert found.reflection == pytest.approx(gamma, abs=1e-3)
     assert found.crest_speed == pytest.approx(measure(field, WINDOW, 135.2).crest_speed, rel=5e-3)
-    assert found.axis_ratio.mean() == pytest.approx(measure(field, WINDOW, 135.2).axis_ratio.mean(), rel=0.04)
+    wanted = measure(field, WINDOW, 135.2)
+    assert found.ellipses[0].mean() == pytest.approx(wanted.ellipses[0].mean(), rel=0.04)
 
 
 def test_series_too_short_to_measure_are_refused():
@@ -104,14 +125,6 @@ def test_series_too_short_to_measure_are_refused():
         phasors(np.linspace(0, 2 / 4276, 6), np.zeros((6, 5)), 4276.0)
     with pytest.raises(InputError, match="half a wavelength"):
         measure_series(BEAM, np.linspace(0.2, 0.21, 30), np.linspace(0, 1e-2, 300), np.zeros((300, 30)), 4276.0)
-
-
-@pytest.mark.parametrize("window", [(0.005, 0.3), (0.2, 0.495)])
-def test_a_wave_in_time_is_not_measured_across_a_force(window):
-    scene, found = load_scene("paper-slider"), "motion.reflection"
-    given = {"model": "analytic", "start": "steady", "time": 0.0011, "window": list(window)}
-    with pytest.raises(WindowError, match="leaves the span between two forces"):
-        evaluate(found, given, scene, SolutionCache(scene.beam))
 
 
 def test_the_ellipse_of_a_point_is_that_of_its_path():
@@ -132,12 +145,12 @@ def test_the_ellipse_of_a_point_is_that_of_its_path():
 
 def test_a_wave_towards_plus_x_turns_counter_clockwise_and_moves_crests_backwards():
     found = measure(two_waves(1e-6, 0.0), WINDOW, 135.2)
-    assert found.rotation == "counter-clockwise"
-    assert found.axis_ratio == pytest.approx(np.full(len(found.x), -found.ideal_axis_ratio), rel=1e-12)
+    assert found.signed_area_range[2] < 0.0
+    assert found.ellipses[0] == pytest.approx(np.full(len(found.x), -found.ideal_axis_ratio), rel=1e-12)
     assert found.crest_speed == pytest.approx(-2 * np.pi * 4276 * 0.0005 * 135.2 * 1e-6, rel=1e-12)
     field = two_waves(1e-6, 0.0)
     t = -np.angle(field.deflection(0.2)[0]) / field.omega  # when the surface point at x = 0.2 is highest
-    speed = (1j * field.omega * surface_motion(BEAM, field.slope(0.2)) * np.exp(1j * field.omega * t)).real[0]
+    speed = (1j * field.omega * surface_motion(BEAM, field.slope(0.2), [0.2]) * np.exp(1j * field.omega * t)).real[0]
     assert speed == pytest.approx(found.crest_speed, rel=1e-9)
 
 
@@ -182,56 +195,25 @@ def test_the_signed_area_is_the_energy_flux():
     """S3 = -(h k_0...) far from forces: flux = -omega EI k^2 / h * S3 for any two waves."""
     found = measure(driven(phase=37.0), WINDOW, driven().wavenumber)
     k = found.waves.wavenumber.real
-    flux = -2 * np.pi * 4276 * BEAM.bending_stiffness * k**2 / BEAM.thickness * found.signed_area.mean()
+    flux = -2 * np.pi * 4276 * BEAM.bending_stiffness * k**2 / BEAM.thickness * found.ellipses[2].mean()
     assert flux == pytest.approx(found.energy_flux, rel=1e-6)
 
 
-def test_the_discrete_wavenumbers_are_the_inverse_of_the_discrete_dispersion():
-    for model in ("segment", "fem"):
-        for mode in (3, 22, 40):
-            frequency = error_laws.dispersion_frequency_hz(model, BEAM, mode, 49)
-            assert error_laws.discrete_wavenumber(model, BEAM, 49, frequency) == pytest.approx(
-                mode * np.pi / 0.5, rel=1e-9
-            )
-    assert error_laws.discrete_wavenumber("segment", BEAM, 49, 4276.0).real * 0.5 / np.pi == pytest.approx(
-        21.559, abs=5e-4
-    )
-    damped = replace(BEAM, loss_factor=0.02)
-    assert error_laws.discrete_wavenumber("segment", damped, 4000, 4276.0) == pytest.approx(
-        wavenumber(damped, 4276.0), rel=1e-7
-    )
-
-
 def test_the_ratio_and_the_flux_of_elements_do_not_drift_with_the_mesh():
-    bench = SolutionCache(BEAM)
-    arguments = {"model": "fem", "count": 100_000}
-    for name, exact in (("wave.standing_wave_ratio", 1.05635631395), ("wave.energy_flux", 0.0233318340824)):
-        found = name
-        assert evaluate(found, arguments, PAPER, bench) == pytest.approx(exact, rel=2e-8)
+    found = measure_case(case(HermiteModel(BEAM, 20_000)), SolutionCache(BEAM))
+    assert found.standing_wave_ratio == pytest.approx(1.05635631395, rel=2e-8)
+    assert found.energy_flux == pytest.approx(0.0233318340824, rel=2e-8)
 
 
-@pytest.mark.parametrize(("model", "fewest", "counts"), [("segment", 26, (3, 10, 20, 25)), ("fem", 22, (1, 12, 21))])
-def test_a_mesh_that_cannot_carry_the_wave_is_refused_with_the_fewest_parts_that_can(model, fewest, counts):
-    bench = SolutionCache(BEAM)
-    for name, more in (("wave.standing_wave_ratio", {}), ("wave.deflection", {"x": 0.3})):
-        found = name
-        for count in counts:
-            with pytest.raises(NoFigureError, match=f"give count = {fewest} or more"):
-                evaluate(found, {"model": model, "count": count} | more, PAPER, bench)
-        assert np.isfinite(evaluate(found, {"model": model, "count": fewest} | more, PAPER, bench))
-    assert error_laws.cut_off_hz(model, BEAM, fewest - 1) <= 4276.0 < error_laws.cut_off_hz(model, BEAM, fewest)
-    with pytest.raises(NoFigureError, match="give count = "):
-        error_laws.check_carried(model, BEAM, 7, 1e300)
-
-
-@pytest.mark.parametrize("model", ["segment", "fem"])
-def test_the_cut_off_is_where_half_a_wave_stands_on_each_part(model):
-    """At mu = pi the joints stand still in turns: the exact discrete frequency there, from just below."""
-    beam = replace(BEAM, supports=("pinned", "guided"))  # mu = (n - 1/2) pi / N, not pi itself
-    below = error_laws.dispersion_frequency_hz(model, beam, 1000, 1000)
-    assert below == pytest.approx(error_laws.cut_off_hz(model, beam, 1000), rel=2e-5)
-    assert below < error_laws.cut_off_hz(model, beam, 1000)
-    assert error_laws.discrete_wavenumber(model, beam, 1000, below) == pytest.approx(999.5 * np.pi / 0.5, rel=1e-8)
+@pytest.mark.parametrize(("model", "fewest"), [(SegmentModel, 26), (HermiteModel, 22)])
+def test_a_mesh_that_cannot_carry_the_wave_is_refused_with_the_fewest_parts_that_can(model, fewest):
+    for count in (3, 10, 20, fewest - 1):
+        with pytest.raises(NoFigureError, match=f"give count = {fewest} or more"):
+            measure_case(case(model(BEAM, count)), SolutionCache(BEAM))
+    assert np.isfinite(measure_case(case(model(BEAM, fewest)), SolutionCache(BEAM)).standing_wave_ratio)
+    assert (
+        error_laws.cut_off_hz(model.name, BEAM, fewest - 1) <= 4276.0 < error_laws.cut_off_hz(model.name, BEAM, fewest)
+    )
 
 
 @pytest.mark.parametrize("factor", [0.9, 1.07])
@@ -242,22 +224,24 @@ def test_a_wavenumber_fitted_to_the_edge_of_its_search_is_refused(factor):
     assert measure(field, WINDOW, 135.2 * factor).reflection == pytest.approx(0.2, rel=1e-9)
 
 
-def test_two_drives_in_phase_have_no_best_frequency():
-    best = "wave.best_frequency"
+def test_the_best_frequency_is_where_the_law_is_least():
+    """|cos kL| is least at a quarter between two resonances."""
+    between = (21.5 * np.pi / 0.5) ** 2 * BEAM.wave_constant / (2 * np.pi)
+    assert best_frequency(case(ExactModel(BEAM))) == pytest.approx(between, abs=2e-3)
     for phase in (0.0, 180.0):
         with pytest.raises(InputError, match="the wave stands at every frequency"):
-            evaluate(best, {"phase_deg": phase}, PAPER, SolutionCache(BEAM))
+            best_frequency(case(ExactModel(BEAM), phase=phase))
+    with pytest.raises(InputError, match="still falls at the edge"):
+        best_frequency(case(ExactModel(BEAM)), 0.001)
 
 
-@pytest.mark.parametrize("position", [0.0, 0.5])
-@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 49), ("fem", 49)])
-def test_a_force_on_a_support_makes_no_wave_to_measure(model, count, position):
-    found = "wave.standing_wave_ratio"
-    given = {"model": model, "position": position} | ({"count": count} if count else {})
+@pytest.mark.parametrize(
+    "model", [ExactModel(BEAM), SegmentModel(BEAM, 49), HermiteModel(BEAM, 49)], ids=lambda m: m.name
+)
+def test_a_force_on_a_support_makes_no_wave_to_measure(model):
     with pytest.raises(NoFigureError, match="the field is zero in the window"):
-        evaluate(found, given, PAPER, SolutionCache(BEAM))
-    near = given | {"position": abs(position - 1e-6)}
-    assert evaluate(found, near, PAPER, SolutionCache(BEAM)) < 2.0
+        measure_case(case(model, d=0.0), SolutionCache(BEAM))
+    assert measure_case(case(model, d=1e-6), SolutionCache(BEAM)).standing_wave_ratio < 2.0
 
 
 @pytest.mark.parametrize(
@@ -276,66 +260,77 @@ def test_windows_that_measure_nothing_are_refused(window, message):
         measure(driven(), window)
 
 
-@pytest.mark.parametrize("name", ["wave.signed_area_spread", "wave.power_imbalance"])
-def test_what_relates_to_the_flux_of_a_standing_wave_is_refused(name):
-    found = name
-    with pytest.raises(InputError, match="the wave stands"):
-        evaluate(found, {"phase_deg": 0.0}, PAPER, SolutionCache(BEAM))
+def test_what_relates_to_the_flux_of_a_standing_wave_is_refused():
+    field = driven(phase=0.0)
+    found = measure(field, WINDOW, field.wavenumber)
+    with pytest.raises(NoFigureError, match="the wave stands"):
+        power_imbalance(field, found)
+    with pytest.raises(NoFigureError, match="the wave stands"):
+        assert found.signed_area_spread
+
+
+@pytest.mark.parametrize(
+    ("beam", "devices", "message"),
+    [
+        (replace(BEAM, mass=(PointMass(position=0.3, mass=1e-3),)), (), r"holds a mass or a spring at \[0\.3\] m"),
+        (replace(BEAM, spring=(PointSpring(position=0.2, stiffness=9.0),)), (), "holds a mass or a spring"),
+        (BEAM, (Device(position=0.21, dashpot=0.1),), r"leaves the span between two forces .*0\.21"),
+        (BEAM, (Device(position=0.21, rotational_dashpot=1e-4),), r"holds a device against rotation at \[0\.21\] m"),
+        (replace(BEAM, foundation=1e9), (), "no wave runs below"),
+    ],
+)
+def test_a_window_holds_no_attachment_no_device_and_a_wave(beam, devices, message):
+    field = ExactModel(beam).harmonic(driven().forces, 4276.0, devices=devices)
+    with pytest.raises(WindowError, match=message):
+        fitted_waves(field, WINDOW)
 
 
 # --- Patched strips ---
 
 PATCH = {"bending_stiffness": 0.35, "mass_per_length": 0.11}
-SECTIONS = [{"length": 0.03}, {"length": 0.03, **PATCH}, {"length": 0.3}, {"length": 0.03, **PATCH}, {"length": 0.03}]
-SCENE = {
-    "name": "patches",
-    "beam": {
-        "length": 0.42,
-        "width": 0.018,
-        "thickness": 0.0012,
-        "youngs_modulus": 70e9,
-        "density": 2700.0,
-        "supports": ["free", "free"],
-        "loss_factor": 1e-3,
-        "section": SECTIONS,
-        "spring": [{"position": 0.0, "stiffness": 3e5}, {"position": 0.42, "stiffness": 2e5}],
-    },
-    "drive": {"frequency_hz": 1700.0, "force": [{"position": 0.045}, {"position": 0.372, "phase_deg": 90.0}]},
-}
+PATCHED = Beam(
+    length=0.42,
+    width=0.018,
+    thickness=0.0012,
+    youngs_modulus=70e9,
+    density=2700.0,
+    supports=("free", "free"),
+    loss_factor=1e-3,
+    section=tuple(
+        Section(length=length, **(PATCH if patched else {}))
+        for length, patched in ((0.03, 0), (0.03, 1), (0.3, 0), (0.03, 1), (0.03, 0))
+    ),
+    spring=(PointSpring(position=0.0, stiffness=3e5), PointSpring(position=0.42, stiffness=2e5)),
+)
+PUSHES = (PointForce(position=0.045), PointForce(position=0.372, phase_deg=90.0))
 
 
-def scene(**tables):
-    return scene_from(SCENE | tables)
-
-
-def figure(name, whole=None, **asked):
-    loaded = whole or scene()
-    return evaluate(name, asked, loaded, SolutionCache(loaded.beam))
+def patched(model, window=(0.105, 0.315)):
+    field = model.harmonic(PUSHES, 1700.0)
+    return measure(field, window, field.wavenumber)
 
 
 def test_both_models_come_to_the_exact_standing_wave_ratio_of_a_patched_strip():
-    exact = figure("wave.standing_wave_ratio", model="analytic")
-    for model in ("segment", "fem"):
-        coarse, fine = (abs(figure("wave.standing_wave_ratio", model=model, count=n) / exact - 1) for n in (140, 280))
+    exact = patched(ExactModel(PATCHED)).standing_wave_ratio
+    for model in (SegmentModel, HermiteModel):
+        coarse, fine = (abs(patched(model(PATCHED, n)).standing_wave_ratio / exact - 1) for n in (140, 280))
         assert coarse < 2e-3, model
         assert 3.0 < coarse / fine < 20.0, model
 
 
 def test_the_flux_through_the_strip_is_the_same_all_along_it_but_for_losses():
-    lossless = scene(beam=SCENE["beam"] | {"loss_factor": 0.0})
-    left, right = (
-        figure("wave.energy_flux", lossless, model="analytic", window=w) for w in ([0.16, 0.21], [0.21, 0.26])
-    )
+    model = ExactModel(replace(PATCHED, loss_factor=0.0))
+    left, right = (patched(model, window).energy_flux for window in ((0.16, 0.21), (0.21, 0.26)))
     assert left == pytest.approx(right, rel=2e-4)
 
 
 def test_a_window_over_a_patch_is_refused_and_one_beside_it_is_not():
     with pytest.raises(WindowError, match=r"holds a beam\.section other than the beam's own"):
-        figure("wave.standing_wave_ratio", model="analytic", window=[0.05, 0.25])
-    assert figure("wave.standing_wave_ratio", model="analytic", window=[0.06, 0.25]) > 1.0
+        patched(ExactModel(PATCHED), (0.05, 0.25))
+    assert patched(ExactModel(PATCHED), (0.06, 0.25)).standing_wave_ratio > 1.0
 
 
-# --- Turns ---
+# --- Rotations of thick beams ---
 
 BAR = Beam(
     length=0.2,
@@ -347,14 +342,17 @@ BAR = Beam(
     loss_factor=0.01,
     supports=("free", "clamped"),
 )
-SOLVERS = {"analytic": (analytic_modes, ()), "fem": (fem_beam, (120,)), "segment": (segment_model, (400,))}
+SOLVERS = {
+    "analytic": lambda b, theory: ExactModel(b, theory=theory),
+    "fem": lambda b, theory: HermiteModel(b, 120, theory=theory),
+    "segment": lambda b, theory: SegmentModel(b, 400, theory=theory),
+}
 FORCE = (PointForce(position=0.045),)
 EVERYWHERE = np.linspace(0.0, 0.2, 61)
 
 
-def solve(model, beam, forces=FORCE, hertz=23000.0, theory="timoshenko", **settings):
-    module, count = SOLVERS[model]
-    return module.solve_harmonic(beam, forces, hertz, *count, theory=theory, **settings)
+def solve(model, beam, forces=FORCE, hertz=23000.0, theory="timoshenko"):
+    return SOLVERS[model](beam, theory).harmonic(forces, hertz)
 
 
 @pytest.mark.parametrize("supports", [("free", "clamped"), ("pinned", "guided"), ("guided", "free")], ids="-".join)
@@ -363,14 +361,14 @@ def test_every_model_turns_as_the_states_along_the_beam_do(supports):
     places = [0.003, 0.043, 0.11, 0.187]
     exact = np.array([transfer.state(beam, "timoshenko", 23000.0, 0.045, x)[1] for x in places])
     for model, within in (("analytic", 1e-11), ("fem", 2e-3), ("segment", 2e-3)):
-        assert abs(solve(model, beam).turn(places) - exact).max() < within * abs(exact).max()
+        assert abs(solve(model, beam).rotation(places) - exact).max() < within * abs(exact).max()
 
 
 def test_what_is_clamped_keeps_its_section_upright_while_its_line_slopes():
     for model in SOLVERS:
         field = solve(model, BAR)
-        size = abs(field.turn(EVERYWHERE)).max()
-        assert abs(field.turn(0.2)) < 1e-12 * size
+        size = abs(field.rotation(EVERYWHERE)).max()
+        assert abs(field.rotation(0.2)) < 1e-12 * size
     field = solve("analytic", BAR)
     assert abs(field.slope(0.2)) > 0.1 * size
 
@@ -379,7 +377,7 @@ def test_shear_balances_what_the_bar_between_two_places_is_driven_with():
     """(kappa G A (w' - psi))' = -rho A omega^2 w over a stretch without forces, with the loss in kappa G A."""
     field = solve("analytic", BAR)
     stiffness = BAR.own.shear_stiffness * (1.0 + 0.01j)
-    ends = [stiffness * (field.slope(x) - field.turn(x)) for x in (0.06, 0.16)]
+    ends = [stiffness * (field.slope(x) - field.rotation(x)) for x in (0.06, 0.16)]
     points, weights = np.polynomial.legendre.leggauss(40)
     swung = 0.05 * weights @ field.deflection(0.11 + 0.05 * points)
     assert ends[1] - ends[0] == pytest.approx(-BAR.mass_per_length * field.omega**2 * swung, rel=1e-11)
@@ -387,9 +385,9 @@ def test_shear_balances_what_the_bar_between_two_places_is_driven_with():
 
 def test_the_turn_of_links_has_order_two_next_to_a_clamped_wall():
     beam, near = replace(BAR, supports=("clamped", "clamped")), 0.2 - np.array([0.0003, 0.0011, 0.0024])
-    true = solve("analytic", beam).turn(near)
+    true = solve("analytic", beam).rotation(near)
     off = [
-        abs(segment_model.solve_harmonic(beam, FORCE, 23000.0, n, theory="timoshenko").turn(near) - true).max()
+        abs(SegmentModel(beam, n, theory="timoshenko").harmonic(FORCE, 23000.0).rotation(near) - true).max()
         for n in (200, 400)
     ]
     assert off[1] < 0.3 * off[0]
@@ -399,16 +397,16 @@ def test_the_turn_of_links_has_order_two_next_to_a_clamped_wall():
 @pytest.mark.parametrize("model", SOLVERS)
 def test_what_does_not_shear_turns_as_its_line_slopes(model, theory):
     field = solve(model, BAR, theory=theory)
-    assert (field.turn(EVERYWHERE) == field.slope(EVERYWHERE)).all()
+    assert (field.rotation(EVERYWHERE) == field.slope(EVERYWHERE)).all()
 
 
 def test_a_pure_wave_turns_its_sections_as_the_medium_says_with_losses_too():
     """Far from the force on a long bar with an end that swallows nothing in time: e^{-ikx} times what is left of it."""
     beam = replace(BAR, length=3.0, loss_factor=0.08, supports=("pinned", "pinned"))
     field = solve("analytic", beam, (PointForce(position=0.1),), 30000.0)
-    turn = Medium(beam, "timoshenko").turn(field.omega)
-    assert field.turn(1.0) / field.slope(1.0) == pytest.approx(turn, rel=1e-5)
-    assert abs(turn.imag) > 1e-3
+    ratio = Waveguide(beam, "timoshenko").rotation_ratio(field.omega)
+    assert field.rotation(1.0) / field.slope(1.0) == pytest.approx(ratio, rel=1e-5)
+    assert abs(ratio.imag) > 1e-3
 
 
 @pytest.mark.parametrize(("model", "within"), [("analytic", 1e-7), ("fem", 1e-3)])
@@ -416,9 +414,9 @@ def test_a_pure_wave_turns_its_sections_as_the_medium_says_with_losses_too():
 def test_forces_give_what_bending_and_shear_lose_and_waves_carry(model, within, loss_factor):
     beam = replace(BAR, length=0.9, loss_factor=loss_factor, supports=("pinned", "clamped"))
     forces = (PointForce(position=0.04, amplitude=3.0), PointForce(position=0.86, amplitude=2.0, phase_deg=60.0))
-    count = {"analytic": (), "fem": (450,)}[model]
-    field = SOLVERS[model][0].solve_harmonic(beam, forces, 47000.0, *count, theory="timoshenko")
-    assert abs(power_imbalance(field, measures(field, None))) < within
+    one = ExactModel(beam, theory="timoshenko") if model == "analytic" else HermiteModel(beam, 450, theory="timoshenko")
+    field = one.harmonic(forces, 47000.0)
+    assert abs(power_imbalance(field, measure(field, middle_half(beam), field.wavenumber))) < within
 
 
 @pytest.mark.parametrize("hertz", [9000.0, 47000.0])
@@ -426,36 +424,30 @@ def test_the_ellipse_of_a_pure_wave_is_as_high_as_its_section_turns(hertz):
     """By the shear that carries a wave's inertia: psi = (k - rho A omega^2 / (kappa G A k)) w, times h/2."""
     beam = replace(BAR, length=0.9, loss_factor=0.0, supports=("pinned", "pinned"))
     forces = (PointForce(position=0.04, amplitude=3.0), PointForce(position=0.86, amplitude=2.0, phase_deg=60.0))
-    field, piece = analytic_modes.solve_harmonic(beam, forces, hertz, theory="timoshenko"), beam.pieces[0]
+    field, piece = ExactModel(beam, theory="timoshenko").harmonic(forces, hertz), beam.pieces[0]
     k = field.wavenumber.real
     turn = k - piece.mass_per_length * (2.0 * np.pi * hertz) ** 2 / (piece.shear_stiffness * k)
-    assert measures(field, None).ideal_axis_ratio == pytest.approx(turn * 0.009, rel=1e-9)
+    assert measure(field, middle_half(beam), field.wavenumber).ideal_axis_ratio == pytest.approx(turn * 0.009, rel=1e-9)
     assert turn < 0.98 * k
 
 
 @pytest.mark.parametrize("x", [0.001, 0.03, 0.1, 0.195])
 def test_a_surface_point_near_forces_and_ends_moves_as_its_section_turns(x):
-    paper = load_scene("paper-wave")
     forces = (PointForce(position=0.02), PointForce(position=0.17, phase_deg=90.0))
-    given = tuple(
-        replace(one, position=at, measured_from="left") for one, at in zip(paper.drive.force, (0.02, 0.17), strict=True)
-    )
-    assert [(f.amplitude, f.phase_deg) for f in paper.drive.force] == [(1.0, 0.0), (1.0, 90.0)]
-    scene = replace(paper, beam=BAR, drive=replace(paper.drive, frequency_hz=30000.0, force=given))
     lifts, turns = np.array([transfer.state(BAR, "timoshenko", 30000.0, one.position, x)[:2] for one in forces]).T
     up, across = lifts @ [1.0, 1j], -0.009 * (turns @ [1.0, 1j])
     area = 2.0 * (np.conj(across) * up).imag / (abs(across) ** 2 + abs(up) ** 2)
     exact = np.tan(0.5 * np.arcsin(area))
-    ratio = "wave.axis_ratio"
-    for given, within in (({"model": "analytic"}, 1e-10), ({"model": "fem", "count": 100}, 1e-3)):
-        asked = given | {"theory": "timoshenko", "x": x}
-        assert evaluate(ratio, asked, scene, SolutionCache(BAR)) == pytest.approx(exact, rel=within)
+    for model, within in (("analytic", 1e-10), ("fem", 1e-3)):
+        field = solve(model, BAR, forces, 30000.0)
+        found = ellipse(surface_motion(BAR, field.rotation(x), x), field.deflection(x))[0]
+        assert found == pytest.approx([exact], rel=within)
 
 
 @pytest.mark.parametrize("theory", ["rayleigh", "timoshenko"])
 def test_a_chains_field_tends_to_the_exact_one_of_its_own_theory(theory):
-    """What rotary inertia and shear do to a thick bar is no error of its segments: by 40 of them it is far more."""
-    scene, of = load_scene("thick-bar"), "wave.order"
-    given = {"model": "segment", "counts": [40, 80, 160], "of": "deflection", "window": [0.12, 0.21]}
-    asked = given | {"theory": theory}
-    assert evaluate(of, asked, scene, SolutionCache(scene.beam)) == pytest.approx(2.0, abs=0.1)
+    """Rotary inertia and shear of a thick bar are no error of its segments, by 40 of which they are far more."""
+    exact = ExactModel(BAR, theory=theory).harmonic(FORCE, 23000.0).deflection([0.12, 0.165])
+    fields = [SegmentModel(BAR, n, theory=theory).harmonic(FORCE, 23000.0).deflection([0.12, 0.165]) for n in (80, 160)]
+    errors = [np.linalg.norm(field - exact) for field in fields]
+    assert np.log2(errors[0] / errors[1]) > 1.9

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from verify.arrays import Array
 from verify.bench.work_precision import Method, Question
 from verify.errors import InputError, near_name
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
@@ -66,7 +66,7 @@ def modes(problem: Problem) -> Iterator[Question]:
     exact = exact_frequency_hz(beam, mode)
 
     def solver(model: str, **settings: str) -> Callable[[int], float]:
-        return lambda n: float(MODELS[model].solve_modes(beam, mode, n, **settings).frequencies_hz[mode - 1])
+        return lambda n: float(MODELS[model].build(beam, n, **settings).modes(mode).frequencies_hz[mode - 1])
 
     segments, elements = solver("segment"), solver("fem")
     methods = [
@@ -88,7 +88,7 @@ def field(problem: Problem) -> Iterator[Question]:
 
     def solver(model: str, shift: float = 0.0) -> Callable[[Any], Any]:
         hertz = problem.frequency_hz * (1.0 + shift)
-        return lambda n: MODELS[model].solve_harmonic(problem.beam, problem.forces, hertz, n or None).deflection(x)
+        return lambda n: MODELS[model].build(problem.beam, n or None).harmonic(problem.forces, hertz).deflection(x)
 
     exact = solver("analytic")(None)
     rounding = rms(solver("analytic", 1e-7)(None), exact) * 1e7 * 8 * np.finfo(float).eps
@@ -222,7 +222,7 @@ def engines(problem: Problem) -> Iterator[Question]:
 
     ours = Method(
         "segments",
-        lambda n: float(MODELS["segment"].solve_modes(beam, mode, n).frequencies_hz[mode - 1]),
+        lambda n: float(MODELS["segment"].build(beam, n).modes(mode).frequencies_hz[mode - 1]),
         problem.sizes[:4],
     )
     theirs = [Method(name, frequency(adapter), problem.sizes[:4]) for name, adapter in adapters.items()]

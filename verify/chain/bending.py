@@ -14,10 +14,9 @@ from verify.chain.statics import MAX_TURN, SETTLED, TOLERANCE, Forces, forces_at
 from verify.chain.system import ChainSystem, LinkLoad, build_system
 from verify.checks import check_number, check_whole, check_word
 from verify.errors import InputError, shown
-from verify.linear.places import Numbers, as_typed, in_a_row
+from verify.linear.positions import Numbers, as_vector
 from verify.options import JOINTS, Joints, Wall
 from verify.problem.beam import Beam
-from verify.segments.linear import check
 
 SAFE = 0.9
 """Of the buckling load: how far a load is raised at once."""
@@ -63,7 +62,6 @@ class Bent(Struct, frozen=True, eq=False, kw_only=True):
         return self.beam.length - float(self.joints[-1, 0])
 
 
-@as_typed
 def bend(
     beam: Beam,
     count: int,
@@ -88,7 +86,6 @@ def bend(
     check_whole("count", count, 2)
     along, across = _along_and_across(load)
     check_number("moment", moment, "N m")
-    check(beam, 1, count, wall=wall, joints=joints)
     system = build_system(structs.replace(beam, loss_factor=0.0), count, wall=wall, joints=joints)
     end = LinkLoad(link=count, at=float(system.lengths[-1]), force=(along, across), moment=float(moment))
     turned = led_to(replace(system, loads=(end,)), along, across, float(moment))
@@ -121,7 +118,7 @@ def _check_cantilever(beam: Beam, joints: Joints) -> None:
 
 def _along_and_across(load: Numbers) -> tuple[float, float]:
     """The parts of a load, newton. Raises InputError."""
-    force = in_a_row("load", load, "newton")
+    force = as_vector("load", load, "newton")
     if force.shape not in ((1,), (2,)):
         raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")
     return (float(force[0]), float(force[1])) if len(force) == 2 else (0.0, float(force[0]))

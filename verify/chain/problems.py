@@ -16,7 +16,7 @@ from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
 from verify.problem.beam import Beam, PointForce
-from verify.segments.links import link_inertia
+from verify.segments.chain import link_inertia
 
 Progress = Callable[[float], None]
 """Called with the fraction of a motion done, 0 to 1."""
@@ -265,11 +265,11 @@ def contact_line_error(
     """
     from verify.chain.ride import touched
     from verify.exact.modes import mode_shape
-    from verify.segments.linear import solve_modes
+    from verify.segment_model import SegmentModel
 
     check_whole("segments", n_segments, 2)
     system = build_system(beam, n_segments, wall=wall, grading=grading)
-    joints = solve_modes(beam, mode, n_segments, wall=wall, grading=grading).readings["raw"]()[mode - 1]
+    joints = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode).readings["raw"]()[mode - 1]
     size = 1e-6 * beam.length / float(abs(joints).max())
     pieces, edges = touched(system, size * np.diff(joints), x)
     xi = np.linspace(0.0, 1.0, 17)

@@ -32,7 +32,7 @@ from verify.problem.slider import Slider
 from verify.segments.reading import contact_line, contact_piece
 
 if TYPE_CHECKING:
-    from verify.linear.fields import HarmonicField
+    from verify.linear.field import HarmonicField
 
 
 class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,7 +1,7 @@
 """The chain with links that stretch (EA / l): axial inertia as a beam has it, at the price of axial waves.
 
 Rigid links carry a spurious axial inertia (`ChainSystem.axial_inertia`). Here every link is a uniform bar that
-stretches evenly, its inertia that of a link (`segments.links.joint_masses`) along both directions. Both ends may be
+stretches evenly, its inertia that of a link (`segments.chain.joint_masses`) along both directions. Both ends may be
 immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
 """
 
@@ -20,7 +20,7 @@ from verify.chain.system import ChainSystem, circular, link_at
 from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
 from verify.motion.result import END, Statistics
-from verify.segments.links import joint_masses
+from verify.segments.chain import joint_masses
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

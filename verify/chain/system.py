@@ -16,9 +16,9 @@ from verify.errors import InputError
 from verify.linear.mesh import divide
 from verify.options import TIPS, Joints, Load, Tip, Wall
 from verify.problem.beam import Beam, PointForce
-from verify.segments.assembly import build_chain
-from verify.segments.links import Chain
-from verify.segments.loads import joint_weights
+from verify.segment_model import SegmentModel
+from verify.segments.attachments import joint_weights
+from verify.segments.chain import Chain
 
 MAX_ACTUATORS = 4
 
@@ -208,7 +208,7 @@ def build_system(
     check_buildable(beam, wall)
     beam.check_added("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
-    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
+    chain = SegmentModel(beam, n_segments, wall=wall, joints=joints, grading=grading).chain
     unit, mass = chain.unit, beam.mass_per_length
     stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
     system = ChainSystem(
@@ -240,9 +240,7 @@ def straight_chain(system: ChainSystem, *, unit: float = 1.0, mass: float = 1.0,
     right = "pinned" if system.tip == "roller" else "free"
     return Chain(
         supports=(left, right),
-        rigid_motions=int(left == "pinned" and right == "free"),
         unit=unit,
-        start=0.0,
         lengths=system.lengths / unit,
         compliances=compliances,
         masses=system.masses / mass,
@@ -300,7 +298,7 @@ def link_at(system: ChainSystem, position: float) -> tuple[int, float]:
 def _shares(chain: Chain, system: ChainSystem, position: float, rule: str) -> list[tuple[int, float, float]]:
     if rule == "lever":
         return [(*link_at(system, position), 1.0)]
-    weights = joint_weights(chain, position, rule)
+    weights = joint_weights(chain, np.array([position]), rule).toarray()[0]
     return [
         (max(i, 1), float(system.lengths[i - 1]) if i else 0.0, float(weight))
         for i, weight in enumerate(weights)

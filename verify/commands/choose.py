@@ -23,7 +23,7 @@ def choose(
     RULE=VALUE sets up the models: wall=half,gregory joints=printed theory=timoshenko grading=2 attachment=lever.
     Example: `verify choose steel-cantilever --mode 5 --error 0.1%`
     """
-    from verify.analysis.sizing import choose_of_all
+    from verify.analysis.sizing import choose as choose_sizes
     from verify.analysis.solution_cache import SolutionCache
     from verify.exact.plate import plate_warnings
     from verify.report.result import Column, Result, Table
@@ -31,19 +31,20 @@ def choose(
 
     modes, largest, chosen = _modes(mode), _error(error), _rules(rules)
     beam = load_scene(scene, overrides).beam
-    choices, skipped = choose_of_all(SolutionCache(beam), modes, largest, chosen)
-    plate = plate_warnings(beam, {one.mode: [c.error for c in choices if c.mode == one.mode] for one in choices})
+    choices, skipped = choose_sizes(SolutionCache(beam), modes, largest, chosen)
+    numbers = {one.size.mode for one in choices}
+    plate = plate_warnings(beam, {n: [c.error for c in choices if c.size.mode == n] for n in numbers})
     rows = [
         (
-            *(one.variant.title, one.count, one.mode, one.unknowns, one.error, one.expected_error, one.run_time_s),
-            *(one.smaller, ", ".join(map(str, one.lower))),
+            *(one.variant.title, one.size.count, one.size.mode, one.unknowns, one.error, one.expected_error),
+            *(one.run_time_s, one.size.smaller, ", ".join(map(str, one.lower))),
         )
         for one in choices
     ]
     columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
     columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
-    notes = [f"{one.variant.title}: {one.known_by}" for one in choices]
+    notes = [f"{one.variant.title}: {one.size.known_by}" for one in choices]
     result = Result(
         f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
         [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],

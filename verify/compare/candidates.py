@@ -7,15 +7,17 @@ from itertools import product
 import msgspec
 import numpy as np
 
-from verify.analysis.variants import has_wall, told_by_lever
+from verify.analysis.variants import attached_within, has_wall
 from verify.arrays import Array
 from verify.compare.discrete import DiscreteBeam
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.options import THEORIES, WALLS
 from verify.problem.beam import Beam
 
 EXACT, CHAIN, ELEMENTS = "analytic", "segment", "fem"
 EULER = "euler-bernoulli"
+FINE = 60
+"""Segments with which orders are looked up."""
 LABELS = {
     EXACT: "exact beam",
     "links": "rigid links",
@@ -96,7 +98,7 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
             even = "free" not in beam.supports and not beam.stepped and self.theory == EULER
             return 4 if self.mass == "consistent" or (self.mass == "lumped" and even) else 2
         rules = {"joints": self.joints, "theory": EULER if self.mass == "rod" else self.theory}
-        known = MODELS[CHAIN].order(beam, **rules, attachment=self.attachment)
+        known = MODELS[CHAIN].build(beam, FINE, **rules, attachment=self.attachment).expected_order()
         highest = min(ORDERS.get(self.wall or "", 4), 4 if self.mass == "links" else 2)
         return None if known is None else min(known, highest)
 
@@ -125,7 +127,7 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
             continue
         yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=theory)
     common: tuple[str | None, ...] = ("half", "gregory", "full", "rigid") if clamped else (None,)
-    if told_by_lever(beam):
+    if attached_within(beam):
         for joints, wall in product(rules, [wall for wall in common if wall not in others]):
             yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, attachment="lever")
     for mass, wall in product(("points", "joints"), common):
@@ -142,11 +144,10 @@ def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes:
     if candidate.packaged:
         model = MODELS[candidate.model]
         if count is not None:
-            full = min(model.n_elastic(beam, count), model.n_elastic(beam, count, **settings))
-            n_modes = min(n_modes, full if count >= model.fewest else 0)
+            n_modes = min(n_modes, model.build(beam, count, **settings).n_elastic if count >= model.fewest else 0)
         if n_modes < 1:
             return np.empty(0)
-        return np.asarray(model.solve_modes(beam, n_modes, count, **settings).frequencies_hz)  # type: ignore[arg-type]
+        return np.asarray(model.build(beam, count, **settings).modes(n_modes).frequencies_hz)
     line, wall = DiscreteBeam(beam, count or 0, candidate.theory), candidate.wall or "half"
     if candidate.model == ELEMENTS:
         return line.elements_hz(n_modes, candidate.mass)

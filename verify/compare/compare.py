@@ -6,7 +6,7 @@ from typing import Any, get_args
 import msgspec
 import numpy as np
 
-from verify.analysis.compare import HARDLY, LIKENESS, mac, node_weights, pair_modes
+from verify.analysis.comparison import LEAST_MAC, LOW_MAC, mac, node_weights, pair_modes
 from verify.arrays import Array, Indices
 from verify.checks import check_whole
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
@@ -88,9 +88,9 @@ def compare(
         warnings.append(f"The list starts with {rigid} rigid motions, the beam of the scene has {beam.rigid_motions}.")
     if (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any():
         warnings.append("Frequencies are not in the order of the modes: see the column entry.")
-    if likeness is not None and (unlike := len(kept) - int((likeness >= HARDLY).sum())):
+    if likeness is not None and (unlike := len(kept) - int((likeness >= LOW_MAC).sum())):
         warnings.append(
-            f"{unlike} of the shapes are hardly modes of the beam (MAC below {HARDLY}): check beam.supports."
+            f"{unlike} of the shapes are hardly modes of the beam (MAC below {LOW_MAC}): check beam.supports."
         )
     if found.status == "unknown" and (supports := _other_supports(beam, data.logs[entries], modes)):
         warnings.append(f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.")
@@ -122,7 +122,7 @@ def _paired(
     order = np.arange(len(kept))
     if shapes is not None:
         modes, likeness = pair_shapes(beam, shapes.x, shapes.values[kept])
-        like = likeness >= LIKENESS
+        like = likeness >= LEAST_MAC
         return order[like], modes[like], likeness[like], True
     if given.numbers is not None:
         shift = 1 + (len(given.hertz) - len(kept) if given.numbers[0] == 1 else 0)
@@ -136,20 +136,20 @@ def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
     scaled, weights = values / abs(values).max(axis=1, keepdims=True), np.sqrt(node_weights(x))
     n = max(len(values), min(len(values) + SPARE, len(x) - 2))
     modes, likeness = pair_modes(mac(scaled * weights, exact_shapes(beam, n, x) * weights))
-    if likeness.max() < LIKENESS:
+    if likeness.max() < LEAST_MAC:
         raise InputError(f"modes: no shape is one of the beam's (MAC {likeness.max():.2f}): check x and beam.supports")
     return modes, likeness
 
 
 def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
     """Mode shapes of the exact beam at x, (n_modes, len(x)); of fine elements where no exact ones are known."""
-    from verify.linear.catalogue import MODELS
+    from verify.linear.registry import MODELS
 
     try:
-        return np.asarray(MODELS[EXACT].solve_modes(beam, n_modes, None).deflection(x))  # type: ignore[arg-type]
+        return np.asarray(MODELS[EXACT].build(beam).modes(n_modes).deflection(x))
     except InputError:
         fine = max(10 * n_modes, 8 * len(beam.pieces))
-        return np.asarray(MODELS[ELEMENTS].solve_modes(beam, n_modes, fine).deflection(x))
+        return np.asarray(MODELS[ELEMENTS].build(beam, fine).modes(n_modes).deflection(x))
 
 
 def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:

@@ -11,10 +11,8 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
-from verify.linear.eigen import lowest
-from verify.linear.inverse import first_bending
 from verify.linear.mesh import divide
-from verify.linear.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.linear.system import StructuralSystem
 from verify.options import WALLS
 from verify.problem.beam import Beam
 
@@ -123,20 +121,11 @@ class DiscreteBeam:
         """Elastic frequencies of B^T diag(stiffness) B against M: `free` deflections, then rotations."""
         size, x = mass.shape[0], np.concatenate([[0.0], np.cumsum(self.lengths)])[free] * self.unit
         rigid = [np.append(a + b * x, np.full(size - len(x), b * self.unit)) for a, b in self.beam.rigid_lines]
-        held = np.asarray(mass.toarray()) if size <= DENSE_UNKNOWNS else mass.tocsc()
-        pencil = FactoredPencil(
-            n=size,
-            rigid=np.array(rigid).reshape(len(rigid), size).T,
-            strain=lambda v: np.asarray(strain @ v),
-            stiffness=stiffness,
-            strain_matrix=lambda: strain,
-            mass_matrix=lambda: held,
-            bending=first_bending(self.lengths, self.stiffnesses, self.masses / self.lengths),
-        )
+        system = StructuralSystem([strain], stiffness, mass.tocsc(), np.array(rigid).reshape(len(rigid), size).T)
         available = min(n_modes, size - len(rigid))
         if available < 1:
             return np.empty(0)
-        omega = np.sqrt(lowest(pencil, available).values) * self.beam.wave_constant / self.unit**2
+        omega = np.sqrt(system.modes(available)[0]) * self.beam.wave_constant / self.unit**2
         return np.asarray(omega / (2.0 * pi))
 
 

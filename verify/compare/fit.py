@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.analysis.variants import falls_within
+from verify.analysis.variants import is_uneven
 from verify.arrays import Array, Indices
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.clamp import clamp_effect, clamped_ends, fit_clamp
@@ -257,7 +257,7 @@ def _refined(data: Data, fit: Fit) -> Fit | None:
     best = _solved(data, fit)
     if best is None or best.count is None or data.count is not None:
         return best
-    if falls_within(data.beam):
+    if is_uneven(data.beam):
         whole = fit.fault.kind == "none"
         sizes = range(SMALLEST, SEARCHED + 1) if whole else range(int(best.count / 1.2), int(1.2 * best.count) + 2)
         for size in sizes:
@@ -307,7 +307,7 @@ def spectrum(beam: Beam, candidate: Candidate, n_modes: int, counts: tuple[int |
     if not candidate.sized or counts != (None,):
         rows = [solve(count) for count in counts]
         return np.array([count or 0 for count in counts]), np.array(rows).reshape(len(rows), n_modes)
-    uneven, table, size = falls_within(beam), {}, max(SMALLEST, n_modes // 2)
+    uneven, table, size = is_uneven(beam), {}, max(SMALLEST, n_modes // 2)
     while size < (SEARCHED if uneven else 8 * n_modes):
         table[size] = solve(size)
         size = max(size + 1, round((1.3 if size < 3 * n_modes else 1.5) * size))

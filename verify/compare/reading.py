@@ -15,6 +15,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError, shown
 from verify.files import exists
+from verify.linear.base import BeamModel
 from verify.problem.beam import Beam
 
 HERTZ = {"Hz": 1.0, "kHz": 1e3, "rad/s": 0.5 / pi}
@@ -111,15 +112,17 @@ def checked_shapes(shapes: ModeShapes, length: float, source: str) -> ModeShapes
 def solve_model(name: str, beam: Beam, count: int | None, n_modes: int | None) -> FrequencyList:
     """Frequencies of a Python model 'package.module:function' of (beam, n_modes, count). Raises InputError.
 
-    It returns them in Hz, or an object with `frequencies_hz`; a class or an object has a method `solve_modes` for it.
+    It returns them in Hz, or an object with `frequencies_hz`; a subclass of `BeamModel` is built first.
     """
     module, _, attribute = name.partition(":")
     sys.path.insert(0, str(Path.cwd()))
     try:
         with redirect_stdout(sys.stderr):
             model = getattr(import_module(module), attribute)
-            model = model() if isinstance(model, type) else model
-            solved = getattr(model, "solve_modes", model)(beam, n_modes or MODEL_MODES, count)
+            if isinstance(model, type) and issubclass(model, BeamModel):
+                solved: Any = model.build(beam, count).modes(n_modes or MODEL_MODES)
+            else:
+                solved = model(beam, n_modes or MODEL_MODES, count)
             values = np.asarray(getattr(solved, "frequencies_hz", solved), dtype=float)
     except InputError:
         raise

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
-from verify.analysis.variants import falls_within
+from verify.analysis.variants import is_uneven
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import TOLERANCE, Data, Fit, Identification
 from verify.problem.beam import Beam
@@ -103,7 +103,7 @@ def tables_of(
     if required:
         columns = [Column("model"), Column("mode"), Column("N for 1 %"), Column("N for 0.1 %")]
         lines = [(one.label, mode, *counts) for one, mode, counts in required]
-        tables.append(Table("Required N", columns, lines, [UNEVEN] * falls_within(beam)))
+        tables.append(Table("Required N", columns, lines, [UNEVEN] * is_uneven(beam)))
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables.append(Table("Acceptance", columns, [(*check[:3], "yes" if check[3] else "no") for check in checks]))
     return tables, all(check[3] for check in checks)

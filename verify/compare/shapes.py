@@ -10,20 +10,20 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.analysis.compare import HARDLY, node_weights
+from verify.analysis.comparison import LOW_MAC, node_weights
 from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS
 from verify.compare.compare import Options, compare, exact_shapes, pair_shapes
 from verify.compare.meshes import MeshShapes
 from verify.compare.reading import ModeShapes
 from verify.errors import InputError
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 
 STRAIGHT, TURNED = 1e-6, 0.1
 """Share of a rigid motion that is no straight line; gain in mean MAC of a beam that is the other way round."""
-UNLIKE = f"A shape is hardly one of the beam's modes (MAC below {HARDLY}): check beam.supports."
+UNLIKE = f"A shape is hardly one of the beam's modes (MAC below {LOW_MAC}): check beam.supports."
 DISORDER = "The shapes are not in the order of the modes."
 COARSE = "The mesh has fewer than two cross-sections a half wave: higher modes look like lower ones."
 
@@ -53,7 +53,7 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     rows = [(names[i], int(modes[i]) + 1, float(mac[i]), errors[i]) for i in order]
     error = Column("error of form", format=".3g", percent=True)
     tables = [Table("Shapes", [Column("shape"), Column("mode"), Column("MAC", format=".6f"), error], rows, notes)]
-    found = {UNLIKE: (mac < HARDLY).any(), DISORDER: (np.diff(modes) < 0).any(), COARSE: len(x) - 1 < 2 * n}
+    found = {UNLIKE: (mac < LOW_MAC).any(), DISORDER: (np.diff(modes) < 0).any(), COARSE: len(x) - 1 < 2 * n}
     warnings = [words for words, holds in found.items() if holds]
     listed = None
     if mesh.frequencies is not None:
@@ -84,7 +84,7 @@ def _nearest(beam: Beam, x: Array, values: Array, modes: Indices, count: int) ->
     models: dict[str, tuple[Array, int | None]] = {"exact beam": (exact_shapes(beam, n, x), None)}
     for name, model in (("elements", ELEMENTS), ("segments, joints corrected", CHAIN)):
         try:
-            solved = MODELS[model].solve_modes(beam, n, count)
+            solved = MODELS[model].build(beam, count).modes(n)
         except InputError:  # so few parts have fewer modes
             continue
         models[name] = (np.asarray(solved.deflection(x)), count)

@@ -1,175 +1,146 @@
-"""What scikit-fem is given: the cubic Hermite element, a line of them, and the forms of a bending beam.
+"""The beam elements that scikit-fem assembles: cubic Hermite, and Timoshenko with internal shear strains.
 
-Imports scikit-fem, so it is itself imported in functions alone. scikit-fem's own ElementLineHermite is the same
-element found by inverting a Vandermonde matrix in global coordinates, which costs it digits (`stock`).
+Imports scikit-fem, so that it is itself imported in functions alone. scikit-fem's own ElementLineHermite is the same
+element by the inverse of a Vandermonde matrix in global coordinates, which loses n^3 digits (`stock`); here the
+polynomials of the reference cell are mapped.
+
+The Timoshenko element has nodal deflection w and rotation psi and two internal shear strains, gamma = w' - psi =
+g_0 + g_1 (2 xi - 1). w is cubic and psi quadratic with no more than that between them: nothing locks, and where shear
+is stiff the strains vanish and the Hermite element remains. g_0 alone is the element that is exact in statics (Friedman
+and Kosmatka, Computers & Structures 47, 1993), whose frequencies are of order 2; with g_1 they are of order 4.
 """
 
-from collections.abc import Callable
-from functools import cached_property
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
+from scipy.interpolate import CubicHermiteSpline, PPoly
+from scipy.sparse import csr_array
 from skfem.assembly import BilinearForm, CellBasis
 from skfem.element import DiscreteField
 from skfem.element.element import Element
-from skfem.mapping import MappingAffine
-from skfem.mesh import MeshLine1
-from skfem.quadrature import get_quadrature
+from skfem.mesh import MeshLine
 from skfem.refdom import RefLine
 
-from verify.arrays import Array, Indices
-from verify.elements.mesh import KEPT
+from verify.arrays import Array
 
-_RULES = {
-    "gauss": get_quadrature(RefLine, 6),
-    "simpson": (np.array([[0.0, 0.5, 1.0]]), np.array([1.0, 4.0, 1.0]) / 6.0),
-    "boole": (np.array([[0.0, 0.25, 0.5, 0.75, 1.0]]), np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0),
-}
-"""Points and weights on [0, 1]. Simpson's are exact for squares of curvatures, Boole's for squares of slopes, and
-both lie on floats: what cancels in a sum over a cell does so exactly."""
-_MIDDLE = (np.array([[0.5]]), np.array([1.0]))
+DEFLECTION = np.array(
+    [[1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1, 1], [0, 1, -3, 2], [0, -1, 1, 0]], dtype=float
+)
+"""w on [0, 1] of w_0, psi_0, w_1, psi_1, g_0 and g_1, each by its powers of xi; all but w times the length."""
+ROTATION = np.array([[0, -6, 6], [1, -4, 3], [0, 6, -6], [0, -2, 3], [0, -6, 6], [0, 0, 0]], dtype=float)
+"""psi likewise, over the length."""
 
 
-def cubics(xi: Array, derivative: int = 0) -> tuple[Array, Array, Array, Array]:
-    """The four Hermite polynomials on [0, 1] or a derivative, each shaped as xi: w_0, w_0', w_1, w_1'."""
-    if derivative == 0:
-        twice, rest, square = 2 * xi, 1.0 - xi, xi * xi
-        other = rest * rest
-        return other * (1 + twice), xi * other, square * (3 - twice), -square * rest
-    if derivative == 1:
-        thrice, bow = 3 * xi, 6.0 * xi * (xi - 1.0)
-        return bow, (1 - xi) * (1 - thrice), -bow, xi * (thrice - 2)
-    if derivative == 2:
-        six, twelve = 6 * xi, 12 * xi
-        return twelve - 6, six - 4, 6 - twelve, six - 2
-    flat, jerk = np.zeros_like(xi), np.full_like(xi, 6.0 if derivative == 3 else 0.0)
-    return flat + 2 * jerk, jerk, flat - 2 * jerk, jerk
+def polynomial(table: Array, i: int, xi: Array, derivative: int = 0) -> Array:
+    """Function i of a table, or a derivative, at xi (n,)."""
+    return np.asarray(polyval(xi, polyder(table[i], derivative)))
 
 
 class HermiteLine(Element):  # type: ignore[misc]
-    """The cubic C1 element: deflection `u` and slope `u_x` at its ends, mapped from the reference cell."""
+    """Cubic C1 element: deflection `u` and slope `u_x` at its ends; two fields, w and psi = w'."""
 
     nodal_dofs = 2
     maxdeg = 3
-    dofnames = ("u", "u_x")
+    dofnames: tuple[str, ...] = ("u", "u_x")
     doflocs = np.array([[0.0], [0.0], [1.0], [1.0]])
     refdom = RefLine
 
     def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:  # noqa: N803
-        """Value, grad and hess of basis function i at local points X of the cells `tind`: slopes are the mesh's."""
+        """W and psi of basis function i with their gradients, at local points X of the cells `tind`."""
         shrink = mapping.invDF(X, tind)[0, 0]
-        length = mapping.DF(X, tind)[0, 0] if i % 2 else 1.0
-        value, slope, bend = (cubics(X[0], order)[i] * (length * shrink**order) for order in (0, 1, 2))
-        return (DiscreteField(value=value, grad=slope[None], hess=bend[None, None]),)
+        size = mapping.DF(X, tind)[0, 0] if i not in (0, 2) else 1.0
+        w, slope = (polynomial(DEFLECTION, i, X[0], order) * (size * shrink**order) for order in (0, 1))
+        psi, bend = (polynomial(ROTATION, i, X[0], order) * (size * shrink ** (order + 1)) for order in (0, 1))
+        return DiscreteField(value=w, grad=slope[None]), DiscreteField(value=psi, grad=bend[None])
 
 
-class Line(MeshLine1):  # type: ignore[misc]
-    """Cells from left to right between ascending nodes."""
+class TimoshenkoLine(HermiteLine):
+    """The same with deflection and rotation at its ends and two shear strains inside."""
 
-    def element_finder(self, mapping: Any = None) -> Callable[[Array], Any]:
-        """The cell of every point, at a node the one on its right; rounding beyond the ends is taken inside.
-
-        scikit-fem's own finder compares every point with every cell, points times cells in memory.
-        """
-        inner = self.p[0, 1:-1]
-        return lambda x: inner.searchsorted(x, side="right")
-
-
-class LineBasis(CellBasis):  # type: ignore[misc]
-    """Hermite elements on a line at one point each, with what is made of them when first asked for.
-
-    Of small meshes it is kept for the next time; of large ones it would stand beside a solve in memory.
-    """
-
-    def at(self, points: str) -> Any:
-        """The same elements at the points of a rule, "gauss" (of degree 6), "simpson" or "boole"."""
-        return self._made(points, lambda: self._beside(_RULES[points]))
-
-    def weights(self, x: Array, derivative: int = 0) -> tuple[Indices, list[Array]]:
-        """Which degrees of freedom are read at x (in the mesh's coordinate), (4, len(x)), and the weights of each.
-
-        What `probes` has in a sparse matrix, by the same finder, mapping and degrees of freedom, in a tenth of its
-        time. An affine mapping stretches a cell alike all over.
-        """
-        cells, xi, lift, turn = self._beneath(x, derivative)
-        w0, s0, w1, s1 = cubics(xi, derivative)
-        return self.element_dofs[:, cells], [w0 * lift, s0 * turn, w1 * lift, s1 * turn]
-
-    def turn_weights(self, x: Array) -> tuple[Indices, list[Array]]:
-        """Likewise of what a rotational spring or a rotary inertia at x feels: the slope."""
-        return self.weights(x, 1)
-
-    def _beneath(self, x: Array, derivative: int) -> tuple[Indices, Array, Array, Array]:
-        """The cells under x, x in each, and what deflections and slopes of a derivative are multiplied with there."""
-        cells = self.mesh.element_finder(mapping=self.mapping)(x)
-        xi = self.mapping.invF(x[None, :, None], tind=cells)[0, :, 0]
-        lengths, shrinks = self._stretches
-        lift = shrinks[cells] ** derivative
-        return cells, xi, lift, lengths[cells] * lift
-
-    def read(self, nodal: Any, x: Array, derivative: int = 0) -> Any:
-        """The cubics or a derivative at x (in the mesh's coordinate), (k, len(x)); nodal is (k, 2N + 2)."""
-        dofs, weights = self.weights(x, derivative)
-        return sum(nodal.take(each, axis=1) * weight for each, weight in zip(dofs, weights, strict=True))
-
-    @cached_property
-    def _stretches(self) -> tuple[Array, Array]:
-        """The mesh's coordinate by each cell's and each cell's by the mesh's, (N,)."""
-        return self.mapping.DF(self.X)[0, 0, :, 0], self.mapping.invDF(self.X)[0, 0, :, 0]
-
-    def unheld(self, held: tuple[tuple[str, ...], tuple[str, ...]]) -> Any:
-        """Degrees of freedom that are left where both ends hold those of the given names, ascending."""
-
-        def find() -> Any:
-            ends = zip((0, self.mesh.nelements), held, strict=True)
-            kinds = self.elem.dofnames
-            gone = [self.nodal_dofs[kinds.index(name), end] for end, names in ends for name in names]
-            # scikit-fem's complement_dofs hashes all of them, which takes ever longer beyond the caches
-            return np.delete(np.arange(self.N), np.array(gone, dtype=int))
-
-        return self._made(held, find)
-
-    @cached_property
-    def _kept(self) -> dict[Any, Any]:
-        return {}
-
-    def _made(self, key: Any, make: Callable[[], Any]) -> Any:
-        found = self._kept[key] if key in self._kept else make()
-        if self.mesh.nelements < KEPT:
-            self._kept[key] = found
-        return found
-
-    def _beside(self, quadrature: tuple[Array, Array]) -> Any:
-        return CellBasis(
-            self.mesh, self.elem, mapping=self.mapping, quadrature=quadrature, dofs=self.dofs, disable_doflocs=True
-        )
-
-
-def line_basis(nodes: Array) -> LineBasis:
-    """Hermite elements between nodes, (N + 1,) ascending."""
-    number = np.arange(len(nodes))
-    line = Line(nodes[None], np.array([number[:-1], number[1:]]))
-    return LineBasis(line, HermiteLine(), mapping=MappingAffine(line), quadrature=_MIDDLE)
+    interior_dofs = 2
+    dofnames = ("u", "u_x", "g_0", "g_1")
+    doflocs = np.array([[0.0], [0.0], [1.0], [1.0], [0.5], [0.5]])
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
-def bending(u: Any, v: Any, w: Any) -> Any:
-    """Of bending, EI u'' v''; `w.weight` is EI."""
-    return w.weight * u.hess[0, 0] * v.hess[0, 0]
+def bending(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
+    """EI psi' psi'; `w.weight` is EI."""
+    return w.weight * p.grad[0] * q.grad[0]
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
-def inertia(u: Any, v: Any, w: Any) -> Any:
-    """Of inertia, rho A u v; `w.weight` is rho A."""
+def shear(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
+    """Kappa G A gamma gamma; `w.weight` is kappa G A."""
+    return w.weight * (u.grad[0] - p) * (v.grad[0] - q)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def inertia(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
+    """Rho A w w; `w.weight` is rho A."""
     return w.weight * u * v
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
-def stretching(u: Any, v: Any, w: Any) -> Any:
-    """Of slopes, u' v': an axial force's, or rho I's; `w.weight` is T or rho I."""
-    return w.weight * u.grad[0] * v.grad[0]
+def rotary_inertia(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
+    """Rho I psi psi; `w.weight` is rho I."""
+    return w.weight * p * q
 
 
-def per_cell(values: Array, basis: Any) -> DiscreteField:
-    """A property of each cell, (N,), as a field at the points of a basis."""
-    return DiscreteField(np.broadcast_to(values[:, None], basis.dx.shape))
+def line_basis(nodes: Array, shear: bool) -> Any:
+    """scikit-fem's basis of Hermite (with `shear`, Timoshenko) elements between ascending nodes (N + 1,).
+
+    Degrees of freedom are w and psi of each node from left to right, then g_0 and g_1 of each element. Four points of
+    Gauss integrate products of two cubics exactly.
+    """
+    number = np.arange(len(nodes))
+    mesh = MeshLine(nodes[None], np.array([number[:-1], number[1:]]))
+    ends = {"left": np.array([0]), "right": np.array([len(nodes) - 1])}
+    element = TimoshenkoLine() if shear else HermiteLine()
+    return CellBasis(mesh.with_boundaries(ends), element, intorder=6)
+
+
+@lru_cache(maxsize=16)
+def cached_basis(nodes: bytes, shear: bool) -> Any:
+    """`line_basis` of small meshes, which beams of many lengths share; about a kilobyte an element."""
+    return line_basis(np.frombuffer(nodes), shear)
+
+
+def assemble(basis: Any, form: Any, weight: Array) -> Any:
+    """A form with a weight of each element, (N,), over all degrees of freedom, sparse."""
+    return form.assemble(basis, weight=DiscreteField(np.broadcast_to(weight[:, None], basis.dx.shape)))
+
+
+def rows(nodes: Array, x: Array, shear: bool, derivative: int = 0, *, rotation: bool = False) -> Any:
+    """Weights of all degrees of freedom in w or psi, or a derivative, at x (n,): sparse (n, n_all)."""
+    n = len(nodes) - 1
+    cell = np.searchsorted(nodes[1:-1], x, side="right")
+    length = nodes[cell + 1] - nodes[cell]
+    xi, table = (x - nodes[cell]) / length, ROTATION if rotation else DEFLECTION
+    every = range(6 if shear else 4)
+    sizes = length ** -(derivative + rotation)
+    values = [polynomial(table, i, xi, derivative) * (sizes if i in (0, 2) else sizes * length) for i in every]
+    columns = [*(2 * cell + i for i in range(4)), *(2 * n + 2 + 2 * cell + i for i in range(2))]
+    at = np.tile(np.arange(len(x)), len(every))
+    found = csr_array(
+        (np.concatenate(values), (at, np.concatenate(columns[: len(every)]))),
+        shape=(len(x), 2 * n + 2 + (2 * n if shear else 0)),
+    )
+    found.eliminate_zeros()
+    return found
+
+
+def piecewise(nodes: Array, values: Any, unit: float) -> tuple[PPoly, PPoly]:
+    """W and psi of values of all degrees of freedom (n_all, k) as polynomials between nodes: x in m -> (n, k)."""
+    n = len(nodes) - 1
+    w = CubicHermiteSpline(nodes, values[: 2 * n + 2 : 2], values[1 : 2 * n + 2 : 2]).c
+    psi = np.array([3.0 * w[0], 2.0 * w[1], w[2]])
+    if len(values) > 2 * n + 2:
+        g0, g1 = values[2 * n + 2 :: 2], values[2 * n + 3 :: 2]
+        length = np.diff(nodes)[:, None]
+        w = w + np.array([2.0 * g0 / length**2, (g1 - 3.0 * g0) / length, g0 - g1, 0.0 * g0])
+        psi = psi + np.array([6.0 * g0 / length**2, -6.0 * g0 / length, 0.0 * g0])
+    powers = unit ** -np.arange(4.0)[:, None, None]
+    x = nodes * unit
+    return PPoly.construct_fast(w * powers[::-1], x), PPoly.construct_fast(psi * powers[2::-1] / unit, x)

@@ -1,60 +1,41 @@
-"""A subject beside ours: scikit-fem's own Hermite element and its own solve, as its documentation has them.
+"""scikit-fem's own Hermite element and solver, as its documentation has them: a benchmark subject, nothing of ours.
 
-`ElementLineHermite` inverts a Vandermonde matrix of cubics in metres for every element, and the eigenvalues come from
-the assembled K: two reasons to lose digits as the mesh is refined. Nothing of this package takes part.
+`ElementLineHermite` inverts a Vandermonde matrix of cubics in metres, and the eigenvalues come from the assembled K.
 """
 
-from math import pi, sqrt
+from math import nan, pi, sqrt
 
 import numpy as np
 
-from verify.elements.linear import check, unknowns
 from verify.errors import InputError
 from verify.problem.beam import Beam
+from verify.problem.supports import HOLDS
 
-_HELD: dict[str, list[str]] = {"pinned": ["u"], "clamped": ["u", "u_x"], "guided": ["u_x"], "free": []}
 
+def stock_frequency_hz(beam: Beam, mode: int, n_elements: int) -> float:
+    """Hz of a mode on equal elements; NaN where rounding makes K singular or the eigenvalue negative.
 
-def stock_frequency_hz(beam: Beam, mode: int, n_elements: int, start: float = 0.0) -> float:
-    """The frequency of a mode of a uniform held beam by stock scikit-fem on equal elements, Hz.
-
-    The mesh reaches from `start` metres on; where it lies has no meaning but for what rounding makes of it.
-
-    NaN where K has lost so many digits that it is singular or its eigenvalue negative. Raises InputError for stepped
-    beams, for rigid motions, which leave K singular, and for modes that the mesh or its solver does not have.
+    Raises InputError for beams that are not uniform, for rigid motions, and for modes that the solver does not have.
     """
-    check_stock(beam, mode, n_elements)
-    return _solved(beam, mode, n_elements, start)
-
-
-def check_stock(beam: Beam, mode: int, n_elements: int) -> None:
-    """Raise InputError where `stock_frequency_hz` would."""
-    beam.check_added("the comparison with stock scikit-fem", ("section",))
-    if beam.section:
-        raise InputError("beam.section: stock scikit-fem is compared on uniform beams, leave the sections out")
-    if beam.rigid_motions:
-        raise InputError(f"beam.supports = {list(beam.supports)!r} leave rigid motions: hold the beam at both ends")
-    check(beam, mode, n_elements)
-    if mode == unknowns(beam, n_elements):
-        raise InputError(f"mode = {mode}: scikit-fem's solver stops one short of all {mode} modes, raise count")
-
-
-def _solved(beam: Beam, mode: int, n_elements: int, start: float) -> float:
     from skfem import Basis, BilinearForm, ElementLineHermite, MeshLine, condense, solve
     from skfem.helpers import dd, ddot
     from skfem.utils import solver_eigen_scipy_sym
 
-    nodes = np.linspace(start, start + beam.length, n_elements + 1)
-    ends = {"left": lambda x: x[0] == nodes[0], "right": lambda x: x[0] == nodes[-1]}
-    basis = Basis(MeshLine(nodes).with_boundaries(ends), ElementLineHermite())
+    beam.check_added("the comparison with stock scikit-fem")
+    if beam.rigid_motions:
+        raise InputError(f"beam.supports = {list(beam.supports)!r} leave rigid motions: hold the beam at both ends")
+    ends = {"left": lambda x: x[0] == 0.0, "right": lambda x: x[0] == beam.length}
+    mesh = MeshLine(np.linspace(0.0, beam.length, n_elements + 1)).with_boundaries(ends)
+    basis = Basis(mesh, ElementLineHermite())
     bending = BilinearForm(lambda u, v, w: beam.bending_stiffness * ddot(dd(u), dd(v))).assemble(basis)
     inertia = BilinearForm(lambda u, v, w: beam.mass_per_length * u * v).assemble(basis)
-    supports = zip(ends, beam.supports, strict=True)
-    held = np.concatenate([basis.get_dofs(end).all(_HELD[support]) for end, support in supports])
+    names = [[name for name, held in zip(("u", "u_x"), HOLDS[end], strict=True) if held] for end in beam.supports]
+    held = np.concatenate([basis.get_dofs(end).all(n) for end, n in zip(ends, names, strict=True)])
+    if not 0 < mode < basis.N - len(held):
+        raise InputError(f"mode = {mode}: scikit-fem's solver has {basis.N - len(held) - 1} modes, raise count")
     solver = solver_eigen_scipy_sym(k=mode, sigma=0.0, v0=np.ones(basis.N - len(held)))
     try:
-        values, _ = solve(*condense(bending, inertia, D=held), solver=solver)
+        value = float(np.sort(solve(*condense(bending, inertia, D=held), solver=solver)[0])[mode - 1])
     except RuntimeError:  # SuperLU's and ARPACK's
-        return float("nan")
-    value = float(np.sort(values)[mode - 1])
-    return sqrt(value) / (2.0 * pi) if value > 0.0 else float("nan")
+        return nan
+    return sqrt(value) / (2.0 * pi) if value > 0.0 else nan

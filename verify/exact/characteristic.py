@@ -1,21 +1,26 @@
 """The characteristic equation of any beam by the minors of its transfer, and the count of frequencies below a trial.
 
-The two motions that the left end leaves free are carried along the beam not themselves but as their 2 x 2 minors
-(the delta matrix of Pestel and Leckie, Matrix Methods in Elastomechanics, 1963). Of long stretches the growing parts
-then leave a common factor, of short ones nothing cancels, and no stiffness is assembled whose small eigenvalues
-could drown.
+The two motions that the left end leaves free are carried along the beam by their 2 x 2 minors (the delta matrix of
+Pestel and Leckie, Matrix Methods in Elastomechanics, 1963). The growing parts of long spans then are a common factor,
+nothing cancels in short ones, and no stiffness is assembled whose small eigenvalues could drown.
 
 Minors of w, psi, M, V are listed as u = p12, p13, p14, p24, p34; p23 = p14 throughout, by reciprocity. Of the beam to
-the left of a place they hold its stiffness against w and psi there, [[u3, -u2], [-u2, u1]] / u0, determinant u4 / u0.
-The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) needs no other matrix: the negative eigenvalues at
-every joint, and what each stretch has of its own with both ends clamped, found by way of pinned ends (Howson and
-Williams, J. Sound Vib. 26, 1973).
+the left of a position they hold its stiffness against w and psi there, [[u3, -u2], [-u2, u1]] / u0, determinant
+u4 / u0. The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) needs no other matrix: the negative
+eigenvalues at every station, and the frequencies of each span with both ends clamped, derived from pinned ends (Howson
+and Williams, J. Sound Vib. 26, 1973).
 """
 
+from collections.abc import Callable
+from functools import lru_cache
 from math import cos, exp, expm1, floor, pi, sin, sqrt
 from typing import NamedTuple
 
-from verify.exact.layout import Joint, Lineup
+from msgspec.structs import replace
+
+from verify.errors import InputError
+from verify.exact.layout import BeamLayout, Station, layout_of
+from verify.problem.beam import Beam
 
 _END = {"clamped": 0, "pinned": 1, "guided": 3, "free": 4}
 """The minor of what an end holds at zero; that of what it leaves free is 4 less this."""
@@ -27,6 +32,9 @@ _CLOSE = 16.0
 """Of (sigma1 - sigma2)^2 / (sigma1 sigma2), below which two squares of wavenumbers count as close."""
 _TINY = 1e-120
 """In place of a minor that is zero to the last digit, where a stiffness is infinite."""
+_NOTHING = Station()
+_DIGITS = 4e-16
+"""Relative width of an interval at which a search ends."""
 _CANCELLED = 1e-3
 """Of a determinant that is left of its products, below which another form of it is trusted."""
 
@@ -34,7 +42,7 @@ Minors = tuple[float, float, float, float, float]
 
 
 class Carry(NamedTuple):
-    """What takes minors over a stretch of length and stiffness 1, all times one positive factor."""
+    """What takes minors over a span of length and stiffness 1, all times one positive factor."""
 
     one: float
     both: float
@@ -54,13 +62,13 @@ class Carry(NamedTuple):
     """
 
 
-class Found(NamedTuple):
-    """What a trial value says."""
+class Count(NamedTuple):
+    """The characteristic equation at a trial value."""
 
     below: int
-    """How many frequencies lie below it."""
+    """Number of frequencies below it."""
     minor: float
-    """What vanishes at a frequency, up to a positive factor."""
+    """The minor that vanishes at a frequency, up to a positive factor."""
 
 
 def _waves(square: float, shift: float) -> tuple[float, float, float]:
@@ -78,7 +86,7 @@ def _waves(square: float, shift: float) -> tuple[float, float, float]:
 
 
 def carry(c: float, p: float, q: float) -> Carry:
-    """What takes minors over a stretch of length 1 and EI = 1, with c = 1 / (kappa G A)."""
+    """What takes minors over a span of length 1 and EI = 1, with c = 1 / (kappa G A)."""
     sums, m, v = p - c * q, p + c * q, 1.0 + p * c
     product, gap = -q * v, m * m + 4.0 * q  # of the squares sigma of both wavenumbers: sums, product, (difference)^2
     if max(abs(sums), sqrt(abs(product))) <= _SHORT:
@@ -153,7 +161,7 @@ def _close(sums: float, product: float, gap: float) -> tuple[float, float, float
 
 
 def _carried(u: Minors, by: Carry, c: float, p: float, q: float) -> Minors:
-    """Minors at the far end of a stretch."""
+    """Minors at the far end of a span."""
     u0, u1, u2, u3, u4 = u
     one, both, g2, g3, h4, tip, guide, lift, turn, bend = by
     m, guide = p + c * q, q * guide
@@ -167,58 +175,54 @@ def _carried(u: Minors, by: Carry, c: float, p: float, q: float) -> Minors:
     )
 
 
-def _over(u: Minors, joint: Joint, omega2: float) -> Minors:
-    """Minors behind what is fixed to the beam."""
-    if not any(joint):
+def _over(u: Minors, station: Station, omega2: float) -> Minors:
+    """Minors right of attachments, and of a motion that is held: those of an infinite stiffness against it."""
+    if station == _NOTHING:
         return u
     u0, u1, u2, u3, u4 = u
-    k, turning = joint.stiffness - omega2 * joint.mass, joint.rotational - omega2 * joint.inertia
+    k, turning = station.stiffness - omega2 * station.mass, station.rotational - omega2 * station.inertia
     u3, u4 = u3 + k * u0, u4 + k * u1
-    return (u0, u1 + turning * u0, u2, u3, u4 + turning * u3)
+    u1, u4 = u1 + turning * u0, u4 + turning * u3
+    if station.support in ("pinned", "clamped"):
+        u0, u1, u2, u3, u4 = 0.0, 0.0, 0.0, u0, u1
+    if station.support in ("guided", "clamped"):
+        u0, u1, u2, u3, u4 = 0.0, u0, 0.0, 0.0, u3
+    return (u0, u1, u2, u3, u4)
 
 
-def trial(line: Lineup, omega2: float, tension: float | None = None) -> Found:
-    """What a trial value says: omega^2 over EI / (rho A L^4), or T L^2 / EI in place of the beam's own.
+def count_at(layout: BeamLayout, omega2: float, tension: float | None = None) -> Count:
+    """The count at a trial omega^2 over EI / (rho A L^4), or at a trial T L^2 / EI in place of the beam's own.
 
-    Counted are the frequencies below it, rigid motions at 0 included; of a trial tension, at omega = 0, the shapes that
-    the beam has buckled into.
+    Frequencies below it are counted, rigid motions at 0 included; at a trial tension and omega = 0 the buckled shapes.
+    Dashpots do not count.
     """
-    force = line.tension if tension is None else tension
+    force = layout.tension if tension is None else tension
     start = [0.0] * 5
-    start[4 - _END[line.supports[0]]] = 1.0
-    u: Minors = _over((start[0], start[1], start[2], start[3], start[4]), line.joints[0], omega2)
-    below, left = 0, line.supports[0]
-    for stretch, joint in zip(line.stretches, line.joints[1:], strict=True):
-        length, stiffness = stretch.length, stretch.stiffness
-        c = stretch.shear * stiffness / length**2
-        p = (force - stretch.turning * omega2) * length**2 / stiffness
-        q = (stretch.mass * omega2 - line.foundation) * length**4 / stiffness
+    start[4 - _END[layout.supports[0]]] = 1.0
+    u = _over((start[0], start[1], start[2], start[3], start[4]), layout.stations[0], omega2)
+    below, left = 0, layout.supports[0]
+    for span, station in zip(layout.spans, layout.stations[1:], strict=True):
+        length, stiffness = span.length, span.stiffness
+        c = span.compliance * stiffness / length**2
+        p = (force - span.rotary * omega2) * length**2 / stiffness
+        q = (span.mass * omega2 - layout.foundation) * length**4 / stiffness
         by = carry(c, p, q)
-        sizes = _sizes(length, stiffness)
+        # minors of a span of length and stiffness 1, and back, with the largest about 1
+        by_moment, by_force = length**2 / stiffness, length**3 / stiffness
+        sizes = (length, by_moment, by_force, length * by_force, by_moment * by_force)
         near = (u[0] * sizes[0], u[1] * sizes[1], u[2] * sizes[2], u[3] * sizes[3], u[4] * sizes[4])
         far = _carried(near, by, c, p, q)
-        below += _own(by, c, p, q) + _at_joint(near, by, c, p, q, far[0], left)
-        u = _over(_rescaled(far, sizes), joint, omega2)
-        left = "free"
-    right = line.supports[1]
-    return Found(below + _at_end(u, right), u[_END[right]])
+        below += _clamped(by, c, p, q) + _at_station(near, by, c, p, q, far[0], left)
+        v = [minor / size for minor, size in zip(far, sizes, strict=True)]
+        largest = max(map(abs, v))
+        u = _over((v[0] / largest, v[1] / largest, v[2] / largest, v[3] / largest, v[4] / largest), station, omega2)
+        left = station.support
+    right = layout.supports[1]
+    return Count(below + _at_end(u, right), u[_END[right]])
 
 
-def _sizes(length: float, stiffness: float) -> Minors:
-    """What minors are multiplied by, so that a stretch has length and stiffness 1."""
-    by_moment, by_force = length**2 / stiffness, length**3 / stiffness
-    return (length, by_moment, by_force, length * by_force, by_moment * by_force)
-
-
-def _rescaled(u: Minors, sizes: Minors) -> Minors:
-    """Minors in the beam's own units again, the largest 1 or so."""
-    v = [one / size for one, size in zip(u, sizes, strict=True)]
-    largest = max(map(abs, v))
-    return (v[0] / largest, v[1] / largest, v[2] / largest, v[3] / largest, v[4] / largest)
-
-
-def _own(by: Carry, c: float, p: float, q: float) -> int:
-    """How many frequencies of a stretch with both ends clamped lie below.
+def _clamped(by: Carry, c: float, p: float, q: float) -> int:
+    """How many frequencies of a span with both ends clamped lie below.
 
     With both ends pinned it has at most two more. Their parity is that of the sign of its minor.
     """
@@ -230,7 +234,7 @@ def _own(by: Carry, c: float, p: float, q: float) -> int:
 
 
 def _pinned(c: float, p: float, q: float) -> int:
-    """How many sines n pi of a stretch with both ends pinned have frequencies below, each once or twice.
+    """How many sines n pi of a span with both ends pinned have frequencies below, each once or twice.
 
     A sine of wavenumber k has one below where k^4 - (c q - p) k^2 - q (1 + p c) < 0.
     """
@@ -245,19 +249,19 @@ def _pinned(c: float, p: float, q: float) -> int:
     return second - first + (2 * first if twice and q > 0.0 else 0) + twice
 
 
-def _at_joint(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float, left: str) -> int:
-    """Negative eigenvalues of the stiffness at a joint: of the beam to its left, and of the stretch ahead clamped.
+def _at_station(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float, left: str) -> int:
+    """Negative eigenvalues of the stiffness at a station: of the beam to its left, and of the span ahead clamped.
 
-    ahead: p12 at the far end of that stretch, whose sign is that of the determinant.
+    ahead: p12 at the far end of that span, whose sign is that of the determinant.
     """
     corner = 2.0 * (c * by.g2 + by.h4) or _TINY
     force, slope, moment = (part / corner for part in (by.tip, by.g2 - (p + c * q) * by.h4, by.turn))
     if left == "clamped":
         return 0
     if left == "pinned":
-        return int(u[4] / u[3] + moment < 0.0)
+        return int(u[4] / (u[3] or _TINY) + moment < 0.0)
     if left == "guided":
-        return int(u[4] / u[1] + force < 0.0)
+        return int(u[4] / (u[1] or _TINY) + force < 0.0)
     base = u[0] or _TINY
     ww, wp, pp = u[3] / base + force, slope - u[2] / base, u[1] / base + moment
     return _negatives(ww, wp, pp, ahead * base * corner)
@@ -277,3 +281,61 @@ def _negatives(a: float, b: float, d: float, determinant: float) -> int:
     difference = products[0] - products[1]
     sign = difference if abs(difference) > _CANCELLED * sum(products) else determinant
     return 1 if sign < 0.0 else 2 if a + d < 0.0 else 0
+
+
+@lru_cache(maxsize=20_000)
+def _count_at_beta(layout: BeamLayout, beta: float) -> Count:
+    return count_at(layout, beta**4)
+
+
+def wavenumber_length(layout: BeamLayout, number: int) -> float:
+    """beta L of the frequency of a number, 1 the lowest, rigid motions included: omega = beta^2 sqrt(EI / rho A)."""
+    return nth_root(lambda beta: _count_at_beta(layout, beta), number)
+
+
+def nth_root(count: Callable[[float], Count], number: int) -> float:
+    """The positive trial value above which `number` roots are counted.
+
+    Intervals are halved, the same ones for all roots, until one holds this root alone; where none does, roots coincide
+    to rounding.
+    """
+    from scipy.optimize import brentq
+
+    low, high = 0.0, 1.0
+    while count(high).below < number:
+        low, high = high, 2.0 * high
+    while high - low > _DIGITS * high and high > 1e-300:
+        lower, upper = count(low), count(high)
+        alone = low > 0.0 and upper.below - lower.below == 1 and (upper.minor > 0.0) != (lower.minor > 0.0)
+        if alone and high - low < 0.1 * high:
+            return float(brentq(lambda trial: count(trial).minor, low, high, xtol=1e-300, rtol=8.9e-16))
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if count(middle).below >= number else (middle, high)
+    return high
+
+
+def buckling_load(beam: Beam) -> float:
+    """The smallest compression at which a beam is no longer stable, N, whatever its own axial force.
+
+    The characteristic equation at omega = 0, by Euler-Bernoulli's theory; the force keeps its size and direction. 0
+    where supports and springs let the beam rotate as a whole.
+    """
+    bare = replace(beam, tension=0.0)
+    if any(slope for _, slope in bare.rigid_lines):
+        return 0.0
+    layout = layout_of(bare)
+    if bare.rigid_lines:  # a translation changes no energy: its left end is held
+        left = {"free": "pinned", "guided": "clamped"}[layout.supports[0]]
+        layout = replace(layout, supports=(left, layout.supports[1]))
+    root = nth_root(lru_cache(maxsize=None)(lambda root: count_at(layout, 0.0, -root * root)), 1)
+    return root * root * beam.bending_stiffness / beam.length**2
+
+
+@lru_cache(maxsize=256)
+def check_stable(beam: Beam) -> None:
+    """Raise InputError for an axial compression that reaches the buckling load."""
+    if beam.tension < 0.0 and -beam.tension >= (load := buckling_load(beam)):
+        raise InputError(
+            f"beam.tension = {beam.tension!r} N compresses the beam beyond its buckling load of {load:.6g} N: it has "
+            "no vibration about its straight shape, compress it less or hold it better"
+        )

@@ -1,176 +1,303 @@
-"""The motion of any beam along its length: states of all spans at once, each span too short for anything to grow.
+"""The motion of any beam along its length by multiple shooting, at one frequency or many.
 
-Deflection, turn, moment and transverse force are carried over a span by the power series of its transfer, from one end
-to the other of at most one and a half wavenumbers; the states at all ends follow together from the conditions at
-both ends of the beam (multiple shooting: Ascher, Mattheij and Russell, Numerical Solution of Boundary Value Problems,
-1988, section 4.3). Lengths, forces and frequencies are relative, as in `lineup`.
+A beam is divided into pieces of at most three wavenumbers, in which nothing grows much. Deflection, rotation, moment
+and transverse force at all ends of pieces follow together from one banded system: the transfer over each piece, the
+attachments at stations, and the supports (Ascher, Mattheij and Russell, Numerical Solution of Boundary Value Problems,
+1988, section 4.3). In between, every quantity y of a piece has y'''' = S y'' - P y, hence its Taylor series.
+Lengths, forces and frequencies are relative, as in `layout`; a case is one frequency.
 """
 
-from collections.abc import Callable
-from math import ceil
-from typing import TypeVar
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import msgspec
 import numpy as np
 
-from verify.arrays import Array, ComplexArray, Indices
+from verify.arrays import Array, Indices
 from verify.errors import InputError
-from verify.exact.layout import HELD, Lineup
+from verify.exact.layout import HELD, SAME_PLACE, BeamLayout
 
-Carried = TypeVar("Carried", Array, ComplexArray)
+ROTATION = 1
+"""Index of the rotation in the state (w, psi, M, V)."""
+_REACH = 3.0
+"""Wavenumber times length of a piece, at most: e^3 costs one digit."""
+_TERMS = 32
+"""Terms of the Taylor series: 3^32 / 32! is below rounding."""
+_MOST_PIECES = 300_000
+"""Of one solution, 1.5 kB each."""
+_LOWER, _UPPER = 5, 3
+"""Diagonals of the banded system below and above the main one."""
+_GAUSS = 12
+"""Points of the quadrature of modal masses on a piece."""
+_TRIES = 3
+"""Excitations of each mode; one is far from orthogonal to it."""
+_PAIR = 1e-9
+"""Relative distance at which two frequencies are one."""
+_NUDGE = 7e-16
+"""Relative step off a resonance at which the system is singular to the last digit."""
 
-TURN = 1
-"""Which of w, psi, M, V the turn is."""
-_REACH = 1.5
-"""Wavenumber times length of a span, at most."""
-_TERMS = 26
-"""Of the power series, to rounding."""
-_MOST = 100_000
-"""Spans: more take too much memory, 1 kB each."""
-_SAME = 1e-12
-"""Of the beam's length: places nearer than that are one."""
-_BAND = 5
-"""Diagonals on either side."""
 
+class Division(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A layout divided into pieces at each of n_cases frequencies; pieces and ends are numbered through all cases."""
 
-class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A beam at one frequency, divided into n spans."""
-
-    ends: Array
-    """(n + 1,), of the beam's length."""
-    rates: ComplexArray
-    """(stretches, 4, 4), d/dx of (w, psi, M, V) by themselves, each relative to its own size."""
-    over: Array
-    """(n + 1, 4, 4), from left to right of what is fixed at each end of a span."""
+    layout: BeamLayout
+    omega2: Array
+    """(n_cases,), over EI / (rho A L^4)."""
+    counts: Indices
+    """(n_cases, n_spans), pieces of each span."""
+    rates: Any
+    """(n_cases * n_spans, 4, 4), d/dt of (w, psi, M, V), each relative to `sizes`; t is 0 to 1 over a piece."""
+    sums: Any
+    """(n_cases * n_spans,), S; real without losses, as all below."""
+    products: Any
+    """(n_cases * n_spans,), P."""
+    over: Any
+    """(n_ends, 4, 4), what attachments make of the state from left to right."""
     sizes: Array
-    """(4,), what a unit of each is: 1, k, k^2, k^3."""
-    supports: tuple[str, str]
-    stretch: Indices
-    """(n,), to which stretch of the line each belongs."""
-
-    def span(self, x: Array) -> Indices:
-        """In which each x lies, of the beam's length; the right one of two, to rounding."""
-        return np.clip(np.searchsorted(self.ends, x + _SAME, side="right") - 1, 0, len(self.stretch) - 1)
-
-    def states(self, at_ends: ComplexArray, x: Array) -> tuple[Indices, ComplexArray]:
-        """(span, states (len(x), 4, k)) at x, of the beam's length, from those right of each end, (n + 1, 4, k)."""
-        span = self.span(x)
-        begin: ComplexArray = at_ends[span]
-        return span, carried(self.rates[self.stretch[span]], x - self.ends[span], begin)
-
-    def within(self, fractions: Array) -> ComplexArray:
-        """What carries a state to fractions of its span, (n, len(fractions), 4, 4): alike in all spans of a stretch."""
-        counts = np.bincount(self.stretch)
-        lengths = np.diff(self.ends[np.append(0, np.cumsum(counts))]) / counts
-        distances = (lengths[:, None] * fractions).ravel()
-        rates = np.repeat(self.rates, len(fractions), axis=0)
-        units: ComplexArray = np.broadcast_to(np.eye(4, dtype=complex), rates.shape)
-        found = carried(rates, distances, units)
-        return np.asarray(found.reshape(len(counts), len(fractions), 4, 4)[self.stretch])
-
-    def derivative(self, span: Indices, states: ComplexArray, order: int, of: int = 0) -> ComplexArray:
-        """A derivative of the deflection by x / L, (len(x), k), of any order, from states of the same places.
-
-        Likewise of another entry `of` the state: 1 is the turn.
-        """
-        rates = self.rates[self.stretch[span]]
-        for _ in range(order):
-            states = np.asarray(rates @ states)
-        return np.asarray(states[:, of] * self.sizes[of] if of else states[:, 0])
+    """(n_cases, 4), units of the state: 1, k, k^2, k^3."""
+    span: Indices
+    """(n_pieces,), index of the rate of each piece."""
+    left: Indices
+    """(n_pieces,), left end of each piece."""
+    begins: Array
+    """(n_pieces,), x / L of that end."""
+    lengths: Array
+    """(n_pieces,), relative to L."""
+    station_ends: Indices
+    """(n_cases, n_stations), the end at each station."""
 
 
-def carried(rates: Carried, distances: Array, states: Carried) -> Carried:
-    """e^(rate distance) state, (m, 4, k), by its power series."""
-    term = total = np.broadcast_to(states, (len(rates), *states.shape[1:]))
-    steps = rates * distances[:, None, None]
-    for n in range(1, _TERMS):
-        term = steps @ term / n
-        total = total + term
-    return total
-
-
-def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:
-    """Divide a line at omega^2 over EI / (rho A L^4); the loss factor acts on EI and kappa G A alone."""
-    lossy = 1.0 + 1j * loss_factor
-    size = max(omega2, 1.0) ** 0.25
-    sizes = size ** np.arange(4)
-    scale = sizes[None, :] / sizes[:, None]
-    places, rates, ends, belongs = line.places, [], [], []
-    for i, stretch in enumerate(line.stretches):
-        bend = 1.0 / (stretch.stiffness * lossy)
-        shear = stretch.shear / lossy
-        p, q = line.tension - stretch.turning * omega2, stretch.mass * omega2 - line.foundation
-        squares = abs(p * bend - shear * q) + abs(q * bend * (1.0 + p * shear)) ** 0.5
-        n = max(ceil(squares**0.5 * stretch.length / _REACH), 1)
-        _check_spans(n)
-        rate = np.zeros((4, 4), dtype=complex)
-        rate[0, 1], rate[0, 3], rate[1, 2], rate[2, 1], rate[2, 3], rate[3, 0] = 1.0, -shear, bend, p, 1.0, q
-        rates.append(rate * scale)
-        ends.append(places[i] + stretch.length * np.arange(n) / n)
-        belongs += [i] * n
-    return Spans(
-        ends=np.concatenate([*ends, [places[-1]]]),
-        rates=np.array(rates),
-        over=_over(line, omega2, np.array(belongs), scale),
+def divide(layout: BeamLayout, omega2: Array, loss_factor: float = 0.0) -> Division:
+    """Divide a beam at omega^2 (n_cases,); the loss factor acts on EI and kappa G A alone. Raises InputError."""
+    lossy = 1.0 + 1j * loss_factor if loss_factor else 1.0
+    length, stiffness, mass, compliance, rotary = np.array(layout.spans).T
+    w2 = omega2[:, None]
+    bend, shear = 1.0 / (stiffness * lossy), compliance / lossy
+    p, q = layout.tension - rotary * w2, mass * w2 - layout.foundation
+    sums, products = p * bend - shear * q, -q * bend * (1.0 + p * shear)
+    counts = np.ceil(np.sqrt(abs(sums) + np.sqrt(abs(products))) * length / _REACH).clip(1.0)
+    if counts.sum() > _MOST_PIECES:
+        raise InputError(
+            f"frequency: this beam bends in so many waves that {counts.sum():.0f} pieces follow them, more than "
+            f"{_MOST_PIECES}: lower frequency_hz or mode, or what shortens its waves (beam.tension, beam.foundation)"
+        )
+    counts = counts.astype(int)
+    sizes = (np.maximum(omega2, 1.0) ** 0.25)[:, None] ** np.arange(4)
+    scale = sizes[:, None, :] / sizes[:, :, None]
+    rates = np.zeros((len(omega2), len(length), 4, 4), dtype=sums.dtype)
+    entries = {(0, 1): 1.0, (0, 3): -shear, (1, 2): bend, (2, 1): p, (2, 3): 1.0, (3, 0): q}
+    pieces = length / counts
+    for (i, j), entry in entries.items():
+        rates[:, :, i, j] = entry * scale[:, None, i, j] * pieces
+    n_pieces = int(counts.sum())
+    span = np.repeat(np.arange(counts.size), counts.ravel())
+    first = np.cumsum(counts.ravel()) - counts.ravel()
+    within = np.arange(n_pieces) - first[span]
+    lengths = pieces.ravel()[span]
+    case = span // len(length)
+    bounds = np.concatenate([np.zeros((len(omega2), 1), dtype=int), np.cumsum(counts, axis=1)], axis=1)
+    offsets = np.cumsum(bounds[:, -1] + 1) - bounds[:, -1] - 1
+    station_ends = offsets[:, None] + bounds
+    dashed = any(station.dashpot or station.rotational_dashpot for station in layout.stations)
+    over = np.tile(np.eye(4, dtype=complex if dashed else float), (n_pieces + len(omega2), 1, 1))
+    omega = np.sqrt(omega2)
+    for i, one in enumerate(layout.stations):
+        along = one.stiffness - omega2 * one.mass + (1j * omega * one.dashpot if dashed else 0.0)
+        around = one.rotational - omega2 * one.inertia + (1j * omega * one.rotational_dashpot if dashed else 0.0)
+        over[station_ends[:, i], 3, 0] -= along * scale[:, 3, 0]
+        over[station_ends[:, i], 2, 1] += around * scale[:, 2, 1]
+    return Division(
+        layout=layout,
+        omega2=omega2,
+        counts=counts,
+        rates=rates.reshape(-1, 4, 4),
+        sums=(sums * pieces**2).ravel(),
+        products=(products * pieces**4).ravel(),
+        over=over,
         sizes=sizes,
-        supports=line.supports,
-        stretch=np.array(belongs),
+        span=span,
+        left=np.arange(n_pieces) + case,
+        begins=np.array(layout.positions)[span % len(length)] + within * lengths,
+        lengths=lengths,
+        station_ends=station_ends,
     )
 
 
-def _check_spans(n: int) -> None:
-    """Raise InputError for more spans than memory takes."""
-    if n > _MOST:
-        raise InputError(
-            f"frequency: this beam bends in so many waves that {n} spans follow them, more than {_MOST}: lower "
-            "frequency_hz or mode, or what makes its waves so short (beam.tension, beam.foundation)"
-        )
+def _taylor(starts: Any, sums: Any, products: Any, derivative: int = 0) -> Iterator[Any]:
+    """Taylor coefficients in t of a derivative of y, from y, y', y'', y''' at t = 0, (4, ...)."""
+    values, factorial = list(starts), 1.0
+    for n in range(derivative + _TERMS):
+        if n >= derivative:
+            factorial *= max(n - derivative, 1)
+            yield values[0] / factorial
+        values = [*values[1:], sums * values[2] - products * values[0]]
 
 
-def _over(line: Lineup, omega2: float, belongs: Indices, scale: Array) -> Array:
-    """The matrices of what is fixed, (n + 1, 4, 4)."""
-    over = np.tile(np.eye(4), (len(belongs) + 1, 1, 1))
-    for i, joint in enumerate(line.joints):
-        at = int(np.searchsorted(belongs, i))
-        over[at, 3, 0] -= (joint.stiffness - omega2 * joint.mass) * scale[3, 0]
-        over[at, 2, 1] += (joint.rotational - omega2 * joint.inertia) * scale[2, 1]
-    return over
+def _starts(division: Division, states: Any, of: int = 0) -> Any:
+    """(4, n_pieces, k), an entry of the state and its derivatives by t at the left end of each piece."""
+    rates, here, found = division.rates[division.span], states[division.left], []
+    for _ in range(4):
+        found.append(here[:, of])
+        here = rates @ here
+    return np.array(found)
 
 
-def solver(spans: Spans) -> Callable[[ComplexArray], ComplexArray]:
-    """Jumps of the state at the ends, (n + 1, 4, k), to states right of each end, (n + 1, 4, k).
+def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]] = ()) -> tuple[Any, Any]:
+    """(states right of each end, (n_ends, 4, k), and transverse forces (n_cases, n_imposed, k)).
 
-    A banded factorisation of the end conditions and of what carries each state to the next.
+    jumps: of the state at each end, (n_ends, 4, k). imposed: (station, deflection) pairs, each held by a force, which
+    is the unknown of its end in place of the deflection. Raises LinAlgError for a singular system.
     """
-    from scipy.linalg import solve_banded
+    from scipy.linalg.lapack import get_lapack_funcs
 
-    n = len(spans.stretch)
-    transfer = spans.within(np.ones(1))[:, 0]
-    matrix = _banded(spans, transfer)
-
-    def solve(jumps: ComplexArray) -> ComplexArray:
-        right = np.zeros((4 * n + 4, jumps.shape[2]), dtype=complex)
-        right[2 : 4 * n + 2] = (transfer @ jumps[:-1]).reshape(4 * n, -1)
-        right[4 * n + 2 :] = -jumps[-1][list(HELD[spans.supports[1]])]
-        left = solve_banded((_BAND, _BAND), matrix, right).reshape(n + 1, 4, -1)
-        return np.asarray(spans.over @ left + jumps)
-
-    return solve
-
-
-def _banded(spans: Spans, transfer: ComplexArray) -> ComplexArray:
-    """The matrix by its diagonals, (2 band + 1, 4 n + 4), of states left of each end."""
-    n = len(transfer)
-    matrix = np.zeros((2 * _BAND + 1, 4 * n + 4), dtype=complex)
-    for row, held in enumerate(HELD[spans.supports[0]]):
-        matrix[_BAND + row - held, held] = 1.0
-    carry = -transfer @ spans.over[:-1]
-    first = 4 * np.arange(n)
+    layout, left = division.layout, division.left
+    powers = [np.broadcast_to(np.eye(4), division.rates.shape)]
+    for _ in range(3):
+        powers.append(powers[-1] @ division.rates)
+    transfer = sum(_taylor(powers, division.sums[:, None, None], division.products[:, None, None]))
+    held = np.array([division.station_ends[:, station] for station, _ in imposed], dtype=int).reshape(-1)
+    over = division.over
+    jumps = np.array(jumps, dtype=np.result_type(jumps, over, transfer, complex if imposed else float))
+    known = np.zeros_like(jumps)
+    if imposed:
+        over = over.copy()
+        known[held, 0] = np.repeat([value for _, value in imposed], len(division.omega2))[:, None]
+        jumps += over @ known
+        over[held, :, 0] = [0.0, 0.0, 0.0, 1.0]
+    n_ends = len(over)
+    carry = -transfer[division.span] @ over[left]
+    matrix = np.zeros((2 * _LOWER + _UPPER + 1, 4 * n_ends), dtype=carry.dtype, order="F")
+    middle = _LOWER + _UPPER
     for i in range(4):
         for j in range(4):
-            matrix[_BAND + 2 + i - j, first + j] = carry[:, i, j]
-        matrix[_BAND - 2, first + 4 + i] = 1.0
-    for row, held in enumerate(HELD[spans.supports[1]]):
+            matrix[middle + 2 + i - j, 4 * left + j] = carry[:, i, j]
+        matrix[middle - 2, 4 * left + 4 + i] = 1.0
+    matrix[middle - 2, 4 * held] = 0.0
+    right = np.zeros((4 * n_ends, jumps.shape[2]), dtype=jumps.dtype)
+    rows = 4 * left[:, None] + 2 + np.arange(4)
+    right[rows] = transfer[division.span] @ jumps[left] - known[left + 1]
+    starts, ends = division.station_ends[:, 0], division.station_ends[:, -1]
+    for row, (at_left, at_right) in enumerate(zip(*(HELD[support] for support in layout.supports), strict=True)):
+        matrix[middle + row - at_left, 4 * starts + at_left] = 1.0
         for j in range(4):
-            matrix[_BAND + 2 + row - j, 4 * n + j] = spans.over[-1, held, j]
-    return matrix
+            matrix[middle + 2 + row - j, 4 * ends + j] = over[ends, at_right, j]
+        right[4 * ends + 2 + row] = -jumps[ends, at_right]
+    real = not np.iscomplexobj(matrix)
+    if real and np.iscomplexobj(right):  # real and imaginary parts side by side
+        right = right.view(float)
+    (gbsv,) = get_lapack_funcs(("gbsv",), (matrix, right))
+    *_, found, info = gbsv(_LOWER, _UPPER, matrix, right, overwrite_ab=True, overwrite_b=True)
+    if info or not np.isfinite(found).all():
+        raise np.linalg.LinAlgError("singular")
+    found = np.ascontiguousarray(found)
+    if real and np.iscomplexobj(jumps):
+        found = found.view(complex)
+    found = found.reshape(n_ends, 4, -1)
+    forces = found[held, 0].reshape(len(imposed), len(division.omega2), found.shape[2]).swapaxes(0, 1)
+    return over @ found + jumps, forces * division.sizes[:, 3, None, None]
+
+
+class Motion(msgspec.Struct, frozen=True, eq=False):
+    """Motions of a divided beam, k at each frequency."""
+
+    division: Division
+    states: Any
+    """(n_ends, 4, k), right of each end."""
+
+    def read(self, xi: Array, derivative: int, of: int = 0) -> Any:
+        """Derivative of the deflection by x / L at xi (n_x,), (n_cases, k, n_x), from the right where it jumps.
+
+        Likewise of the rotation.
+        """
+        division = self.division
+        ends = np.cumsum(division.counts.sum(axis=1))
+        begins = np.split(division.begins, ends[:-1])
+        piece = np.array([begin.searchsorted(xi + SAME_PLACE, side="right") for begin in begins]).clip(1) - 1
+        piece += (ends - division.counts.sum(axis=1))[:, None]
+        t = ((xi - division.begins[piece]) / division.lengths[piece])[:, :, None]
+        used = np.zeros(len(division.begins), dtype=bool)
+        used[piece] = True
+        piece = (np.cumsum(used) - 1)[piece]
+        some = msgspec.structs.replace(division, span=division.span[used], left=division.left[used])
+        sums, products = (values[some.span][:, None] for values in (division.sums, division.products))
+        total: Any = 0.0
+        for coefficients in reversed(list(_taylor(_starts(some, self.states, of), sums, products, derivative))):
+            total = total * t + coefficients[piece]
+        total = total / division.lengths[used][piece][:, :, None] ** derivative
+        return (total * division.sizes[:, of, None, None]).swapaxes(1, 2)
+
+
+def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
+    """Free motions of modes in a row, of modal mass 1 over rho A L, positive off the left end.
+
+    numbers: of the modes, (n,). betas: beta L of these, of the one before and the one after, (n + 2,).
+
+    Inverse iteration: the largest response to a few arbitrary excitations at resonance, then the response to forces and
+    couples like that motion, which excite no other mode. Two modes of one frequency share a plane of motions; the
+    second is made orthogonal to the first.
+    """
+    close = np.diff(betas) < _PAIR * betas[1:]
+    paired, betas = close[:-1], betas[1:-1]
+    alone = ~(close[:-1] | close[1:])
+    n_columns = _TRIES * (2 if paired.any() else 1)
+    for step in range(12):
+        division = divide(layout, betas**4 * (1.0 + step * _NUDGE))
+        starts = division.station_ends[:, 0]
+        case = np.repeat(np.arange(len(betas)), np.diff(np.append(starts, len(division.over))))
+        index = 4.0 * (np.arange(len(case)) - starts[case])[:, None, None] + np.arange(4)[:, None]
+        columns = np.arange(n_columns)
+        phases = index * (1.0 + 0.37 * (numbers[case][:, None, None] - columns // _TRIES) + 0.11 * (columns % _TRIES))
+        try:
+            states = _largest(solve(division, np.cos(phases))[0], starts, case)
+            jumps = np.zeros_like(states)
+            jumps[:, 3], jumps[:, 2] = states[:, 0], -states[:, 1]
+            states = np.where(alone[case, None, None], solve(division, jumps)[0], states)
+            break
+        except np.linalg.LinAlgError:
+            if step == 11:
+                raise InputError("mode: rounding does not separate its frequency from that of its neighbour") from None
+    states, other = states[:, :, :1], states[:, :, 1:]
+    if paired.any():
+        share = paired * _modal_mass(division, states, other) / _modal_mass(division, other, other)
+        states = states - other * share[case, None, None]
+    states = states / np.sqrt(_modal_mass(division, states, states))[case, None, None]
+    near = Motion(division, states).read(1e-3 / numbers, 0)[np.arange(len(betas)), 0, np.arange(len(betas))]
+    signs = np.ones(len(betas))
+    for i, (value, one) in enumerate(zip(near, np.split(states[:, 0, 0], starts[1:]), strict=True)):
+        deflections = np.append(value, one)
+        signs[i] = np.sign(deflections[abs(deflections) > 1e-9 * abs(deflections).max()][0])
+    return Motion(division, states * signs[case, None, None])
+
+
+def _largest(responses: Array, starts: Indices, case: Indices) -> Array:
+    """The largest of every `_TRIES` responses (n_ends, 4, k) in each case, its largest entry 1."""
+    found = []
+    for some in np.split(responses, responses.shape[2] // _TRIES, axis=2):
+        sizes = np.maximum.reduceat(abs(some).max(axis=1), starts, axis=0)
+        found.append(some[np.arange(len(case)), :, sizes.argmax(axis=1)[case]] / sizes.max(axis=1)[case, None])
+    return np.stack(found, axis=2)
+
+
+def _modal_mass(division: Division, one: Any, other: Any) -> Array:
+    """Modal mass that two motions share in each case, (n_cases,), over rho A L: of the beam and its attachments."""
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    powers = np.vander(0.5 * (points + 1.0), _TERMS, increasing=True)
+    sums, products = (values[division.span][:, None] for values in (division.sums, division.products))
+    layout, first = division.layout, np.cumsum(division.counts.sum(axis=1)) - division.counts.sum(axis=1)
+    masses, rotaries = (np.array(layout.spans)[:, i] for i in (2, 4))
+    total: Any = 0.0
+    for of, densities, factor in ((0, masses, 1.0), (ROTATION, rotaries, division.sizes[:, 1] ** 2)):
+        if densities.any():
+            values = [
+                powers @ np.array(list(_taylor(_starts(division, states, of), sums, products)))[:, :, 0]
+                for states in (one, other)
+            ]
+            on_pieces = 0.5 * weights @ (values[0] * values[1]) * division.lengths
+            on_pieces *= densities[division.span % len(densities)]
+            total = total + np.add.reduceat(on_pieces, first) * factor
+        for i, station in enumerate(layout.stations):
+            body = station.inertia if of else station.mass
+            if body:
+                at = division.station_ends[:, i]
+                total = total + body * factor * one[at, of, 0] * other[at, of, 0]
+    return np.asarray(total)

@@ -7,10 +7,10 @@ import numpy as np
 
 from verify.errors import InputError
 from verify.files import whole
+from verify.formatting import unit_of
 from verify.io.data import Dataset, Request
 from verify.report.plotting import INK, MODEL_COLORS, movie_frames
 from verify.report.result import Movie
-from verify.formatting import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation

@@ -9,7 +9,7 @@ import numpy as np
 from verify.analysis.solution_cache import SolutionCache
 from verify.arrays import Array
 from verify.errors import InputError
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 
 if TYPE_CHECKING:
     from verify.problem.beam import Beam
@@ -91,12 +91,11 @@ def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
 def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
     n = request.mode or MODES
     if count is not None:
-        available = MODELS[request.model].n_elastic(scene.beam, count)
         if request.mode is None:
-            n = min(n, available)
+            n = min(n, MODELS[request.model].build(scene.beam, count).n_elastic)
         modes = cache.modes(request.model, count, n)
     else:
-        modes = MODELS[request.model].solve_modes(scene.beam, n, None)  # type: ignore[arg-type]
+        modes = MODELS[request.model].build(scene.beam).modes(n)
     shapes, frequencies = np.asarray(modes.deflection(x))[:n], np.asarray(modes.frequencies_hz)[:n]
     digits = len(str(n))
     names = [f"mode_{i:0{digits}d} at {hertz:.9g} Hz" for i, hertz in enumerate(frequencies, 1)]
@@ -110,15 +109,12 @@ def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | 
 
 
 def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.waves.case import DrivenCase
-    from verify.waves.driven import driven
+    from verify.waves.driven_case import DrivenCase, driven
 
     if scene.drive is None or not scene.forces:
         raise InputError("what = 'wave': the scene has no drive with forces, add [drive] or export modes")
     case = DrivenCase(
-        beam=scene.beam,
-        model=request.model,
-        count=count,
+        model=MODELS[request.model].build(scene.beam, count),
         forces=scene.forces,
         frequency_hz=scene.drive.frequency_hz,
         kind=scene.drive.kind,

@@ -6,12 +6,13 @@ for models of parts: they give the system, how a place weighs its unknowns, and 
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cached_property
 from math import pi, sqrt
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from msgspec import structs
 
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_number, check_whole, check_word, several
@@ -19,7 +20,7 @@ from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, forces_on, frequencies_on, vector_on
-from verify.linear.system import FEW, StructuralSystem
+from verify.linear.system import FEW, SUPERPOSED, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_held
 from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
@@ -63,19 +64,28 @@ class BeamModel(ABC):
         cls.title = cls.title or getattr(cls, "name", "")
 
     @classmethod
-    def build(cls, beam: Beam, count: int | None, **settings: Any) -> "BeamModel":
+    def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":
         """The model of a beam by the number of parts, None for a model without. Raises InputError."""
+        cls.check_count(count)
+        for name, value in settings.items():
+            if name not in cls.settings():
+                raise InputError(f"{name} = {value!r} is no setting of the {cls.name} model: leave it out")
+        return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
+
+    @classmethod
+    def check_count(cls, count: int | None) -> None:
+        """Raise InputError for a missing number of parts, and for one where there are none."""
         if cls.sized == (count is None):
             raise InputError(
                 f"count is missing: give the number of {cls.parts} for model = {cls.name}"
                 if cls.sized
                 else f"count = {count!r} is for models of parts: {cls.name} has none, leave it out"
             )
-        known = {one.name for one in fields(cls)}  # type: ignore[arg-type]
-        for name in settings:
-            if name not in known:
-                raise InputError(f"{name} = {settings[name]!r} is no setting of the {cls.name} model: leave it out")
-        return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
+
+    @classmethod
+    def settings(cls) -> tuple[str, ...]:
+        """Names of its settings: its fields after the beam and the number of parts."""
+        return tuple(one.name for one in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
 
     @classmethod
     def can(cls, verb: str) -> bool:
@@ -143,8 +153,8 @@ class BeamModel(ABC):
         """Wavenumber of waves in it, 1/m; that of the exact beam unless its dispersion is known."""
         return wavenumber(self.beam, frequency_hz)
 
-    def check_propagates(self, frequency_hz: float) -> None:
-        """Raise CutOffError for a frequency above the cut-off of its parts."""
+    def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
+        """Raise NoFigureError for a frequency above the cut-off of its parts."""
 
     def check_n_modes(self, n_modes: int) -> None:
         """Raise InputError unless it has so many elastic modes."""
@@ -182,7 +192,7 @@ class BeamModel(ABC):
         return acting, stationed
 
     def _has_no(self, verb: str) -> InputError:
-        from verify.linear.catalogue import MODELS
+        from verify.linear.registry import MODELS
 
         able = ", ".join(model.name for model in MODELS.values() if model.can(verb))
         return InputError(f"model = {self.name!r} has no {verb.replace('_', ' ')}: choose one of {able}")
@@ -204,7 +214,19 @@ class DiscreteModel(BeamModel):
     @property
     @abstractmethod
     def system(self) -> StructuralSystem:
-        """Its stiffness and mass; a cached property."""
+        """Its stiffness and mass, stable or not; a cached property."""
+
+    @cached_property
+    def stable_system(self) -> StructuralSystem:
+        """The system. Raises InputError where the beam's axial force buckles it."""
+        if self.beam.tension < 0.0:
+            load = 0.0 if self._tilts else -self.beam.tension * self.system.buckling_factor()
+            if -self.beam.tension >= load:
+                raise InputError(
+                    f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling: {self.count} "
+                    f"{self.parts} buckle at {load:.6g} N, compress it less or hold it better"
+                )
+        return self.system
 
     @abstractmethod
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
@@ -223,7 +245,7 @@ class DiscreteModel(BeamModel):
 
     @abstractmethod
     def lossy_stiffness(self, omega: float) -> Any:
-        """d of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
+        """D of the system with the losses of the material and of dashpots at omega (rad/s), (m,).
 
         Real where nothing is lost.
         """
@@ -242,6 +264,19 @@ class DiscreteModel(BeamModel):
         return max(self.n_unknowns - self.beam.rigid_motions, 0)
 
     @property
+    def _tilts(self) -> bool:
+        """Whether the beam without its axial force rotates freely as a whole."""
+        return any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines)
+
+    def check_memory(self, n_modes: int = 0) -> None:
+        """Raise InputError, before anything is built, for a system of more than 10 GB: `system.memory`."""
+        if memory(self.n_unknowns, n_modes) > 10e9:
+            raise InputError(
+                f"count = {self.count}: {self.n_unknowns} unknowns with {n_modes} modes exceed the largest system of "
+                f"10 GB, lower the number of {self.parts} or of modes"
+            )
+
+    @property
     def _omega_unit(self) -> float:
         """rad/s of a dimensionless frequency of 1."""
         return self.beam.wave_constant / self.unit**2
@@ -249,7 +284,8 @@ class DiscreteModel(BeamModel):
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes. Raises InputError for more than it has, and for a compression beyond buckling."""
         self.check_n_modes(n_modes)
-        values, vectors = self.system.modes(n_modes)
+        self.check_memory(n_modes)
+        values, vectors = self.stable_system.modes(n_modes)
         vectors = self.normalised(vectors)
         return Modes(
             model=self.name,
@@ -257,6 +293,7 @@ class DiscreteModel(BeamModel):
             length=self.beam.length,
             frequencies_hz=np.sqrt(values) * (self._omega_unit / (2.0 * pi)),
             shapes=self.line(vectors),
+            method=self.stable_system.method(n_modes),
             **self.modes_of(vectors),
         )
 
@@ -296,27 +333,34 @@ class DiscreteModel(BeamModel):
         check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
         omegas = 2.0 * pi * frequencies
         omega2 = (omegas / self._omega_unit) ** 2
-        damped, last = self.lossy_stiffness(float(omegas[0])), self.lossy_stiffness(float(omegas[-1]))
-        factors = damped / self.system.stiffness
-        couples = bool(np.ptp(np.imag(factors)) > 1e-15 * abs(factors).max()) or not np.array_equal(damped, last)
-        if modal_damping and (couples or rows):
+        loss = self._shared_loss(omegas)
+        if modal_damping and (loss is None or rows):
             raise InputError(
                 f"modal_damping = {modal_damping!r} beside {'devices' if rows else 'a loss in a part of the stiffness'}"
                 ": the modes would couple, give one of the two"
             )
-        sweep = len(omegas) > FEW and not (couples or rows) and self.system.stiffness.min() > 0.0
-        if modal_damping or (sweep and self.system.n <= 4 * 150):
-            found = self.system.harmonic_sweep(loads, omega2, float(np.imag(factors[0])), modal_damping)
+        if modal_damping or (self._superposes(omegas) and not rows):
+            found = self.stable_system.harmonic_sweep(loads, omega2, loss or 0.0, modal_damping)
             if (at := np.flatnonzero(np.isnan(found[:, 0, 0]))).size:
                 raise self._at_resonance(float(frequencies[at[0]]))
             return found
         found = np.empty((len(omegas), *loads.shape), dtype=complex)
         for i, w2 in enumerate(omega2):
             try:
-                found[i] = self.system.harmonic(loads, float(w2), self.lossy_stiffness(float(omegas[i])), rows)
+                found[i] = self.stable_system.harmonic(loads, float(w2), self.lossy_stiffness(float(omegas[i])), rows)
             except np.linalg.LinAlgError:
                 raise self._at_resonance(float(frequencies[i])) from None
         return found
+
+    def _shared_loss(self, omegas: Array) -> float | None:
+        """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
+        first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
+        losses = np.imag(first / self.stable_system.stiffness)
+        return float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
+
+    def _superposes(self, omegas: Array) -> bool:
+        """Whether all modes cost less than a factorisation for each frequency, and are not coupled."""
+        return len(omegas) > FEW and self.stable_system.n <= SUPERPOSED and self._shared_loss(omegas) is not None
 
     def _at_resonance(self, frequency_hz: float) -> ResonanceError:
         return ResonanceError(
@@ -380,7 +424,7 @@ class DiscreteModel(BeamModel):
             )
         amplitudes = np.array([phasor(drive) for drive in drives])
         try:
-            unknowns, forces = self.system.prescribed(
+            unknowns, forces = self.stable_system.prescribed(
                 rows,
                 amplitudes,
                 (omega / self._omega_unit) ** 2,
@@ -400,22 +444,17 @@ class DiscreteModel(BeamModel):
         read, scale = vector_on("x", x, self.beam.length), self.unit**3 / self.beam.bending_stiffness
         loads = self.load_rows(at).toarray().T * scale
         omegas = 2.0 * pi * frequencies
-        damped = self.lossy_stiffness(float(omegas[0]))
-        factors = damped / self.system.stiffness
-        found = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
-        if self.system.n <= 4 * 150 and np.ptp(np.imag(factors)) <= 1e-15 and self.system.stiffness.min() > 0.0:
+        if self._superposes(omegas):
             # shapes are read once, of modes, and not of every response
-            values, vectors = self.system.all_modes
-            shapes, weights = self.line(vectors)(read, 0), vectors.T @ loads
-            omega2 = (omegas / self._omega_unit) ** 2
-            denominators = values * factors[0] - omega2[:, None]
-            near = (abs(denominators) <= 2e-9 * omega2[:, None]).any(axis=1)
-            denominators[near] = np.nan
-            found = np.einsum("mp,fm,mx->fpx", weights, 1.0 / denominators, shapes, optimize=True)
+            omega2, loss = (omegas / self._omega_unit) ** 2, self._shared_loss(omegas) or 0.0
+            receptances, acting, responding = self.stable_system.modal_receptances(omega2, loss)
+            weights, shapes = acting.T @ loads, self.line(responding)(read, 0)
+            found = np.einsum("mp,fm,mx->fpx", weights, receptances, shapes, optimize=True)
             return np.asarray(found, dtype=complex)
+        found = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
         for i, omega in enumerate(omegas):
             try:
-                response = self.system.harmonic(
+                response = self.stable_system.harmonic(
                     loads, float(omega / self._omega_unit) ** 2, self.lossy_stiffness(float(omega))
                 )
             except np.linalg.LinAlgError:
@@ -423,19 +462,27 @@ class DiscreteModel(BeamModel):
             found[i] = self.line(response)(read, 0)
         return found
 
+    def buckling_load(self) -> float:
+        """The compression at which it buckles first, N; 0 where nothing keeps the beam from tilting."""
+        if self._tilts:
+            return 0.0
+        load = float(self.beam.bending_stiffness / self.beam.length**2)
+        compressed: DiscreteModel = replace(self, beam=structs.replace(self.beam, tension=-load))  # type: ignore[type-var]
+        return load * compressed.system.buckling_factor()
+
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
         """All its modes for motion in time. Raises InputError for rigid-body motions, and for too many unknowns."""
         check_held(self.beam)
         check_word("line", line, self.lines)
         if modes is not None:
             raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} keeps all it has, leave it out")
-        values, vectors = self.system.all_modes
+        values, vectors = self.stable_system.all_modes
         lossy = self.lossy_stiffness(1.0)
         ratios = None
         if self.beam.loss_factor and self.beam.lossless:
             # half of the loss factor times the share of what has loss in each mode's stiffness
-            energies = self.system.strain(vectors) ** 2
-            ratios = 0.5 * (np.imag(lossy) @ energies) / (self.system.stiffness @ energies)
+            energies = self.stable_system.strain(vectors) ** 2
+            ratios = 0.5 * (np.imag(lossy) @ energies) / (self.stable_system.stiffness @ energies)
         vectors = self.normalised(vectors)
         return TimeBasis(
             model=self.name,

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import msgspec
 
 from verify.arrays import Array
-from verify.linear.places import Numbers, as_asked, keep_lines, places
+from verify.linear.positions import Numbers, positions_on, reshape_like
 
 
 class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -39,9 +39,6 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg)); on a step right of it."""
     method: str = "closed form"
     """How the eigenvalues were found."""
-
-    def __post_init__(self) -> None:
-        keep_lines(self, "shapes")
 
     @classmethod
     def of_shapes(
@@ -82,12 +79,12 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
         Raises InputError.
         """
-        return as_asked(self.shapes(self._on_beam(x), 0), x)
+        return reshape_like(self.shapes(self._on_beam(x), 0), x)
 
     def slope(self, x: Numbers) -> Array:
         """d/dx of `deflection`, of the same shape, in 1/(m sqrt(kg)). Raises InputError."""
-        return as_asked(self.shapes(self._on_beam(x), 1), x)
+        return reshape_like(self.shapes(self._on_beam(x), 1), x)
 
     def _on_beam(self, x: Numbers) -> Array:
         """The positions in a row. Raises InputError where one lies off the beam."""
-        return places("x", x, self.length).ravel()
+        return positions_on("x", x, self.length).ravel()

@@ -8,14 +8,14 @@ error is of second order in that of the vector. Factorisations use the augmented
 Unknowns, stiffnesses and masses are dimensionless, of order one; models scale them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, BoolArray, ComplexArray
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 
 DENSE = 150
@@ -26,6 +26,23 @@ RESONANCE = 1e-9
 """Relative distance in frequency to an undamped resonance below which a response is rounding."""
 FEW = 4
 """Frequencies up to which each is solved by itself: all modes cost more than a few factorisations."""
+SUPERPOSED = 600
+"""Unknowns up to which many frequencies are superposed from all modes."""
+
+
+def uses_dense(n: int, k: int) -> bool:
+    """Whether k modes of n unknowns come from dense matrices: few unknowns, or a good part of all modes."""
+    return n <= DENSE or 3 * k > n
+
+
+def memory(n: int, k: int) -> int:
+    """Bytes that k modes of n unknowns take: eight dense matrices, or sparse factors and the Lanczos basis."""
+    return 64 * n**2 if uses_dense(n, k) else 8 * n * (250 + 8 * k)
+
+
+def _sums(terms: Array) -> Array:
+    """Sums over rows, pairwise as contiguous sums are: one after another, a million terms leave 1e-12."""
+    return np.asarray(np.ascontiguousarray(terms.T).sum(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,31 +85,27 @@ class StructuralSystem:
             product = factor @ product
         return product.tocsc()
 
-    def rayleigh_quotients(self, vectors: Array) -> Array:
-        """Eigenvalues (k,) of vectors (n, k), accurate to rounding where the vectors are to half of the digits."""
-        energies = self.stiffness[:, None] * self.strain(vectors) ** 2
-        # pairwise sums over rows that are contiguous: one after another, a million terms leave 1e-12
-        return np.asarray(np.ascontiguousarray(energies.T).sum(axis=1) / self._modal_masses(vectors))
-
-    def _modal_masses(self, vectors: Array) -> Array:
-        return np.asarray(np.ascontiguousarray((vectors * (self.mass @ vectors)).T).sum(axis=1))
-
     # --- Modes ---------------------------------------------------------------------------------------------------
 
     def modes(self, k: int) -> tuple[Array, Array]:
         """The lowest k elastic eigenvalues omega^2 (k,), ascending, and vectors (n, k) of unit modal mass.
 
-        Raises InputError where a compression leaves no positive eigenvalue.
+        Raises InputError where a compression leaves no positive eigenvalue, and where Lanczos does not converge.
         """
-        if self.n <= DENSE or 3 * (k + self.n_rigid) > self.n:
-            vectors = self._by_svd(k) if self.stiffness.min() > 0.0 else self._by_dense_pencil(k)
-        else:
-            vectors = self._by_lanczos(k)
-        values = self.rayleigh_quotients(vectors)
+        by = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
+        strains, vectors = by[self.method(k)](k)
+        masses = _sums(vectors * (self.mass @ vectors))
+        values = _sums(self.stiffness[:, None] * strains**2) / masses
         if values.min(initial=1.0) <= 0.0:
             raise InputError("beam.tension: the compression buckles this model, compress less or hold the beam better")
         order = np.argsort(values, kind="stable")
-        return values[order], (vectors / np.sqrt(self._modal_masses(vectors)))[:, order]
+        return values[order], (vectors / np.sqrt(masses))[:, order]
+
+    def method(self, k: int) -> str:
+        """How `modes` computes k vectors: "Lanczos", "singular values", or "dense" where a stiffness is negative."""
+        if not uses_dense(self.n, k + self.n_rigid):
+            return "Lanczos"
+        return "singular values" if self.stiffness.min() > 0.0 else "dense"
 
     @cached_property
     def all_modes(self) -> tuple[Array, Array]:
@@ -104,50 +117,75 @@ class StructuralSystem:
             )
         return self.modes(self.n - self.n_rigid)
 
-    def _by_svd(self, k: int) -> Array:
+    def _by_svd(self, k: int) -> tuple[Array, Array]:
         """From the singular values of diag(d)^(1/2) B L^-T with M = L L^T, conditioned like n^2 and not n^4."""
-        inverse = np.linalg.inv(np.linalg.cholesky(self.mass.toarray()))
-        root = np.sqrt(self.stiffness)[:, None] * self.strain(inverse.T)
+        from scipy.linalg import solve_triangular
+
+        lower = np.linalg.cholesky(self.mass.toarray())
+        root = (np.sqrt(self.stiffness)[:, None] * self.strain_matrix.toarray()).T
+        root = solve_triangular(lower, root, lower=True, check_finite=False).T
         right = np.linalg.svd(root, full_matrices=root.shape[0] < self.n)[2]
         last = self.n - self.n_rigid
-        return np.asarray(inverse.T @ right[last - k : last].T)
+        vectors = solve_triangular(lower, right[last - k : last].T, lower=True, trans="T", check_finite=False)
+        return self.strain(vectors), vectors
 
-    def _by_dense_pencil(self, k: int) -> Array:
-        """From the assembled matrices, for negative stiffnesses, which have no square root: few unknowns only."""
+    def _by_dense_pencils(self, k: int) -> tuple[Array, Array]:
+        """Of negative stiffnesses, which have no square root: low modes from K^-1, high ones from K.
+
+        K loses the low eigenvalues and K^-1 the high ones; at their geometric mean both are conditioned like n^2.
+        """
         from scipy.linalg import eigh
 
-        strain = self.strain(np.eye(self.n))
-        first = self.n_rigid
-        pencil = strain.T @ (self.stiffness[:, None] * strain), self.mass.toarray()
-        return np.asarray(eigh(*pencil, subset_by_index=[first, first + k - 1])[1])
+        mass, strain = self.mass.toarray(), self.strain_matrix.toarray()
+        values, vectors = (
+            part[..., self.n_rigid :] for part in eigh(strain.T @ (self.stiffness[:, None] * strain), mass)
+        )
+        flexibility = mass @ self._inverse(0.0)(mass)[1]
+        inverse, low = (part[..., ::-1] for part in eigh(0.5 * (flexibility + flexibility.T), mass))
+        n_low = int(np.searchsorted(values, np.sqrt(values[-1] / inverse[0])))
+        vectors = np.hstack([low[:, :n_low], vectors[:, n_low:]])[:, :k]
+        return self.strain(vectors), vectors
 
-    def _by_lanczos(self, k: int) -> Array:
-        """Shift and invert; without a shift, rigid-body motions are held, and projected out of load and response."""
-        from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh, splu
+    def _by_lanczos(self, k: int) -> tuple[Array, Array]:
+        """Shift and invert, from below all eigenvalues.
+
+        Strains are solved for and not read off the vectors, whose last digit is a strain: 1e-4 of it at 1e6 parts.
+        """
+        from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
         shift = 0.999 * self.lower_bound
-        free = np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
-        kept = np.concatenate([np.arange(len(self.stiffness)), len(self.stiffness) + free])
-        matrix = self.augmented(-shift)
-        factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
-        m = len(self.stiffness)
-
-        def solve(load: Array) -> Array:
-            right, response = np.zeros(m + len(free)), np.zeros(self.n)
-            right[m:] = self._without_rigid_load(load)[free]
-            response[free] = factor.solve(right)[m:]
-            return self._without_rigid(response)
-
-        inverse = LinearOperator((self.n, self.n), matvec=lambda b: solve(b.ravel()), dtype=float)
+        solve = self._inverse(shift)
+        inverse = LinearOperator((self.n, self.n), matvec=lambda b: solve(b.reshape(-1, 1))[1][:, 0], dtype=float)
         start = self._without_rigid(np.random.default_rng(0).standard_normal(self.n))
+        sought = {"M": self.mass, "sigma": shift, "OPinv": inverse, "v0": start, "ncv": min(k + 30, self.n)}
         try:
-            return np.asarray(
-                eigsh(inverse, k, M=self.mass, sigma=shift, OPinv=inverse, v0=start, ncv=min(k + 30, self.n))[1]
-            )
+            vectors = eigsh(inverse, k, **sought)[1]
         except ArpackNoConvergence:
             raise InputError(
                 f"the lowest {k} of {self.n} modes do not converge: hold the beam better, or lower count"
             ) from None
+        return solve(self.mass @ vectors)
+
+    def _inverse(self, shift: float) -> Callable[[Array], tuple[Array, Array]]:
+        """Strains (m, k) and response (n, k) of K - shift M to loads (n, k).
+
+        Without a shift rigid-body motions are held, and projected out of loads and response.
+        """
+        from scipy.sparse.linalg import splu
+
+        m, free = len(self.stiffness), np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
+        matrix, compliance = self.augmented(-shift), (self._pattern[3] / self.stiffness)[:, None]
+        kept = np.concatenate([np.arange(m), m + free])
+        factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
+
+        def solve(loads: Array) -> tuple[Array, Array]:
+            right, response = np.zeros((m + len(free), loads.shape[1])), np.zeros(loads.shape)
+            right[m:] = (self._without_rigid(loads, load=True) if len(free) < self.n else loads)[free]
+            solution = factor.solve(right)
+            response[free] = solution[m:]
+            return compliance * solution[:m], self._without_rigid(response)
+
+        return solve
 
     @cached_property
     def _rigid_dual(self) -> tuple[Array, Array]:
@@ -155,45 +193,65 @@ class StructuralSystem:
         inertia = self.mass @ self.rigid
         return inertia, np.linalg.solve(self.rigid.T @ inertia, self.rigid.T).T
 
-    def _without_rigid(self, vector: Array) -> Array:
+    def _without_rigid(self, vectors: Array, *, load: bool = False) -> Array:
+        """Vectors (or loads) (n, ...) without their rigid-body part."""
         if not self.n_rigid:
-            return vector
+            return vectors
         inertia, dual = self._rigid_dual
-        return np.asarray(vector - dual @ (inertia.T @ vector))
-
-    def _without_rigid_load(self, load: Array) -> Array:
-        if not self.n_rigid:
-            return load
-        inertia, dual = self._rigid_dual
-        return np.asarray(load - inertia @ (dual.T @ load))
+        return np.asarray(vectors - (inertia @ (dual.T @ vectors) if load else dual @ (inertia.T @ vectors)))
 
     def _grounded(self) -> list[int]:
         """One unknown for each rigid-body motion that, held, leaves none (pivots of a Gaussian elimination)."""
-        motions, held = self.rigid.copy() if self.n_rigid else np.zeros((self.n, 0)), []
-        for j in range(motions.shape[1]):
+        motions, held = self.rigid.copy(), list[int]()
+        for j in range(self.n_rigid):
             held.append(int(abs(motions[:, j]).argmax()))
             motions[:, j + 1 :] -= np.outer(motions[:, j] / motions[held[-1], j], motions[held[-1], j + 1 :])
         return held
 
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
-    def augmented(self, mass_factor: complex, stiffness: Any = None, corner: Any = None, border: Any = None) -> Any:
-        """[[-1/d, B], [B^T, mass_factor M + corner]], sparse by columns; `border` (p, n) appends constraint rows.
+    @cached_property
+    def _pattern(self) -> tuple[Any, Any, Any, Array]:
+        """[[-1, B], [B^T, M]] sparse by columns, where its data hold -1 and M, and the scales of the strains.
 
         Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
         """
         from scipy.sparse import block_array, csc_array, diags_array
 
-        d = self.stiffness if stiffness is None else stiffness
-        scales = np.exp2(np.minimum(np.round(0.5 * np.log2(abs(d))), 0.0))
+        m, scales = len(self.stiffness), np.exp2(np.minimum(np.round(0.5 * np.log2(abs(self.stiffness))), 0.0))
         strain = diags_array(scales) @ self.strain_matrix
-        inner = mass_factor * self.mass if mass_factor else None
-        if corner is not None:
-            inner = corner if inner is None else inner + corner
-        rows: list[list[Any]] = [[diags_array(-(scales**2) / d), strain], [strain.T, inner]]
-        if border is not None:
-            rows = [[*rows[0], None], [*rows[1], border.T], [None, border, None]]
-        return csc_array(block_array(rows, format="csc"))
+        matrix = csc_array(block_array([[diags_array(-np.ones(m)), strain], [strain.T, self.mass]], format="csc"))
+        columns = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
+        inertia = np.flatnonzero((columns >= m) & (matrix.indices >= m))
+        return matrix, np.flatnonzero((columns < m) & (matrix.indices < m)), inertia, scales
+
+    def augmented(self, mass_factor: float, stiffness: Any = None) -> Any:
+        """[[-1/d, B], [B^T, mass_factor M]], sparse by columns. Its pattern is made once, its data per frequency."""
+        from scipy.sparse import csc_array
+
+        d = self.stiffness if stiffness is None else stiffness
+        matrix, compliance, inertia, scales = self._pattern
+        data = matrix.data.astype(d.dtype)
+        data[compliance] = -(scales**2) / d
+        data[inertia] *= mass_factor
+        return csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+
+    def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
+        """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
+        from scipy.sparse import block_array, csc_array, hstack
+        from scipy.sparse.linalg import splu
+
+        matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
+        for row, z in devices:
+            wide = hstack([csc_array((1, m)), row], format="csc")
+            matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide)
+        if rows is not None:
+            wide = block_array([[csc_array((rows.shape[0], m)), rows]], format="csc")
+            matrix = block_array([[matrix, wide.T], [wide, None]], format="csc")
+        try:
+            return splu(csc_array(matrix))
+        except RuntimeError:  # exactly singular
+            raise np.linalg.LinAlgError(0.0) from None
 
     def harmonic(
         self, loads: Any, omega2: float, stiffness: Any = None, devices: Sequence[tuple[Any, complex]] = ()
@@ -204,35 +262,23 @@ class StructuralSystem:
         its dynamic stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of a resonance where
         nothing is damped.
         """
-        d = self.stiffness if stiffness is None else stiffness
+        d, k = self.stiffness if stiffness is None else stiffness, loads.shape[1]
         undamped = not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices)
-        corner = sum((((z.real if undamped else z) * (row.T @ row)) for row, z in devices), start=0) if devices else None
-        factor = self._factor(omega2, d, corner)
-        m = len(d)
+        factor = self._factor(omega2, d if undamped else np.asarray(d, dtype=complex), devices)
 
         def solve(load: Any) -> Any:
-            right = np.concatenate([np.zeros((m, load.shape[1])), load])
-            return factor.solve(right if undamped or np.iscomplexobj(right) else right.astype(complex))[m:]
+            return factor.solve(np.concatenate([np.zeros((len(d), load.shape[1]), dtype=load.dtype), load]))[len(d) :]
 
-        if undamped:
-            # one step of inverse iteration on the coupled system: omega_n^2 - omega^2 of the nearest resonance
-            first = solve(np.random.default_rng(0).standard_normal((self.n, 1)))
-            second = solve(self.mass @ first)
-            distance = float((first * (self.mass @ first)).sum() / (first * (self.mass @ second)).sum())
-            if abs(distance) <= 2.0 * RESONANCE * omega2:
-                raise np.linalg.LinAlgError(distance)
-            if np.iscomplexobj(loads):
-                both = solve(np.hstack([loads.real, loads.imag]))
-                return both[:, : loads.shape[1]] + 1j * both[:, loads.shape[1] :]
-        return solve(loads)
-
-    def _factor(self, omega2: float, stiffness: Any, corner: Any = None, border: Any = None) -> Any:
-        from scipy.sparse.linalg import splu
-
-        try:
-            return splu(self.augmented(-omega2, stiffness, corner, border))
-        except RuntimeError:  # exactly singular
-            raise np.linalg.LinAlgError(0.0) from None
+        if not undamped:
+            return solve(loads.astype(complex))
+        start = np.random.default_rng(0).standard_normal((self.n, 1))
+        parts = solve(np.hstack([start, loads.real, loads.imag] if np.iscomplexobj(loads) else [start, loads]))
+        # one step of inverse iteration on the coupled system: omega_n^2 - omega^2 of the nearest resonance
+        first = self.mass @ parts[:, :1]
+        distance = float((parts[:, :1] * first).sum() / (first * solve(first)).sum())
+        if abs(distance) <= 2.0 * RESONANCE * omega2:
+            raise np.linalg.LinAlgError(distance)
+        return parts[:, 1 : k + 1] + 1j * parts[:, k + 1 :] if np.iscomplexobj(loads) else parts[:, 1:]
 
     def harmonic_sweep(
         self, loads: Any, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
@@ -241,18 +287,30 @@ class StructuralSystem:
 
         `modal_damping` is the damping ratio of every mode. NaN at the frequencies of undamped resonances.
         """
-        values, vectors = self.all_modes
-        denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None]
-        denominators = denominators + 2j * modal_damping * np.sqrt(values * omega2[:, None])
-        near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
-        denominators[near.any(axis=1)] = np.nan
-        shares = (vectors.T @ loads)[None] / denominators[:, :, None]
-        response = vectors @ shares.transpose(1, 0, 2).reshape(len(values), -1)
-        if self.n_rigid:
-            inertia, dual = self._rigid_dual
-            rigid = -(dual @ (self.rigid.T @ loads))[None] / omega2[:, None, None]
-            return np.asarray(response.reshape(self.n, len(omega2), -1).transpose(1, 0, 2) + rigid)
+        receptances, acting, responding = self.modal_receptances(omega2, loss_factor, modal_damping)
+        shares = (acting.T @ loads)[None] * receptances[:, :, None]
+        response = responding @ shares.transpose(1, 0, 2).reshape(acting.shape[1], -1)
         return np.asarray(response.reshape(self.n, len(omega2), -1).transpose(1, 0, 2))
+
+    def modal_receptances(
+        self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
+    ) -> tuple[ComplexArray, Array, Array]:
+        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), vectors (n, k) of load and response.
+
+        Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
+        """
+        values, vectors = self.all_modes
+        acting = responding = vectors
+        if self.n_rigid:
+            values = np.concatenate([np.zeros(self.n_rigid), values])
+            acting, responding = np.hstack([self.rigid, vectors]), np.hstack([self._rigid_dual[1], vectors])
+        damping = 2j * modal_damping * np.sqrt(values * omega2[:, None])
+        denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None] + damping
+        near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
+        denominators[near] = 1.0
+        receptances = 1.0 / denominators
+        receptances[near.any(axis=1)] = np.nan
+        return receptances, acting, responding
 
     def prescribed(
         self,
@@ -263,36 +321,40 @@ class StructuralSystem:
         devices: Sequence[tuple[Any, complex]] = (),
     ) -> tuple[ComplexArray, ComplexArray]:
         """The steady response (n,) where rows (p, n) of it are given, and the forces (p,) that hold them there."""
-        d = self.stiffness if stiffness is None else stiffness
-        corner = sum((z * (row.T @ row) for row, z in devices), start=0) if devices else None
-        factor = self._factor(omega2, np.asarray(d, dtype=complex), corner, rows)
-        right = np.concatenate([np.zeros(len(d) + self.n), displacements]).astype(complex)
-        solution = factor.solve(right)
-        return solution[len(d) : len(d) + self.n], -solution[len(d) + self.n :]
+        m, d = len(self.stiffness), self.stiffness if stiffness is None else stiffness
+        factor = self._factor(omega2, np.asarray(d, dtype=complex), devices, rows)
+        solution = factor.solve(np.concatenate([np.zeros(m + self.n), displacements]).astype(complex))
+        return solution[m : m + self.n], -solution[m + self.n :]
 
     # --- Buckling ------------------------------------------------------------------------------------------------
 
     def buckling_factor(self) -> float:
-        """The factor on all negative stiffnesses at which the system buckles; infinite without any."""
+        """The factor on all negative stiffnesses at which the system buckles; infinite without any.
+
+        Rigid-body motions are of no consequence unless they strain a negative stiffness. Raises InputError where the
+        lowest loads lie too close together.
+        """
+        from scipy.sparse import diags_array
+        from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
         soft = self.stiffness < 0.0
         if not soft.any():
             return float("inf")
-        if self.n_rigid:
-            return 0.0
-        from scipy.sparse import diags_array
-        from scipy.sparse.linalg import LinearOperator, eigsh, splu
-
-        released = (diags_array(np.sqrt(-self.stiffness[soft])) @ self.strain_matrix.tocsr()[soft]).tocsc()
-        held = StructuralSystem([self.strain_matrix.tocsr()[~soft]], self.stiffness[~soft], self.mass)
-        m, factor = len(held.stiffness), splu(held.augmented(0.0))
-
-        def flexibility(forces: Array) -> Array:
-            return np.asarray(released @ factor.solve(np.concatenate([np.zeros(m), released.T @ forces.ravel()]))[m:])
-
+        strain = self.strain_matrix.tocsr()
+        released = diags_array(np.sqrt(-self.stiffness[soft])) @ strain[soft]
+        solve = StructuralSystem([strain[~soft]], self.stiffness[~soft], self.mass, self.rigid)._inverse(0.0)
         size = released.shape[0]
-        if size <= 2 or size <= 12:
-            columns = np.column_stack([flexibility(unit) for unit in np.eye(size)])
-            return float(1.0 / np.linalg.eigvalsh(0.5 * (columns + columns.T)).max())
-        operator = LinearOperator((size, size), dtype=float, matvec=flexibility)
+        operator = LinearOperator(
+            (size, size),
+            dtype=float,
+            matvec=lambda forces: released @ solve(released.T @ forces.reshape(-1, 1))[1][:, 0],
+        )
+        if size <= 60:
+            return float(1.0 / np.linalg.eigvalsh(operator @ np.eye(size))[-1])
         start = np.random.default_rng(0).standard_normal(size)
-        return float(1.0 / eigsh(operator, k=1, which="LA", v0=start, return_eigenvectors=False)[0])
+        try:
+            return float(1.0 / eigsh(operator, 1, which="LA", v0=start, ncv=60, return_eigenvectors=False)[0])
+        except ArpackNoConvergence:
+            raise InputError(
+                "count: the lowest buckling loads lie too close together on so many parts, lower it"
+            ) from None

@@ -9,8 +9,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.linear.pencil import FactoredPencil
-from verify.linear.places import Numbers, as_asked, keep_lines, places
+from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointForce
 
 Ratio: TypeAlias = float | Array
@@ -50,9 +49,6 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     turns: Callable[[], Array] | None = None
     """() -> (n, bodies): how far the bodies of `beam.mass` turn; None where they turn as the shapes do there."""
 
-    def __post_init__(self) -> None:
-        keep_lines(self, "shapes")
-
     def body_turns(self) -> Array:
         """How far the bodies of `beam.mass` turn, (n, bodies), in 1/(sqrt(kg) m)."""
         if self.turns is not None:
@@ -61,16 +57,7 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def deflection(self, x: Numbers) -> Array:
         """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg); a number is a row of one. Raises InputError off it."""
-        return as_asked(self.shapes(places("x", x, self.beam.length).ravel(), 0), x)
-
-
-def own_ratios(pencil: FactoredPencil, vectors: Array, lossy: ComplexArray) -> Array:
-    """`TimeBasis.ratios`, (n,), of modes (columns) and D with its losses, (m,): of the first order in them.
-
-    What a loss factor and what has none make of a mode together couples it to the others by no more than that.
-    """
-    energies = pencil.strain(vectors) ** 2
-    return np.asarray(0.5 * (lossy.imag @ energies) / (pencil.stiffness @ energies))
+        return reshape_like(self.shapes(positions_on("x", x, self.beam.length).ravel(), 0), x)
 
 
 def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:

@@ -8,8 +8,8 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.linear.fields import RESONANCE
 from verify.linear.surface import standing_at
+from verify.linear.system import RESONANCE
 from verify.linear.time_basis import Ratio, TimeBasis
 from verify.motion.records import Law
 from verify.options import NormalChoice
@@ -17,7 +17,7 @@ from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.linear.fields import HarmonicField
+    from verify.linear.field import HarmonicField
     from verify.motion.surface import Stage
 
 FELT = 1e-3

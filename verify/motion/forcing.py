@@ -7,8 +7,9 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array, BoolArray, ComplexArray
-from verify.errors import InputError
-from verify.linear.fields import RESONANCE, phasor, refuse_resonance
+from verify.errors import InputError, ResonanceError
+from verify.linear.field import phasor
+from verify.linear.system import RESONANCE
 from verify.linear.time_basis import Ratio, TimeBasis
 from verify.problem.beam import PointForce
 
@@ -168,7 +169,10 @@ def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) ->
     ratio = np.abs(2.0 * np.pi * frequency_hz / basis.omegas - 1.0)
     nearest = int(ratio.argmin())
     if ratio[nearest] < RESONANCE and not np.broadcast_to(damping, ratio.shape)[nearest]:
-        refuse_resonance(basis.model, frequency_hz, nearest + 1, float(basis.omegas[nearest] / (2.0 * np.pi)))
+        raise ResonanceError(
+            f"frequency_hz = {frequency_hz!r} is the undamped resonance of mode {nearest + 1} of the {basis.model} model: "
+            "give the beam a loss_factor or choose another frequency"
+        )
 
 
 def check_phase(whose: str, hertz: float, duration: float, since: float = 0.0) -> None:

@@ -8,7 +8,6 @@ from verify.arrays import Array
 from verify.checks import check_number
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
-from verify.linear.search import zero_between
 from verify.motion.contact import law_of
 from verify.motion.forcing import CONSTANT
 from verify.motion.records import Law, Rider, V, X
@@ -59,6 +58,8 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
     The speed at the start of a period is sought at which the period gives it back; a period is one of the wave
     as the slider meets it. Raises InputError where friction lets no such motion be found.
     """
+    from scipy.optimize import brentq
+
     check_number("amplitude", amplitude, "metres", above=0)
     slider.check_stays()
     law, start, mean = law_of(slider, beam), slider.start_on(beam), 0.0
@@ -75,7 +76,7 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
 
         if not gained(-reach) > 0.0 > gained(reach):
             raise InputError(f"amplitude = {amplitude!r} m: friction is too weak to settle, raise mu or slope")
-        speed = zero_between(gained, -reach, reach, 1e-15 * reach, 1e-14)
+        speed = float(brentq(gained, -reach, reach, xtol=1e-15 * reach, rtol=1e-14))
         mean = _period(stage, law, start, speed)[0] / stage.duration
     return float(mean)
 

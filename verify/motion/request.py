@@ -11,14 +11,13 @@ from msgspec.structs import replace
 from verify.arrays import Array
 from verify.checks import check_kind, check_number, check_unmasked, check_whole
 from verify.errors import InputError, shown, written
-from verify.linear.catalogue import EXACT_MODES, MODELS, kept_modes
-from verify.linear.fields import check_drive
 from verify.linear.mesh import part_counts
-from verify.linear.places import Numbers, places_in_a_row
+from verify.linear.positions import Numbers, forces_on, frequencies_on, vector_on
+from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP, check_phase
 from verify.motion.result import EndState, Motion
-from verify.motion.surface import Growth, check_line, cut
+from verify.motion.surface import EXACT_MODES, Growth, check_line, cut, modes_in_time
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
@@ -119,7 +118,9 @@ def requested(
     default_modes: int = EXACT_MODES,
 ) -> Request:
     """A checked request; arguments as those of `simulate`. Raises InputError."""
-    check_drive(beam, forces, frequency_hz)
+    if not forces_on(beam, forces):
+        raise InputError("forces is empty: give at least one PointForce")
+    frequencies_on(beam, frequency_hz)
     check_number("duration", duration, "seconds", above=0)
     check_number("duration", duration, "seconds", at_least=SHORTEST)
     check_kind("ledger", ledger, bool)
@@ -130,13 +131,13 @@ def requested(
     zeta = 0.5 * beam.loss_factor if modal_damping is None else modal_damping
     field = "half of beam.loss_factor" if modal_damping is None else "modal_damping"
     check_number(field, zeta, "ratio of every mode", at_least=0, below=1)
-    points = places_in_a_row("at", at, beam.length)
+    points = vector_on("at", at, beam.length)
     longest = _longest(frequency_hz, duration, step, steps_per_period, slider)
     check_line(model, start, slider.line if slider else "spline")
     if before is not None and slider is not None:
         _check_same_slider(before, slider)
     check_phase("the drive", frequency_hz, duration, before.end.time if before else 0.0)
-    kept = kept_modes(model, modes, default_modes)
+    kept = modes_in_time(model, modes, default_modes)
     if modes is not None and start == "steady" and slider is None:
         raise InputError(f"modes = {modes!r}: a beam with start = 'steady' has a field and no modes, leave it out")
     return Request(

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.checks import check_kind
-from verify.linear.catalogue import MODELS
-from verify.linear.places import Forces, Numbers, as_forces, as_typed
+from verify.linear.positions import Forces, Numbers, forces_on
+from verify.linear.registry import MODELS
 from verify.linear.surface import ground_at
 from verify.linear.time_basis import TimeBasis
 from verify.motion.contact import Coupling
@@ -30,7 +30,6 @@ ROUNDED = 1e-9
 """Of the forces: so far off all of them a growth may end by rounding."""
 
 
-@as_typed
 def simulate(
     beam: Beam,
     forces: Forces,
@@ -115,7 +114,7 @@ def simulate(
         slider.check_stays()
     request = requested(
         beam,
-        as_forces(forces),
+        forces_on(beam, forces),
         frequency_hz,
         duration,
         model=model,
@@ -177,7 +176,7 @@ def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
     """Modes, damping and growth of the forces."""
     notes = [f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"]
     eta, replaced = request.beam.loss_factor, request.damping_replaced
-    by_mode = "modal_damping" in MODELS[request.model].field_settings
+    by_mode = MODELS[request.model].sized
     if request.start == "steady" and replaced and not by_mode:
         notes.append(f"damping: a loss factor {2.0 * request.damping:g} in the steady field")
     elif request.damping or eta:

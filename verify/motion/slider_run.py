@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, written
-from verify.linear.catalogue import MODELS, check_count
+from verify.linear.registry import MODELS
 from verify.linear.surface import standing_at
 from verify.linear.time_basis import TimeBasis
 from verify.motion import records
@@ -45,7 +45,7 @@ from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.linear.fields import HarmonicField
+    from verify.linear.field import HarmonicField
 
 
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:
@@ -86,13 +86,12 @@ def damped_field(
     damping: float | None,
 ) -> "HarmonicField":
     """The steady field of a model with this damping ratio, that of the beam itself unless given. Raises InputError."""
-    check_count(name, count)
-    model, settings = MODELS[name], {}
+    model, settings = MODELS.named(name), {}
     if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
-        by_mode = "modal_damping" in model.field_settings
+        by_mode = model.sized  # the exact beam has no modes to damp
         beam = replace(beam, loss_factor=0.0 if by_mode else 2.0 * damping)
         settings = {"modal_damping": damping} if by_mode else {}
-    return model.solve_harmonic(beam, forces, frequency_hz, count, **settings)
+    return model.build(beam, count).harmonic(forces, frequency_hz, **settings)
 
 
 def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Coupling | None) -> Array:

@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.linear.fields import phasor
+from verify.linear.field import phasor
 from verify.motion import records
 from verify.motion.forcing import turns
 from verify.motion.records import Books, Drive, Kept, Rider, Space, Surface

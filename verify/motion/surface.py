@@ -9,18 +9,20 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.linear.catalogue import MODELS, check_count
-from verify.linear.places import SLACK
+from verify.linear.positions import SLACK
+from verify.linear.registry import MODELS
 from verify.linear.surface import LEFT_BEAM, Ground
 from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 from verify.problem.beam import Beam, PointForce
 
 if TYPE_CHECKING:
-    from verify.linear.fields import HarmonicField
+    from verify.linear.field import HarmonicField
 
 Shapes = Callable[[Array, int], Array]
 ANALYTIC_DEGREE = 8
+EXACT_MODES = 400
+"""Modes of the exact beam in time, by default."""
 
 
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -123,8 +125,17 @@ def free_at(stage: Stage, z: Array, t: float) -> Array:
 
 def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = "spline") -> TimeBasis:
     """The free modes of a model by name. Raises InputError."""
-    check_count(model, count)
-    return MODELS[model].time_basis(beam, count, modes, line)
+    built = MODELS.named(model).build(beam, count)
+    return built.time_basis(modes=None if built.sized else modes, line=line)
+
+
+def modes_in_time(model: str, modes: int | None, default: int = EXACT_MODES) -> int:
+    """Number of modes of a model without parts, `default` unless given. Raises InputError for one with parts."""
+    if modes is not None and MODELS.named(model).sized:
+        raise InputError(
+            f"modes = {modes!r} is for model = analytic: {model} has a mode for each unknown, leave it out"
+        )
+    return default if modes is None else modes
 
 
 def check_line(model: str, start: str, line: str) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
 from verify.exact.error_laws import LAWS, expected_error, leading_error
-from verify.linear.fields import lossless_wavenumber
+from verify.linear.field import lossless_wavenumber
 from verify.motion.contact import Margins
 from verify.problem.beam import Beam
 from verify.problem.slider import GRAVITY

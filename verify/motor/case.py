@@ -21,7 +21,7 @@ from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.linear.fields import HarmonicField
+    from verify.linear.field import HarmonicField
 
 
 class MotorCase(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,8 +7,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.errors import InputError, written
-from verify.linear.places import SLACK
-from verify.linear.search import zero_between
+from verify.linear.positions import SLACK
 from verify.linear.surface import ground_at, standing_at
 from verify.linear.time_basis import TimeBasis
 from verify.motion.request import Request
@@ -162,6 +161,8 @@ def put_down(feet: Feet, levels: Array) -> None:
 
 def _rest_height(f: int, points: Array, levels: Array, given: Array, deepest: float) -> float:
     """Of foot f on its own points over these levels, metres. Raises InputError."""
+    from scipy.optimize import brentq
+
     face, stiff, press = points[:, records.FACE], points[:, records.STIFF], float(given[records.PRESS])
     depths = points[:, records.INSET] + face * points[:, records.IMAGE] * levels
 
@@ -174,7 +175,7 @@ def _rest_height(f: int, points: Array, levels: Array, given: Array, deepest: fl
     if not force(-wide) > 0.0 > force(wide):
         way = "its weight is more than the preload" if press < 0.0 else "nothing presses it on"
         raise InputError(f"slider.preload leaves foot {f + 1} off the beam, {way}: raise slider.preload")
-    return zero_between(force, -wide, wide, 1e-15 * max(wide, 1e-9), 1e-14)
+    return float(brentq(force, -wide, wide, xtol=1e-15 * max(wide, 1e-9), rtol=1e-14))
 
 
 def fresh_log(samples: int, feet: Feet, rows: Array, every: int) -> Log:

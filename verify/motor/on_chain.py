@@ -14,7 +14,7 @@ from verify.chain.stretching import ElasticMotion
 from verify.chain.system import axial_stiffness, build_system
 from verify.checks import check_whole
 from verify.errors import InputError
-from verify.linear.places import SLACK
+from verify.linear.positions import SLACK
 from verify.linear.surface import LEFT_BEAM
 from verify.motion.records import READ, Drive, Surface
 from verify.motion.request import Request

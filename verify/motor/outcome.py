@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from verify.arrays import Array
-from verify.linear.fields import travelling_wavenumber
+from verify.linear.field import travelling_wavenumber
 from verify.linear.surface import standing_at
 from verify.motion.result import Statistics
 from verify.motion.slider_run import reached

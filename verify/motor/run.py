@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.checks import check_kind, check_number, check_word, plain, several
 from verify.errors import InputError, written
-from verify.linear.places import Forces, Numbers, as_forces, as_typed
+from verify.linear.positions import Forces, Numbers, forces_on
 from verify.motion.request import Request, check_same_beam, requested
 from verify.motor.combine import CHAIN, check_together
 from verify.motor.feet import Placed
@@ -24,7 +24,6 @@ STEPS_PER_PERIOD = 61
 """A prime: points that stand evenly in a wave do not all reverse their friction at the same phases of it."""
 
 
-@as_typed
 def run_motor(
     beam: Beam,
     forces: Forces,
@@ -72,11 +71,10 @@ def run_motor(
         "step": step,
         "steps_per_period": steps_per_period,
     }
-    driven = (beam, as_forces(forces), frequency_hz, duration)
+    driven = (beam, forces_on(beam, forces), frequency_hz, duration)
     return _run(driven, settings, links, [(slider, held_speed, frozen)], runs, progress)[0]
 
 
-@as_typed
 def run_motors(
     beam: Beam,
     forces: Forces,
@@ -120,7 +118,7 @@ def run_motors(
         "step": step,
         "steps_per_period": steps_per_period,
     }
-    driven = (beam, as_forces(forces), frequency_hz, duration)
+    driven = (beam, forces_on(beam, forces), frequency_hz, duration)
     return _run(driven, settings, links, list(zip(put, speeds, stay, strict=True)), runs, progress)
 
 

@@ -19,11 +19,10 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 import msgspec
 from msgspec import Meta
 
-from verify.analysis.bracket import Bracket
+from verify.analysis.solution_cache import Bracket
 from verify.checks import plain
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
-from verify.linear.naming import AMONG
 from verify.registry import Registry
 
 if TYPE_CHECKING:
@@ -35,13 +34,15 @@ else:
 
 Value: TypeAlias = float | complex | Bracket
 """Type of an evaluated quantity."""
+MODEL_NAME = "model name"
+"""Key of the annotation of an argument that names a model (`options.model_name`)."""
 PLACE = "place"
 Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True})]
 """A position on the beam: `evaluate` raises InputError for one off the beam."""
 TABLES = ("beam", "drive", "slider", "motion")
 """Tables of a scene that a quantity may depend on."""
 ROUNDING = 1e-12
-"""Tolerance of a position at an end, relative to the length (as `models.places`)."""
+"""Tolerance of a position at an end, relative to the length (as `linear.positions`)."""
 
 
 class Quantity:
@@ -89,7 +90,7 @@ class Quantity:
         """The arguments as plain data: name, type, whether required, default, description."""
         found = []
         for field in msgspec.structs.fields(self.schema):
-            among = extra_of(field.type, AMONG)
+            among = extra_of(field.type, MODEL_NAME)
             one: dict[str, Any] = {
                 "name": field.name,
                 "type": " | ".join(among.names()) if among else type_name(field.type),
@@ -103,7 +104,7 @@ class Quantity:
         data = {name: _native(value, name) for name, value in arguments.items()}
         required = {field.name for field in msgspec.structs.fields(self.schema) if field.required}
         for name, kind in self._types.items():
-            among = extra_of(kind, AMONG)
+            among = extra_of(kind, MODEL_NAME)
             if among is not None and isinstance(data.get(name), str):
                 among.check(data[name], name)
             elif among is not None and name in required - set(data) and set(data) <= set(self._types):

@@ -147,7 +147,7 @@ def wave_force(scene: Scene, contact: WaveContact) -> float:
 @quantity("slider.wave_force_order", unit="1", reads=("beam", "drive"))
 def wave_force_order(scene: Scene, contact: WaveContact, *, counts: Sizes) -> float:
     """Observed order of that force in the number of springs, against the Winkler layer; steps in proportion."""
-    from verify.analysis.compare import observed_order
+    from verify.analysis.comparison import observed_order
 
     check_sizes("counts", counts)
     exact = layer.force(contact.contact_half_angle, contact.speed_ratio, contact.epsilon)

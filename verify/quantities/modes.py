@@ -4,12 +4,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
-from verify.analysis.bracket import Bracket
+from verify.analysis.solution_cache import Bracket
 from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.linear.catalogue import MODELS
-from verify.linear.naming import MEAN, model_meta
+from verify.linear.registry import MEAN, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
 
@@ -95,31 +94,35 @@ class Orders(opt.ModelOptions, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         check_sizes("counts", self.counts)
         if self.model != MEAN:
-            opt.check_settings(self.model, self.settings, "modal")
+            opt.check_settings(self.model, self.settings)
 
 
 class OrdersOrMean(Orders, frozen=True, kw_only=True):
     """One mode of one discrete model, or of the mean of segment and fem, at several sizes."""
 
-    model: Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", sized=True, mean=True)]
+    model: Annotated[str, opt.model_name("mean: middle of segment and fem", "modes", sized=True, mean=True)]
 
 
 @quantity("mode.order", unit="1", reads=BEAM)
 def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
     """Observed order of the frequency error over N; outside the asymptotic range an InputError."""
-    from verify.analysis.compare import settled_order
+    from verify.analysis.comparison import asymptotic_order
 
-    expected = None if of.model == MEAN else MODELS.named(of.model).order(scene.beam, **dict(of.settings))
+    expected = None
+    if of.model != MEAN:
+        expected = MODELS.named(of.model).build(scene.beam, max(of.counts), **dict(of.settings)).expected_order()
     errors = [cache.frequency_error(of.model, n, of.mode, of.settings) for n in of.counts]
-    return settled_order(of.counts, errors, expected)
+    return asymptotic_order(of.counts, errors, expected)
 
 
 @quantity("mode.shape_order", unit="1", reads=BEAM)
 def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None = None) -> float:
     """Observed order of the shape error over N; outside the asymptotic range an InputError."""
-    from verify.analysis.compare import settled_order
+    from verify.analysis.comparison import asymptotic_order
 
-    return settled_order(of.counts, [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts])
+    return asymptotic_order(
+        of.counts, [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts]
+    )
 
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
@@ -138,9 +141,9 @@ def count_needed(
     error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
 ) -> float:
     """Number of segments or elements from which on the frequency error is at most `error`."""
-    from verify.analysis.sizing import enough_from
+    from verify.analysis.sizing import sufficient_size
 
-    return enough_from(cache, model, mode, error, opt.check_settings(model, options.settings, "modal")).count
+    return sufficient_size(cache, model, mode, error, opt.check_settings(model, options.settings)).count
 
 
 @quantity("mode.stock_difference", unit="1", reads=BEAM)
@@ -169,9 +172,9 @@ def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = Non
 def buckling_load(
     scene: Scene,
     *,
-    model: Annotated[str, model_meta("which model", "buckling_load")],
+    model: Annotated[str, opt.model_name("which model", "buckling_load")],
     count: opt.Size | None = None,
 ) -> float:
     """Compression at first buckling, whatever axial force the beam itself has."""
     opt.check_count(model, count)
-    return MODELS.named(model).buckling_load(scene.beam, count)
+    return MODELS.named(model).build(scene.beam, count).buckling_load()

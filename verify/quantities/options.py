@@ -9,25 +9,53 @@ from msgspec.structs import replace
 
 from verify import options
 from verify.checks import Relative
-from verify.errors import InputError
-from verify.linear import catalogue
-from verify.linear.catalogue import MODELS
-from verify.linear.naming import MEAN, model_meta
+from verify.errors import InputError, near_name
+from verify.linear import registry
+from verify.linear.registry import MEAN, MODELS
 from verify.problem.beam import PointForce, check_frequency
-from verify.quantities.base import Place, Scene
+from verify.quantities.base import MODEL_NAME, Place, Scene
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import Settings
 
+
+class ModelName(msgspec.Struct, frozen=True):
+    """Models that an argument may name."""
+
+    verb: str
+    """That they have, of `BeamModel`."""
+    sized: bool = False
+    """Whether they have parts."""
+    mean: bool = False
+    """Whether the mean of the models below and above is one."""
+
+    def names(self) -> tuple[str, ...]:
+        """All of them, in alphabetical order."""
+        models = [m for m in MODELS.values() if m.can(self.verb) and (m.sized or not self.sized)]
+        return (*sorted(m.name for m in models), *([MEAN] if self.mean else []))
+
+    def check(self, name: str, field: str = "model") -> None:
+        """Raise InputError, with the nearest one, for another name."""
+        if not (self.mean and name == MEAN):
+            model = MODELS.get(name)
+            if model is None or not model.can(self.verb) or (self.sized and not model.sized):
+                raise InputError(f"{field} = {name!r} is not known: {near_name(name, self.names())}")
+
+
+def model_name(description: str, verb: str, *, sized: bool = False, mean: bool = False) -> Meta:
+    """The annotation of an argument that names a model."""
+    return Meta(description=description, extra={MODEL_NAME: ModelName(verb, sized, mean)})
+
+
 Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]
 Size = Annotated[int, Meta(ge=1, description="N, segments or elements; not for model = analytic")]
 Sizes = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(description="three or more N, 20,40,80")]
-AnyModel = Annotated[str, model_meta("mean: middle of segment and fem", "solve_modes", mean=True)]
-ModesModel = Annotated[str, model_meta("which model", "solve_modes")]
-DiscreteModel = Annotated[str, model_meta("which discrete model", "solve_modes", sized=True)]
-FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
-DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
-TimeModel = Annotated[str, model_meta("which model", "time_basis")]
+AnyModel = Annotated[str, model_name("mean: middle of segment and fem", "modes", mean=True)]
+ModesModel = Annotated[str, model_name("which model", "modes")]
+DiscreteModel = Annotated[str, model_name("which discrete model", "modes", sized=True)]
+FieldModel = Annotated[str, model_name("which model", "harmonic")]
+DiscreteField = Annotated[str, model_name("which discrete model", "harmonic", sized=True)]
+TimeModel = Annotated[str, model_name("which model", "time_basis")]
 Frequency = Annotated[float, Meta(gt=0, description="Hz; default: the scene's drive")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
 Theory = Annotated[options.Theory, Meta(description="beam theory")]
@@ -44,17 +72,16 @@ Mass = Annotated[float, Meta(gt=0, description="kg")]
 def check_count(model: str, count: int | None) -> None:
     """Raise InputError for a discrete model without `count`, or the exact beam with one."""
     if model != MEAN:
-        catalogue.check_count(model, count)
+        registry.check_count(model, count)
     elif count is None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {MEAN}")
 
 
-def check_settings(model: str, chosen: "Settings", kind: str) -> "Settings":
-    """The settings. Raises InputError for one that the model lacks; `kind` is modal or field."""
-    known = getattr(MODELS.named(model), f"{kind}_settings")
+def check_settings(model: str, chosen: "Settings") -> "Settings":
+    """The settings. Raises InputError for one that the model lacks."""
     for name, value in chosen:
-        if name not in known:
-            able = [m.name for m in MODELS.values() if name in getattr(m, f"{kind}_settings")]
+        if name not in MODELS.named(model).settings():
+            able = [m.name for m in MODELS.values() if name in m.settings()]
             raise InputError(f"{name} = {value!r} is for model = {' or '.join(able) or 'none'}, not for {model}")
     return chosen
 
@@ -84,7 +111,7 @@ class OneMode(ModelOptions, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
         if self.model != MEAN:
-            check_settings(self.model, self.settings, "modal")
+            check_settings(self.model, self.settings)
 
 
 class OneModeOrMean(OneMode, frozen=True, kw_only=True):

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify import options
 from verify.checks import check_sizes
 from verify.errors import InputError
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
@@ -171,7 +171,7 @@ def order(
     steps: Annotated[tuple[Annotated[float, Meta(gt=0)], ...], Meta(description="three or more, s")] | None = None,
 ) -> float:
     """Observed order of the slider's displacement in N, against the exact beam, or in the step, against a 16th."""
-    from verify.analysis.compare import relative_error, settled_order
+    from verify.analysis.comparison import asymptotic_order, relative_error
 
     def displacement(by: TimeOptions, step: float | None = None) -> float:
         return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
@@ -182,7 +182,7 @@ def order(
             raise InputError(f"counts = {list(counts)}: an order over counts is of a discrete model without count")
         exact = displacement(replace(by, model="analytic"))
         errors = [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
-        return settled_order(counts, errors)
+        return asymptotic_order(counts, errors)
     if steps is None or counts is not None:
         raise InputError(f"counts = {counts!r} and steps = {steps!r}: give one of the two")
     check_sizes("steps", steps)
@@ -190,7 +190,7 @@ def order(
         raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
     exact = displacement(by, min(steps) / 16.0)
     errors = [relative_error(displacement(by, step), exact) for step in steps]
-    return settled_order([1.0 / step for step in steps], errors, told=f"steps = {list(steps)}")
+    return asymptotic_order([1.0 / step for step in steps], errors, given=f"steps = {list(steps)}")
 
 
 @quantity("slider.deflection", unit="m")
@@ -278,14 +278,15 @@ def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window:
     """Gamma of two waves fitted to the phasors of the driven beam's motion in a window, without slider."""
     import numpy as np
 
-    from verify.linear.places import places
-    from verify.waves.series import measure_series
-    from verify.waves.window import check_window
+    from verify.linear.positions import positions_on
+    from verify.travelling_wave import measure_series
+    from verify.waves.window import check_span, check_waves
 
     arguments = motion_arguments(scene, by)
     hertz = arguments["frequency_hz"]
-    check_window(scene.beam, [force.position for force in arguments["forces"]], hertz, window)
-    x = places("window", np.linspace(*window, POINTS), scene.beam.length)
+    check_span(scene.beam, [force.position for force in arguments["forces"]], window)
+    check_waves(scene.beam, hertz, window)
+    x = positions_on("window", np.linspace(*window, POINTS), scene.beam.length)
     samples = int(SAMPLES_PER_PERIOD * arguments["duration"] * hertz) + 1
     run = _simulated(cache, arguments, at=tuple(map(float, x)), samples=samples)
     return measure_series(scene.beam, x, run.times, run.deflection, hertz).reflection

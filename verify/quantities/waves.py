@@ -10,13 +10,14 @@ from msgspec.structs import replace
 from verify import options
 from verify.checks import Relative, check_sizes
 from verify.errors import InputError
+from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
-    from verify.linear.fields import HarmonicField
-    from verify.waves.case import DrivenCase
+    from verify.linear.field import HarmonicField
+    from verify.travelling_wave import BestDrive, DrivenCase, WaveMeasures
     from verify.waves.impedance_matching import Ending
 
 Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
@@ -45,31 +46,37 @@ class FieldOptions(FieldSettings, frozen=True, kw_only=True):
 
 def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: int | None = None) -> "DrivenCase":
     """The driven beam of a scene with these options, by their own model if they have one. Raises InputError."""
-    from verify.waves.case import DrivenCase
+    from verify.waves.driven_case import DrivenCase
 
     if isinstance(options, FieldOptions):
         model, count = options.model, options.count
     opt.check_count(model, count)
     of_case = (*opt.DriveOptions.__struct_fields__, "loss_factor", "drive", "model", "count")
-    settings = opt.check_settings(model, opt.not_default(options, without=of_case), "field")
-    loss = options.loss_factor
+    settings = dict(opt.check_settings(model, opt.not_default(options, without=of_case)))
+    beam = scene.beam if options.loss_factor is None else replace(scene.beam, loss_factor=options.loss_factor)
     return DrivenCase(
-        beam=scene.beam if loss is None else replace(scene.beam, loss_factor=loss),
-        model=model,
-        count=count,
+        model=MODELS.named(model).build(beam, count, **settings),
         forces=options.forces(scene),
         frequency_hz=opt.drive_frequency(scene, options.frequency_hz),
         kind=options.drive or (scene.drive.kind if scene.drive else "force"),
-        settings=settings,
         devices=tuple(scene.devices),
     )
 
 
 def driven_field(scene: Scene, cache: "SolutionCache", options: FieldOptions) -> "HarmonicField":
     """The steady field of a scene with these options. Raises InputError."""
-    from verify.waves.driven import driven
+    from verify.waves.driven_case import driven
 
     return driven(driven_case(scene, options), cache)
+
+
+def measured(case: "DrivenCase", cache: "SolutionCache", window: tuple[float, float] | None = None) -> "WaveMeasures":
+    """The wave of a case in a window, the middle half by default, with its model's wavenumber. Raises InputError."""
+    from verify.travelling_wave import measure, middle_half
+    from verify.waves.driven_case import driven
+
+    field = driven(case, cache)
+    return measure(field, window or middle_half(case.beam), case.wavenumber(case.frequency_hz))
 
 
 @quantity("wave.deflection", unit="m", reads=DRIVEN, devices=True)
@@ -80,9 +87,7 @@ def deflection(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x
 
 def _measure(figure: str) -> Callable[..., float]:
     def measure(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None) -> float:
-        from verify.waves.driven import measured_alone
-
-        return float(measured_alone(driven_field(scene, cache, options), window, figure))
+        return float(getattr(measured(driven_case(scene, options), cache, window), figure))
 
     return measure
 
@@ -108,15 +113,14 @@ def axis_ratio(
     scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x: Place | None = None, window: Window | None = None
 ) -> float:
     """Signed axis ratio of the surface ellipse at x, or its mean over whole half wavelengths; below 0 towards +x."""
-    from verify.waves.driven import measured_alone
-    from verify.waves.two_waves import ellipse, surface_motion
+    from verify.travelling_wave import ellipse, surface_motion
 
     if x is not None and window is not None:
         raise InputError(f"window = {list(window)} with x = {x!r}: give one of the two")
-    field = driven_field(scene, cache, options)
     if x is None:
-        return float(measured_alone(field, window, "mean_axis_ratio"))
-    return float(ellipse(surface_motion(field.beam, field.turn(x), x=x), field.deflection(x))[0][0])
+        return measured(driven_case(scene, options), cache, window).mean_axis_ratio
+    field = driven_field(scene, cache, options)
+    return float(ellipse(surface_motion(field.beam, field.rotation(x), x=x), field.deflection(x))[0][0])
 
 
 @quantity("wave.power_imbalance", unit="1", reads=DRIVEN, devices=True)
@@ -124,12 +128,12 @@ def power_imbalance(
     scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
 ) -> float:
     """Power of the left force less losses up to the window's middle less flux there, over that flux."""
-    from verify.waves.driven import measures, power_imbalance
+    from verify.travelling_wave import power_imbalance
 
     if any(device.turning for device in scene.devices):
         raise InputError("drive.device: a power balance takes transverse devices alone, leave its rotational terms out")
-    field = driven_field(scene, cache, options)
-    return power_imbalance(field, measures(field, window))
+    case = driven_case(scene, options)
+    return power_imbalance(driven_field(scene, cache, options), measured(case, cache, window))
 
 
 @quantity("wave.best_frequency", unit="Hz", reads=DRIVEN, devices=True)
@@ -142,9 +146,36 @@ def best_frequency(
     span: Annotated[Relative, Meta(gt=0, lt=0.5, description="search range relative to the drive's frequency")] = 0.015,
 ) -> float:
     """Frequency of least reflection near the drive's."""
-    from verify.waves.driven import best_frequency
+    from verify.travelling_wave import best_frequency
 
-    return best_frequency(driven_case(scene, options), span, window, cache)
+    return best_frequency(driven_case(scene, options), span, window)
+
+
+Direction = Annotated[Literal["+x", "-x"], Meta(description="of the wave")]
+
+
+def _best_drive(scene: Scene, options: FieldOptions, window: Window | None, direction: Direction) -> "BestDrive":
+    from verify.travelling_wave import best_drive
+
+    best = best_drive(driven_case(scene, options), window, direction=1 if direction == "+x" else -1)
+    best.check_exists()
+    return best
+
+
+@quantity("wave.best_ratio", unit="1", reads=DRIVEN, devices=True)
+def best_ratio(
+    scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
+) -> float:
+    """Amplitude of the second actuator over the first that leaves no reflection."""
+    return _best_drive(scene, options, window, direction).ratio
+
+
+@quantity("wave.best_ratio_phase", unit="deg", reads=DRIVEN, devices=True)
+def best_ratio_phase(
+    scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
+) -> float:
+    """Phase by which the second actuator leads the first in that drive, above -180 up to 180 degrees."""
+    return _best_drive(scene, options, window, direction).phase_deg
 
 
 @quantity("wave.order", unit="1", reads=DRIVEN, devices=True)
@@ -162,10 +193,22 @@ def order(
     window: Window | None = None,
 ) -> float:
     """Observed order of a wave measure's error against the exact field; outside the asymptotic range an InputError."""
-    from verify.waves.driven import wave_order
+    from verify.analysis.comparison import asymptotic_order, relative_error
+    from verify.travelling_wave import middle_half
+    from verify.waves.driven_case import driven
 
     check_sizes("counts", counts)
-    return wave_order(driven_case(scene, options, model, counts[0]), counts, window, of, cache)
+    middle = 0.5 * sum(window or middle_half(scene.beam))
+
+    def figure(case: "DrivenCase") -> complex:
+        if of == "deflection":
+            return complex(driven(case, cache).deflection(middle)[0])
+        return complex(getattr(measured(case, cache, window), "mean_" * (of == "axis_ratio") + of))
+
+    cases = [driven_case(scene, options, model, count) for count in counts]
+    exact = MODELS[EXACT].build(cases[0].beam, theory=options.theory)
+    reference = figure(replace(cases[0], model=exact))
+    return asymptotic_order(counts, [relative_error(figure(case), reference) for case in cases])
 
 
 @quantity("wave.lumped_swr", unit="1", reads=("beam",), devices=True)
@@ -186,9 +229,9 @@ def fastest_crests(
     scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
     """Largest crest speed of the exact beam up to a reflection, within 1.5 % of the frequency and 5 to 175 deg."""
-    from verify.waves.operating_point import fastest_point
+    from verify.travelling_wave import maximum_crest_speed
 
-    return fastest_point(driven_case(scene, FieldOptions()), limit).crest_speed
+    return maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed
 
 
 FromRightEnd = Annotated[float, Meta(ge=0, description="m from the right end")]
@@ -240,10 +283,8 @@ def absorber_reflection(
 
 def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float, turning: bool) -> float:
     """Gamma in the middle half between the other forces and a device at x, which replaces what acts there."""
-    from verify.analytic_modes import solve_harmonic
     from verify.problem.device import of_impedance
-    from verify.waves.devices import field_with_devices
-    from verify.waves.driven import measured_alone
+    from verify.travelling_wave import measure, middle_half
 
     opt.check_forces(scene, "an absorbing device")
     tolerance = 1e-9 * scene.beam.length
@@ -253,4 +294,5 @@ def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float
         raise InputError("drive.force: none is left beside the device, add one elsewhere")
     if impedance:
         devices.append(of_impedance(x, impedance, 2.0 * pi * hertz, turning=turning))
-    return measured_alone(field_with_devices(solve_harmonic, scene.beam, forces, hertz, devices), None, "reflection")
+    field = MODELS[EXACT].build(scene.beam).harmonic(forces, hertz, devices=devices)
+    return measure(field, middle_half(scene.beam), field.wavenumber).reflection

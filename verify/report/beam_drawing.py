@@ -5,9 +5,9 @@ Lengths along the beam are to scale. Heights are not; sections keep their order 
 
 from typing import TYPE_CHECKING, Any
 
+from verify.formatting import with_unit
 from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
-from verify.formatting import with_unit
 
 if TYPE_CHECKING:
     from verify.problem.beam import Beam

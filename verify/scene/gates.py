@@ -73,7 +73,7 @@ def band(gate: Gate) -> tuple[float, float]:
 
 def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
     """(reason for failing or '', fraction of the tolerance)."""
-    from verify.analysis.bracket import Bracket
+    from verify.analysis.solution_cache import Bracket
 
     kinds = {Bracket: "a bracket needs expect alone", complex: "a complex value needs expect = { re, im } with within"}
     remedy = kinds.get(type(value), "a real value needs expect with within, or at_least, at_most")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
@@ -33,7 +33,7 @@ def frequency(model: str, beam: Beam, mode: int, n: int = N, **settings: float) 
 
     if model == "analytic":
         return exact_frequency_hz(beam, mode)
-    return float(MODELS[model].solve_modes(beam, mode, n, **settings).frequencies_hz[mode - 1])
+    return float(MODELS[model].build(beam, n, **settings).modes(mode).frequencies_hz[mode - 1])
 
 
 def own_error(model: str, beam: Beam, parts: Parts, mode: int, **settings: float) -> float:
@@ -80,7 +80,7 @@ EIGSH = "eigsh on assembled K and M"
 @check("size", "N", (100, 1000, 10_000, 30_000), 1e-12, models=DISCRETE, baseline=(EIGSH, eigsh_error))
 def size(model: str, n: float) -> float:
     """Modes 1-5 of a pinned strip against the discrete dispersion."""
-    return worst(MODELS[model].solve_modes(STRIP, 5, int(n)).frequencies_hz / dispersion(model, n, 5) - 1.0)
+    return worst(MODELS[model].build(STRIP, int(n)).modes(5).frequencies_hz / dispersion(model, n, 5) - 1.0)
 
 
 _MORE = (EIGSH, eigsh_error, (1e4, 3e4, 5e4))
@@ -291,7 +291,7 @@ def nearly_free(softness: float) -> float:
     own, added = D(beam.wave_constant), D(beam.foundation) / D(beam.mass_per_length)
     roots = D(0), D(0), D("4.7300407448627040260240481")  # cos y cosh y = 1
     exact = [(((y / D(beam.length)) ** 2 * own) ** 2 + added).sqrt() / (2 * PI) for y in roots]
-    found = [MODELS[model].solve_modes(beam, 3, 2000).frequencies_hz.tolist() for model in DISCRETE]
+    found = [MODELS[model].build(beam, 2000).modes(3).frequencies_hz.tolist() for model in DISCRETE]
     return worst(errors, [float(D(f) / e - 1) for each in found for f, e in zip(each, exact, strict=True)])
 
 
@@ -310,7 +310,7 @@ def nearly_floating(softness: float) -> float:
         springs = tuple(PointSpring(position=s / 7.0 * beam.length, stiffness=stiffness) for s in sevenths)
         lever = {"load": "lever", "attachment": "lever", "reading": "raw"} if model == "segment" else {}
         drive = (PointForce(position=2 * n // 7 * beam.length / n),)
-        field = MODELS[model].solve_harmonic(replace(beam, spring=springs), drive, hertz, n, **lever)
+        field = MODELS[model].build(replace(beam, spring=springs), n, **lever).harmonic(drive, hertz)
         errors.append(float(D(float(field.deflection(beam.length)[0].real)) / exact - 1))
     return worst(errors)
 
@@ -323,7 +323,7 @@ def tension(ratio: float) -> float:
 
 def buckling(model: str, beam: Beam, n: int = N) -> float:
     """Newton."""
-    return float(MODELS[model].buckling_load(beam, None if model == "analytic" else n))
+    return float(MODELS[model].build(beam, None if model == "analytic" else n).buckling_load())
 
 
 @check("near-buckling", "1 - P / Pcr", (1, 1e-3, 1e-6, 1e-9), 1e-13, beyond=(1e-11, 1e-13, 1e-17))

@@ -222,7 +222,7 @@ def chain_dead_load(load: float) -> float:
 def pendulum(gravity: float = 0.0) -> tuple[Any, Any]:
     """Twelve stiff links about a pin, gravity along x, straight and rotating as a whole."""
     from verify.chain.system import ChainState, ChainSystem
-    from verify.segments.links import link_inertia
+    from verify.segments.chain import link_inertia
 
     lengths, masses = np.full(SHORT, 0.73 / SHORT), np.full(SHORT, 0.31 / SHORT)
     system = ChainSystem(

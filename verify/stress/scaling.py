@@ -12,7 +12,7 @@ from time import process_time
 from msgspec.structs import replace
 
 from verify.errors import InputError, one_line
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.problem.beam import PointForce
 from verify.stress.engine import check
 from verify.stress.reference import CANTILEVER, STRIP
@@ -21,11 +21,11 @@ DISCRETE = {"segment": "segments", "fem": "elements"}
 MODES = 3
 SIZES = (5000, 15_000, 50_000)
 _CHILD = """
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.stress.reference import STRIP
 peaks = []
 for n in (300, *{sizes}):
-    MODELS[{model!r}].solve_modes(STRIP, {modes}, n)
+    MODELS[{model!r}].build(STRIP, n).modes({modes})
     with open("/proc/self/status") as status:
         peaks += [float(line.split()[1]) / 1024.0 for line in status if line.startswith("VmHWM")]
 print(*(peak - peaks[0] for peak in peaks[1:]))
@@ -36,7 +36,7 @@ print(*(peak - peaks[0] for peak in peaks[1:]))
 def time(model: str, n: float) -> float:
     """Exponent of the time of three modes."""
     start = process_time()
-    MODELS[model].solve_modes(STRIP, MODES, int(n))
+    MODELS[model].build(STRIP, int(n)).modes(MODES)
     return process_time() - start
 
 
@@ -45,7 +45,7 @@ def time_field(n: float) -> float:
     """Exponent of the time of a damped field of elements."""
     start = process_time()
     force = (PointForce(position=0.3),)
-    MODELS["fem"].solve_harmonic(replace(STRIP, loss_factor=0.01), force, 731.0, int(n)).deflection([0.2])
+    MODELS["fem"].build(replace(STRIP, loss_factor=0.01), int(n)).harmonic(force, 731.0).deflection([0.2])
     return process_time() - start
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
 from verify.stress.engine import check, worst
@@ -23,7 +23,7 @@ LEVER = {"load": "lever", "reading": "raw"}
 def deflection(model: str, beam: Beam, hertz: float, x: float, at: float, **more: str) -> complex:
     """At a place under a unit force at x, m."""
     count = None if model == "analytic" else N
-    field = MODELS[model].solve_harmonic(beam, (PointForce(position=x),), hertz, count, **more)
+    field = MODELS[model].build(beam, count, **more).harmonic((PointForce(position=x),), hertz)
     return complex(field.deflection([at])[0])
 
 
@@ -148,16 +148,13 @@ def read(field: Any) -> complex:
 @check("damped-resonance", "dashpot, N s/m", (100.0, 1.0, 1e-2, 1e-4, 1e-6), 1e-6)
 def damped_resonance(dashpot: float) -> float:
     """Exact field of a strip with one dashpot where the bare strip resonates, against Green's function."""
-    from verify.exact.harmonic import solve_harmonic
-    from verify.waves.devices import field_with_devices
-
     errors = []
     for hertz in beside_resonance():
         resists, own = 2 * PI * D(hertz) * D(dashpot), green(hertz, DAMPED, DAMPED)
         lost = resists * green(hertz, READ, DAMPED) * green(hertz, DAMPED, DRIVEN) / (1 + (resists * own) ** 2)
         exact = complex(float(green(hertz, READ, DRIVEN) - resists * own * lost), -float(lost))
         devices = (Device(position=DAMPED, dashpot=dashpot),)
-        field = field_with_devices(solve_harmonic, STRIP, (PointForce(position=DRIVEN),), hertz, devices)
+        field = MODELS["analytic"].build(STRIP).harmonic((PointForce(position=DRIVEN),), hertz, devices=devices)
         errors.append(read(field) / exact - 1.0)
     return worst(errors)
 
@@ -165,14 +162,11 @@ def damped_resonance(dashpot: float) -> float:
 @check("imposed-near-node", "half waves from a node", (0.3, 1e-2, 1e-3, 1e-4), 1e-7)
 def imposed_near_node(off: float) -> float:
     """Exact field under a displacement imposed near a node of the bare strip's resonance, against Green's function."""
-    from verify.exact.harmonic import solve_harmonic
-    from verify.waves.imposed import driven_field
-
     place, errors = (3.0 + off) * STRIP.length / 7, []
     for hertz in beside_resonance():
         exact = float(green(hertz, READ, place) / green(hertz, place, place))
         drives = (PointForce(position=place),)
-        field = driven_field(lambda forces, f: solve_harmonic(STRIP, forces, f), drives, hertz, "displacement")
+        field = MODELS["analytic"].build(STRIP).imposed(drives, hertz)
         errors.append(read(field) / exact - 1.0)
     return worst(errors)
 

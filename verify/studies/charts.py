@@ -32,14 +32,14 @@ def percent(name: str, form: str = "+.4g") -> "Column":
 
 def sized_title(model: str, count: int | None) -> str:
     """'49 segments', 'exact beam'."""
-    from verify.linear.catalogue import MODELS
+    from verify.linear.registry import MODELS
 
     return f"{count} {MODELS[model].title}" if count else MODELS[model].title
 
 
 def model_style(model: str) -> dict[str, Any]:
     """Colour and line width of a model in every chart."""
-    from verify.linear.catalogue import MODELS
+    from verify.linear.registry import MODELS
     from verify.report.plotting import MODEL_COLORS
 
     color = MODEL_COLORS.get(model, MODELS[model].colour)

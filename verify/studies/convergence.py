@@ -1,6 +1,7 @@
-"""Frequency errors over the number of segments or elements: observed orders, two-sided bound, solve times."""
+"""Frequency errors over the number of segments or elements: orders, grid convergence index, bound, solve times."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from math import log, log10
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
@@ -25,6 +26,11 @@ ORDER_TOLERANCE = 1.0
 """Distance of an observed order from the theoretical one up to which sizes count as asymptotic."""
 STYLES = ("-o", "--s", ":^", "-.d", "-v")
 """Line and marker of each mode."""
+NOTES = [
+    "Order: from the size before. GCI: grid convergence index of this size and the two before, the error bound that a "
+    "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
+    "Time: warm solve of all modes, assembly included, median of repeats.",
+]
 CAPTIONS = {
     "errors-over-size": "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of "
     "segments and Hermite elements cancel.",
@@ -56,11 +62,11 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         own = {mode: [row["error"] for row in finest if row["mode"] == mode] for mode in self.modes}
         warnings += plate_warnings(cache.beam, own)
         columns = [Column("mode"), Column("model"), Column("N"), Column("frequency", "Hz", ".8g"), percent("error")]
-        columns += [Column("order", format=".2f"), si("solve time", "s", ".3g")]
-        note = "Order: from the size before. Time: warm solve of all modes, set-up included, median of repeats."
-        cells = [tuple(list(row.values())[:7]) for row in rows]
+        columns += [Column("order", format=".2f"), percent("GCI", ".3g"), percent("extrapolated", "+.3g")]
+        columns += [si("solve time", "s", ".3g")]
+        cells = [tuple(list(row.values())[:9]) for row in rows]
         title, draw = "Frequency error over N", partial(self._draw_errors, cache, rows, bounds)
-        tables = [Table(title, columns, cells, [note])]
+        tables = [Table(title, columns, cells, NOTES)]
         figures = [Figure("errors-over-size", title, CAPTIONS["errors-over-size"], draw)]
         if bounds:
             columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
@@ -80,8 +86,10 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:
         """A row for each mode, variant and size, in this order."""
-        from verify.analysis.compare import ORDER_FLOOR
-        from verify.linear.catalogue import MODELS
+        from verify.analysis.comparison import ORDER_FLOOR, relative_error
+        from verify.analysis.grid_convergence import grid_convergence
+        from verify.analysis.solution_cache import theory_of
+        from verify.linear.registry import MODELS
         from verify.timing import interleaved_medians
 
         seconds: dict[tuple[Variant, int], float] = {}
@@ -90,33 +98,42 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             solves = []
             for one in variants:
                 model, how = MODELS[one.model], dict(one.settings)
-                n = min(max(self.modes), model.n_elastic(cache.beam, count, **how))
+                n = min(max(self.modes), model.build(cache.beam, count, **how).n_elastic)
                 cache.modes(one.model, count, n, one.settings)
-                solves.append(partial(model.solve_modes, cache.beam, n, count, **how))
+                solves.append(lambda m=model, k=count, n=n, how=how: m.build(cache.beam, k, **how).modes(n))
             seconds |= zip(((one, count) for one in variants), interleaved_medians(solves), strict=True)
         rows = []
         for mode in self.modes:
             for one in variants:
+                theory = one.expected_order(cache.beam)
                 before: tuple[int, float] | None = None
+                known: dict[int, float] = {}
                 for count in self.counts:
-                    error, why = cache.error_or_why(one.model, count, mode, one.settings)
-                    frequency = order = None
+                    error, why = cache.error_or_reason(one.model, count, mode, one.settings)
+                    frequency = order = index = extrapolated = None
                     if error is not None:
                         frequency = cache.paired_frequency_hz(one.model, count, mode, one.settings)
                         # No order across a change of sign, nor at the rounding of the eigenvalues.
                         coarse = before is not None and min(abs(before[1]), abs(error)) >= ORDER_FLOOR
                         if before and coarse and before[0] != count and before[1] * error > 0.0:
                             order = log(before[1] / error) / log(count / before[0])
+                        known[count] = frequency
+                        with suppress(InputError):  # fewer than three sizes, or rounding
+                            gci = grid_convergence(list(known)[-3:], list(known.values())[-3:], theory)
+                            if gci.order is not None:
+                                exact = cache.exact_hz(mode, theory_of(one.settings))
+                                index, extrapolated = gci.index, relative_error(gci.extrapolated, exact)
                     row = {"mode": mode, "model": one.title, "N": count, "frequency_hz": frequency, "error": error}
                     time = None if error is None else seconds[one, count]
-                    rows.append(row | {"order": order, "run_time_s": time, "variant": one, "why": why})
+                    row |= {"order": order, "gci": index, "extrapolated_error": extrapolated, "run_time_s": time}
+                    rows.append(row | {"variant": one, "why": why})
                     before = None if error is None else (count, error)
         return rows
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
         from verify.analysis.solution_cache import has_bracket
-        from verify.linear.naming import MEAN
+        from verify.linear.registry import MEAN
 
         rows: list[Row] = []
         reasons: dict[str, None] = {}
@@ -141,7 +158,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         for one in dict.fromkeys(row["variant"] for row in rows):
             own = [row for row in rows if row["variant"] == one and row["mode"] == max(self.modes)]
             orders = [row["order"] for row in own if row["order"] is not None][-2:]
-            theory = one.order(cache.beam)
+            theory = one.expected_order(cache.beam)
             expected = theory if theory is not None else orders[-1] if orders else 0.0
             if own[-1]["error"] is None:
                 continue
@@ -170,7 +187,9 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             ax.loglog([row["N"] for row in own], errors, style, color=mean, label=label)
             ax.plot([], [], style, color="#7d8590", label=f"mode {mode}")
         _label_sizes(ax, self.counts, "|frequency error|, %")
-        guides = {one.order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors}
+        guides = {
+            one.expected_order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors
+        }
         if bounds:
             guides.setdefault(6, [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]])
         for order, own in guides.items():

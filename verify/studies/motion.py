@@ -89,7 +89,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.exact.in_time import check_beam
-        from verify.linear.catalogue import MODELS, bounding, discrete
+        from verify.linear.registry import MODELS, bounding, discrete
         from verify.motion.simulate import simulate
         from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result

@@ -96,10 +96,10 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     steps_per_period: Annotated[int, Meta(ge=16, le=4096, description="Steps in a period, at least.")] = 61
 
     def __post_init__(self) -> None:
-        from verify.linear.naming import Among
+        from verify.quantities.options import ModelName
 
         for model in self.models:
-            Among("time_basis").check(model, "motor.models")
+            ModelName("time_basis").check(model, "motor.models")
         if self.start == "steady" and self.soft_start_periods:
             raise InputError(
                 f"motor.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
@@ -122,7 +122,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
-        from verify.linear.catalogue import MODELS
+        from verify.linear.registry import MODELS
         from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
 

@@ -46,8 +46,8 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
         from verify.analysis.solution_cache import EULER, comparable, theory_of
-        from verify.report.result import Column, Figure, Result, Table
         from verify.formatting import theory_name
+        from verify.report.result import Column, Figure, Result, Table
 
         progress(f"modes 1 to {self.modes}, N = {self.count}")
         models, left_out = comparable(cache.beam, (self.count,), self.modes)
@@ -56,7 +56,9 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         warnings = []
         for one in variants:
             # The last mode first: one solve with the most modes then serves all.
-            cells = [cache.error_or_why(one.model, self.count, mode, one.settings) for mode in reversed(numbers)][::-1]
+            cells = [cache.error_or_reason(one.model, self.count, mode, one.settings) for mode in reversed(numbers)][
+                ::-1
+            ]
             errors[one] = [error for error, _ in cells]
             warnings += [f"{one.title}: {cells[-1][1]}"] if cells[-1][1] else []
         theories, theory = self._theories(cache), theory_of(variants[0].settings)
@@ -116,8 +118,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         import numpy as np
 
         from verify.analysis.solution_cache import theory_of
-        from verify.exact.modes import mode_shape
-        from verify.linear.catalogue import MODELS
+        from verify.linear.registry import MODELS
         from verify.report.result import Figure
 
         theory = theory_of(variants[0].settings)
@@ -126,7 +127,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         shown = {one.model: one for one in reversed(variants) if theory_of(one.settings) == theory}
         points: list[tuple[str, str, Array, list[Array]]] = []
         try:
-            exact = [mode_shape(cache.beam, mode, x, theory=theory) for mode in chosen]
+            exact = [cache.exact_shape(mode, x, theory=theory) for mode in chosen]
             for model, one in shown.items():
                 modes = cache.modes(model, self.count, self.modes, one.settings)
                 index = [cache.paired_index(model, self.count, mode, one.settings) for mode in chosen]

@@ -16,11 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from verify.analysis.solution_cache import SolutionCache
-    from verify.linear.fields import HarmonicField
-    from verify.report.result import Result
+    from verify.linear.field import HarmonicField
+    from verify.report.result import Result, Table
     from verify.scene.model import Scene
-    from verify.waves.case import DrivenCase
-    from verify.waves.driven import Operation
+    from verify.travelling_wave import BestDrive, DrivenCase
 
 Row: TypeAlias = dict[str, Any]
 Fields: TypeAlias = "dict[str, HarmonicField]"
@@ -47,48 +46,50 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
-        from verify.linear.catalogue import MODELS, discrete
-        from verify.waves.two_waves import middle_half
-        from verify.waves.window import check_window
+        from verify.linear.registry import EXACT, MODELS, discrete
+        from verify.waves.window import check_span, check_waves, middle_half
 
         if len(scene.forces) != 2 or scene.drive is None:
             raise InputError("wave: the study needs a [drive] with two forces, add them")
-        MODELS["analytic"].check(scene.beam, 1, 0)
-        places, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
+        MODELS[EXACT].build(scene.beam)
+        positions, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
         try:
-            check_window(scene.beam, places, frequency, middle_half(scene.beam))
+            check_span(scene.beam, positions, middle_half(scene.beam))
+            check_waves(scene.beam, frequency, middle_half(scene.beam))
         except WindowError as error:
             raise WindowError(
                 f"wave: its window [L/4, 3L/4] does not suit this beam ({error}): leave [wave] out, and use gates with "
                 "a window of their own"
             ) from None
         bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
-        for model in discrete("solve_harmonic", scene.beam) if bare.uniform else ():
+        for model in discrete("harmonic", scene.beam) if bare.uniform else ():
             for count in self.counts:
-                model.check_carried(bare, count, frequency)
+                model.build(bare, count).check_propagates(frequency)
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve the fields of all models. Raises InputError."""
         from msgspec.structs import replace
 
-        from verify.linear.catalogue import MODELS, discrete
-        from verify.quantities.waves import FieldOptions, driven_case
+        from verify.linear.registry import EXACT, MODELS, discrete
+        from verify.quantities.waves import FieldOptions, driven_case, measured
         from verify.report.result import Column, Figure, Result, Table
-        from verify.waves.driven import driven, measured_alone
+        from verify.travelling_wave import best_drive
+        from verify.waves.driven_case import driven
 
         drive = scene.drive
         assert drive is not None
         exact = driven_case(scene, FieldOptions())
-        models = [model.name for model in discrete("solve_harmonic", scene.beam)]
+        models = [model.name for model in discrete("harmonic", scene.beam)]
         rows: list[Row] = []
-        for model, count in [("analytic", None), *((model, count) for model in models for count in self.counts)]:
+        for model, count in [(EXACT, None), *((model, count) for model in models for count in self.counts)]:
             row: Row = {"name": sized_title(model, count), "model": model, "N": count}
             progress(row["name"])
-            rows.append(row | _waves(replace(exact, model=model, count=count), cache))
-        fields = {"analytic": driven(exact, cache)}
-        fields |= {model: driven(replace(exact, model=model, count=self.count), cache) for model in models}
+            rows.append(row | _waves(replace(exact, model=MODELS[model].build(scene.beam, count)), cache))
+        fields = {EXACT: driven(exact, cache)}
+        for model in models:
+            fields[model] = driven(replace(exact, model=MODELS[model].build(scene.beam, self.count)), cache)
         other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
-        ratio = measured_alone(driven(other, cache), None, "standing_wave_ratio")
+        ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact)
 
         columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
         columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
@@ -101,7 +102,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
         size = self.count if self.count in self.counts else max(self.counts)
-        ratios = [f"{r['name']} {r['drive'].standing_wave_ratio:.5g}" for r in rows if r["N"] in (None, size)]
+        ratios = [f"{r['name']} {r['drive']['standing_wave_ratio']:.5g}" for r in rows if r["N"] in (None, size)]
         x, up, magnified, widest = ellipses(fields["analytic"])
         paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
         start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
@@ -110,7 +111,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
         return Result(
             summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
-            tables=[Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes)],
+            tables=[
+                Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
+                _drives(best, exact, rows[0]["drive"]["standing_wave_ratio"]),
+            ],
             figures=[
                 Figure(
                     "wave-envelopes",
@@ -127,7 +131,12 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             ],
             movies=[movie("wave-moving", f"One period, N = {self.count}", MOVIE, _movie(fields, self.count))],
             warnings=[f"{row['name']}: {row['note']}." for row in rows if row["note"]],
-            data={"rows": rows, "other_drive_standing_wave_ratio": ratio},
+            data={
+                "rows": rows,
+                "other_drive_standing_wave_ratio": ratio,
+                "best_ratio": best.ratio,
+                "best_ratio_phase_deg": best.phase_deg,
+            },
         )
 
 
@@ -135,21 +144,48 @@ def _waves(case: "DrivenCase", cache: "SolutionCache") -> Row:
     """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
     from msgspec.structs import replace
 
-    from verify.waves.driven import SEARCH_SPAN, driven, operation, quietest_drive
-    from verify.waves.operating_point import edge_note
+    from verify.waves.best_frequency import minimum_reflection
 
-    row = {"drive": operation(driven(case, cache)), "best": None, "note": ""}
+    row = {"drive": _operation(case, cache), "best": None, "note": ""}
     try:
-        found = quietest_drive(case, SEARCH_SPAN, None, cache)
+        least = minimum_reflection(case)
     except InputError as error:
         return row | {"note": str(error)}
-    if found.at_edge:
-        return row | {"note": edge_note("the reflection falls off", found.x)}
-    return row | {"best": operation(driven(replace(case, frequency_hz=found.x), cache))}
+    if least.at_edge:
+        return row | {"note": f"the reflection still falls at the edge of the search, {least.x:.6g} Hz"}
+    return row | {"best": _operation(replace(case, frequency_hz=least.x), cache)}
 
 
-def _cells(one: "Operation | None") -> tuple[float | None, ...]:
-    return (one.frequency_hz, one.standing_wave_ratio, one.axis_ratio, one.crest_speed) if one else (None,) * 4
+def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
+    from verify.quantities.waves import measured
+
+    wave = measured(case, cache)
+    return {
+        "frequency_hz": case.frequency_hz,
+        "standing_wave_ratio": wave.standing_wave_ratio,
+        "axis_ratio": wave.mean_axis_ratio,
+        "crest_speed": wave.crest_speed,
+    }
+
+
+def _cells(one: dict[str, float] | None) -> tuple[float | None, ...]:
+    return tuple(one.values()) if one else (None,) * 4
+
+
+def _drives(best: "BestDrive", case: "DrivenCase", ratio: float) -> "Table":
+    """The scene's drive, the best of equal amplitudes, and the best ratio, at the scene's frequency."""
+    from verify.report.result import Column, Table
+    from verify.waves.operating_point import lead_deg
+
+    first, second = (force.amplitude for force in case.forces)
+    columns = [Column("drive"), Column("amplitude ratio", format=".4g"), Column("phase, deg", format=".2f")]
+    rows = [
+        ("the scene's", second / first if first else None, lead_deg(case), ratio),
+        ("best at equal amplitudes", 1.0, best.equal_phase_deg, best.equal_standing_wave_ratio),
+        ("best ratio", best.ratio, best.phase_deg, best.standing_wave_ratio),
+    ]
+    notes = [f"Second over first {case.kind}; exact beam, wave towards +x.", *([f"{best.note}."] if best.note else [])]
+    return Table("Two actuators without reflection", [*columns, Column("SWR", format=".5g")], rows, notes)
 
 
 def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
@@ -160,11 +196,11 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     """
     import numpy as np
 
-    from verify.waves.two_waves import lifted
+    from verify.travelling_wave import surface_motion
 
     turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
     places = np.linspace(0.25, 0.75, POINTS) * field.beam.length
-    along = (lifted(field.beam, field.turn(places))[:, None] * turn).real
+    along = (surface_motion(field.beam, field.rotation(places), places)[:, None] * turn).real
     up = (field.deflection(places)[:, None] * turn).real
     magnified = float(0.42 * (places[1] - places[0]) / abs(along).max())
     ratio = np.ptp(along, axis=1) / np.maximum(np.ptp(up, axis=1), 1e-300)
@@ -174,7 +210,7 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
 def _draw_envelopes(ax: "Axes", fields: Fields) -> None:
     import numpy as np
 
-    from verify.linear.catalogue import MODELS
+    from verify.linear.registry import MODELS
 
     x = np.linspace(0.0, fields["analytic"].beam.length, 601)
     lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
@@ -185,8 +221,8 @@ def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
     def set_up(ax: "Axes") -> Any:
         import numpy as np
 
-        from verify.linear.catalogue import MODELS
         from verify.formatting import unit_of, unit_over
+        from verify.linear.registry import MODELS
 
         exact = fields["analytic"]
         x_surface, height, *_ = ellipses(exact)

@@ -1,4 +1,1 @@
-"""Driven beams as waves: measures, imposed displacements, devices, unit waves superposed, two modes, where to drive.
-
-Takes harmonic fields, gives wave measures and operating points. Measures stand behind `travelling_wave`.
-"""
+"""Behind `verify.travelling_wave`: two waves in a window, unit responses superposed, drives, impedance matching."""

@@ -1,22 +1,22 @@
-"""A device that takes up the wave: the impedance that matches the beam, and what another one leaves.
+"""A device that absorbs the wave: the impedance that matches the beam, and the reflection of any other.
 
 Impedance is force over velocity, Z = R + i (omega m - S/omega) of a dashpot R, a spring S and a mass m; or couple over
-speed of turning. The beam ends at `distance` beyond the device, on any support; waves come from the other side, far
-enough for their near field to have died. Source: flexural waves on a half-infinite beam, L. Cremer, M. Heckl,
+angular velocity. The beam ends at `distance` beyond the device, on any support; waves come from the other side, from so
+far that their near field has decayed. Source: flexural waves on a half-infinite beam, L. Cremer, M. Heckl,
 Structure-Borne Sound, chapters on impedance and on reflection; the classic of matching is Z = conj(Z_beam).
 
-With a loss factor conj(Z_beam) takes the most power and still reflects: k is complex. A wave e^{-ikx} from the left
-makes s = w (or w') at the bare beam's place and comes back as r. A unit force (or couple) there sends A s e^{ikx} to
-the left, with A = -i/(4 EI k^3) of an endless beam, as a force far to the left that makes s times A there: reciprocity.
-The device pulls with i omega Z s Z_b/(Z + Z_b), so that
+A wave e^{-ikx} from the left makes s = w (or w') at the bare beam's place and comes back as r. A unit force (or couple)
+there sends A s e^{ikx} to the left, with A = -i/(4 EI k^3) of an endless beam, by reciprocity. The device pulls with
+i omega Z s Z_b/(Z + Z_b), so that
 
     Gamma = r - i omega A s^2 Z Z_b/(Z + Z_b) = Gamma_held (Z - Z_m)/(Z + Z_b),
 
-where Gamma_held = r - i omega A s^2 Z_b is of a place that is held, and Z_m = -Z_b r/Gamma_held reflects nothing.
-Without a loss factor Z_m = conj(Z_b) and |Gamma_held| = 1.
+where Gamma_held = r - i omega A s^2 Z_b belongs to a rigid device, and Z_m = -Z_b r/Gamma_held reflects nothing.
+Without losses Z_m = conj(Z_b) and |Gamma_held| = 1; with a loss factor k is complex, and conj(Z_b), which absorbs the
+most power, still reflects.
 """
 
-from math import inf
+from math import inf, sqrt
 
 import msgspec
 import numpy as np
@@ -24,26 +24,25 @@ import numpy as np
 from verify.arrays import ComplexArray
 from verify.checks import check_kind, check_number
 from verify.errors import InputError
-from verify.linear.fields import wavenumber
-from verify.linear.places import as_typed
+from verify.linear.field import wavenumber
 from verify.problem.beam import Beam, check_frequency
 from verify.problem.device import Device, of_impedance
 
 _ENDS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Derivatives of the deflection that a support sets to zero."""
 _WAYS = np.array([1j, 1.0])
-"""Of e^{-q k x} away from where it starts: a wave, and a near field."""
+"""q of e^{-q k x} away from a source: a wave, and a near field."""
 
 
 class Ending(msgspec.Struct, frozen=True):
-    """What a half-infinite beam is to a device at a place before its end."""
+    """A half-infinite beam at a device before its end. Impedances in kg/s, against rotation in N m s."""
 
     own: complex
-    """Z_b: force over velocity there, kg/s, or couple over speed of turning, N m s."""
+    """Z_b, the beam's own."""
     matched: complex
-    """Z_m of the device that reflects nothing, likewise."""
+    """Z_m, of the device that reflects nothing."""
     held: complex
-    """What the wave is reflected by, at the place, where a device holds it."""
+    """Gamma_held, the reflection by a rigid device."""
 
 
 def ending(
@@ -55,90 +54,65 @@ def ending(
     turning: bool = False,
     position: float | None = None,
 ) -> Ending:
-    """What a half-infinite beam is to a device at `distance` (metres) from an end on a support.
+    """A half-infinite beam at a device at `distance` (m) from an end on a support, against rotation with `turning`.
 
-    Against turning with `turning`. Raises InputError on a support where nothing moves, told by `position` where that is
-    another, and for a beam that is not uniform.
+    Raises InputError at a support without motion, naming `position` (m) where that is another number, and for a beam
+    that is not uniform.
     """
     check_number("position", distance, "metres from the end", at_least=0)
-    told = distance if position is None else position
     if not beam.uniform:
         raise InputError(f"beam.{beam.added[0]}: the impedance of a half-infinite beam is that of a uniform one")
     k, omega = wavenumber(beam, frequency_hz), 2.0 * np.pi * frequency_hz
     unit = 4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3 / omega
-    moved = _moved(k, distance, support, turning)
-    if moved == 0.0:  # to rounding
-        raise InputError(f"position = {told!r} m stands on a {support} support, where a device does nothing: move it")
-    own = complex(unit / (1j * moved))
-    back = _sent_back(k, distance, support, np.array([np.exp(-1j * k * distance), 0.0]))
-    seen = k * (1j - back @ _WAYS) if turning else 1.0 + back.sum()
-    held = complex(back[0] - seen**2 * own / unit)
+
+    def returned(arriving: ComplexArray) -> ComplexArray:
+        """Wave and near field at the device, (2,), that the end sends back of those that leave it, (2,)."""
+        rows, decay = np.array([(-_WAYS) ** order for order in _ENDS[support]]), np.exp(-_WAYS * k * distance)
+        right = np.array([_WAYS**order @ (arriving * decay) for order in _ENDS[support]])
+        return np.asarray(np.linalg.solve(rows, -right) * decay)
+
+    # motion under a unit force or couple, in 1/(4 EI k^3): that of an endless beam, whose response at the distance r is
+    # -(i e^{-ikr} + e^{-kr}), or its derivative by the source's place, and both waves from the end
+    back = returned(-np.array([1j, 1.0]) * (-_WAYS * k if turning else 1.0))
+    motion = (1.0 - 1j) * k**2 + back @ (-_WAYS * k) if turning else back.sum() - (1.0 + 1j)
+    if motion == 0.0:
+        raise InputError(
+            f"position = {distance if position is None else position!r} m stands on a {support} support, where a "
+            "device does nothing: move it"
+        )
+    own = complex(unit / (1j * motion))
+    back = returned(np.array([1.0, 0.0]))
+    s = k * (1j - back @ _WAYS) if turning else 1.0 + back.sum()
+    held = complex(back[0] - s**2 * own / unit)
     return Ending(own, -own * complex(back[0]) / held if beam.loss_factor else own.conjugate(), held)
 
 
-def _moved(k: complex, distance: float, support: str, turning: bool) -> complex:
-    """How the place answers a unit force, or turns by a unit couple, in 1/(4 EI k^3).
-
-    The answer of an endless beam, -(i e^{-ikr} + e^{-kr})/(4 EI k^3) to a force and its derivative by the place to a
-    couple, and both waves that the end sends back.
-    """
-    sent = -np.array([1j, 1.0]) * (-_WAYS * k if turning else 1.0)  # by the distance r from end to source, e^{-q k r}
-    back = _sent_back(k, distance, support, sent * np.exp(-_WAYS * k * distance))
-    there = (1.0 - 1j) * k**2 if turning else -(1.0 + 1j)
-    return complex(there + (back @ (-_WAYS * k) if turning else back.sum()))
-
-
-def _sent_back(k: complex, distance: float, support: str, arriving: ComplexArray) -> ComplexArray:
-    """Wave and near field at the place, (2,), of what an end sends back, `arriving` there, (2,)."""
-    rows = np.array([(-_WAYS) ** order for order in _ENDS[support]])
-    given = np.array([_WAYS**order @ arriving for order in _ENDS[support]])
-    return np.asarray(np.linalg.solve(rows, -given) * np.exp(-_WAYS * k * distance))
-
-
-def beam_impedance(
-    beam: Beam, frequency_hz: float, distance: float, support: str = "pinned", *, turning: bool = False
-) -> complex:
-    """Force over velocity that a half-infinite beam asks for at `distance` (metres) from an end on a support, kg/s.
-
-    With `turning` couple over speed of turning, N m s. Raises InputError as `ending` does.
-    """
-    return ending(beam, frequency_hz, distance, support, turning=turning).own
-
-
-def matched_impedance(
-    beam: Beam, frequency_hz: float, distance: float, support: str = "pinned", *, turning: bool = False
-) -> complex:
-    """The impedance of a device that reflects nothing, kg/s, or N m s with `turning`. Raises InputError."""
-    return ending(beam, frequency_hz, distance, support, turning=turning).matched
-
-
 def reflection(impedance: complex, end: Ending) -> float:
-    """|Gamma| at the device, by which one of this impedance reflects what comes."""
+    """|Gamma| at a device of this impedance."""
     return float(abs(end.held) * abs(impedance - end.matched) / abs(impedance + end.own))
 
 
 def best_dashpot(end: Ending) -> tuple[float, float]:
-    """(resistance, |Gamma| that it leaves) of the best dashpot alone; kg/s, N m s against turning.
+    """(resistance, |Gamma|) of the best dashpot alone; kg/s, N m s against rotation.
 
-    Without a loss factor |Z_b| and tan(|arg Z_b| / 2): over real R, |R - Z_m|^2 / |R + Z_b|^2 is least where
-    Re(Z_m + Z_b) R^2 + (|Z_b|^2 - |Z_m|^2) R = Re(Z_m) |Z_b|^2 + Re(Z_b) |Z_m|^2 rises through nought, or at no
-    dashpot, or, with losses, at inf: the stiffer the dashpot the less it leaves, down to what a held place does.
+    Without losses |Z_b| and tan(|arg Z_b| / 2): over real R, |R - Z_m|^2 / |R + Z_b|^2 is least where
+    Re(Z_m + Z_b) R^2 + (|Z_b|^2 - |Z_m|^2) R = Re(Z_m) |Z_b|^2 + Re(Z_b) |Z_m|^2 crosses zero upwards, or at no
+    dashpot, or, with losses, at infinity: a rigid device.
     """
     matched, own = end.matched, end.own
     a, b = (matched + own).real, abs(own) ** 2 - abs(matched) ** 2
     c = matched.real * abs(own) ** 2 + own.real * abs(matched) ** 2
-    root, best = float(np.sqrt(max(b * b + 4.0 * a * c, 0.0))), 0.0
+    root, best = sqrt(max(b * b + 4.0 * a * c, 0.0)), 0.0
     if b >= 0.0 and b + root > 0.0:
         best = max(2.0 * c / (b + root), 0.0)
     elif a > 0.0:
         best = max((root - b) / (2.0 * a), 0.0)
-    found = [(one, reflection(complex(one), end)) for one in (best, 0.0)]
-    return min(*found, (inf, abs(end.held)), key=lambda one: one[1])
+    candidates = [(one, reflection(complex(one), end)) for one in (best, 0.0)]
+    return min(*candidates, (inf, abs(end.held)), key=lambda one: one[1])
 
 
-@as_typed
 def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning: bool = False) -> Device:
-    """The device at a place (metres from the left end) that takes up what comes from the beam's longer side.
+    """The device at a position (m from the left end) that absorbs the wave from the beam's longer side.
 
     Beyond it the beam ends on its nearer support. Raises InputError.
     """
@@ -146,7 +120,6 @@ def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning:
     check_kind("turning", turning, bool)
     check_number("position", position, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
     right = position > 0.5 * beam.length
-    distance = max(beam.length - position, 0.0) if right else position
-    support = beam.supports[right]
+    distance, support = max(beam.length - position, 0.0) if right else position, beam.supports[right]
     end = ending(beam, frequency_hz, distance, support, turning=turning, position=position)
     return of_impedance(position, end.matched, 2.0 * np.pi * frequency_hz, turning=turning)

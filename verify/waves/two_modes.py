@@ -1,34 +1,30 @@
-"""The lumped picture of a travelling wave: two modes a quarter of a period apart; and any field's local waves.
+"""The lumped picture of a travelling wave: two modes a quarter of a period apart; and the local waves of any field.
 
-At a place a deflection is a wave towards +x, one towards -x and two near fields. Its derivatives tell them apart:
+At a point the derivatives of a deflection separate both waves from both near fields:
 
     w - w''/k^2 = 2 (A+ + A-),   w' - w'''/k^2 = -2 i k (A+ - A-).
 
-The local standing-wave ratio is (|A+| + |A-|) / ||A+| - |A-||. Along a uniform beam without losses a driven field has
-one ratio between two forces. Two modes have no such: equal neighbours n, n + 1 of a pinned beam in quadrature have
-|A+|^2 and |A-|^2 as 1 +- sin(pi x / L), so that the ratio is max(tan, cot)(pi x / 2L): a pure wave at mid-span,
-standing at the ends. Derived here; the picture is that of the authors' earlier paper, C. Vloebergh, J.-F. Collard,
-B. Dehez, F. Labrique, *Study of a travelling wave linear piezomotor using analytical, finite-element and lumped
-parameter models*, Electrimacs 2008.
+Along a uniform beam without losses a driven field has one standing-wave ratio between two forces. Two modes do not:
+equal neighbours n, n + 1 of a pinned beam in quadrature have |A+-|^2 as 1 +- sin(pi x / L), so that the ratio is
+max(tan, cot)(pi x / 2L): a pure wave at mid-span, standing at the ends. Derived here; the picture is that of
+C. Vloebergh, J.-F. Collard, B. Dehez, F. Labrique, *Study of a travelling wave linear piezomotor using analytical,
+finite-element and lumped parameter models*, Electrimacs 2008.
 """
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import Any
 
 import msgspec
 import numpy as np
 
+from verify.arrays import Array, ComplexArray
 from verify.checks import check_number, check_whole
 from verify.errors import InputError
 from verify.exact.modes import exact_frequency_hz, mode_shape
-from verify.linear.fields import HarmonicField
-from verify.linear.places import Numbers, in_a_row, places
+from verify.linear.field import HarmonicField
+from verify.linear.positions import Numbers, vector_on
 from verify.problem.beam import Beam
-from verify.waves.results import reflections, standing_wave_ratios
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from verify.arrays import Array, ComplexArray
+from verify.waves.two_waves import reflections, standing_wave_ratios
 
 
 class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
@@ -39,7 +35,7 @@ class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
     ratio: float = 1.0
     """Amplitude of the second over that of the first."""
     phase_deg: float = 90.0
-    """By which the second leads, degrees."""
+    """Lead of the second, degrees."""
 
     def __post_init__(self) -> None:
         if not self.beam.uniform:
@@ -51,56 +47,46 @@ class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
         check_number("ratio", self.ratio, "of two amplitudes", above=0)
         check_number("phase_deg", self.phase_deg, "degrees")
 
-    def deflection(self, x: Numbers) -> "ComplexArray":
-        """Complex deflection at x (metres), (n,), in the modes' own units. Raises InputError off the beam."""
-        first, second = (mode_shape(self.beam, mode, self._on(x)) for mode in self.modes)
-        return np.asarray(first + self._second * second)
-
-    def local_waves(self, x: Numbers) -> "tuple[ComplexArray, ComplexArray]":
-        """(A+, A-) at x: each mode's own waves, added up, (n,) each."""
-        at = self._on(x)
-        pairs = [_waves_of(_shape(self.beam, mode), self.wavenumber(mode), at) for mode in self.modes]
-        return pairs[0][0] + self._second * pairs[1][0], pairs[0][1] + self._second * pairs[1][1]
-
-    def local_swr(self, x: Numbers) -> "Array":
-        """Local standing-wave ratio at x, (n,), infinite where the wave stands."""
-        return standing_wave_ratios(reflections(*self.local_waves(x)))
-
     def wavenumber(self, mode: int) -> float:
-        """Of one of its modes, which lose nothing, 1/m."""
+        """Of one of its modes, without losses, 1/m."""
         return float(np.sqrt(2.0 * np.pi * exact_frequency_hz(self.beam, mode) / self.beam.wave_constant))
 
-    @property
-    def _second(self) -> complex:
-        return complex(self.ratio * np.exp(1j * np.deg2rad(self.phase_deg)))
+    def local_waves(self, x: Numbers) -> tuple[ComplexArray, ComplexArray]:
+        """(A+, A-) at x (m), (n,) each, in the modes' own units. Raises InputError off the beam."""
+        at = vector_on("x", x, self.beam.length)
 
-    def _on(self, x: Numbers) -> "Array":
-        return places("x", x, self.beam.length).ravel()
+        def waves(mode: int) -> ComplexArray:
+            return np.array(
+                _waves_of(lambda x, order: mode_shape(self.beam, mode, x, order), self.wavenumber(mode), at)
+            )
 
+        forward, backward = waves(self.modes[0]) + self.ratio * np.exp(1j * np.deg2rad(self.phase_deg)) * waves(
+            self.modes[1]
+        )
+        return forward, backward
 
-def _shape(beam: Beam, mode: int) -> "Callable[[Array, int], ComplexArray]":
-    return lambda x, derivative: mode_shape(beam, mode, x, derivative).astype(complex)
-
-
-def _waves_of(
-    shapes: "Callable[[Array, int], ComplexArray]", k: complex, x: "Array"
-) -> "tuple[ComplexArray, ComplexArray]":
-    """(A+, A-) at x of shapes that wave with k, (n,) each (see above)."""
-    even = 0.5 * (shapes(x, 0) - shapes(x, 2) / k**2)
-    odd = 0.5j * (shapes(x, 1) - shapes(x, 3) / k**2) / k
-    return 0.5 * (even + odd), 0.5 * (even - odd)
+    def local_swr(self, x: Numbers) -> Array:
+        """Local standing-wave ratio at x (m), (n,), infinite where the wave stands."""
+        return standing_wave_ratios(reflections(*self.local_waves(x)))
 
 
-def local_waves(field: HarmonicField, x: Numbers) -> "tuple[ComplexArray, ComplexArray]":
-    """(A+, A-) at x of the exact field of a uniform beam, metres, (n,) each. Raises InputError for another field."""
+def local_waves(field: HarmonicField, x: Numbers) -> tuple[ComplexArray, ComplexArray]:
+    """(A+, A-) at x of the exact field of a uniform beam, m, (n,) each. Raises InputError for another field."""
     if field.count is not None or not field.beam.uniform or field.theory != "euler-bernoulli":
         raise InputError(
             f"model = {field.model!r}: local waves are read from three derivatives, which the exact field of a uniform "
             "Euler-Bernoulli beam has: give that"
         )
-    return _waves_of(field.shapes, field.wavenumber, in_a_row("x", x, "metres"))
+    return _waves_of(field.shapes, field.wavenumber, vector_on("x", x, field.beam.length))
 
 
-def local_swr(field: HarmonicField, x: Numbers) -> "Array":
-    """Standing-wave ratio at x (metres) of the exact field of a uniform beam, (n,). Raises InputError for another."""
+def local_swr(field: HarmonicField, x: Numbers) -> Array:
+    """Standing-wave ratio at x (m) of the exact field of a uniform beam, (n,). Raises InputError for another."""
     return standing_wave_ratios(reflections(*local_waves(field, x)))
+
+
+def _waves_of(shapes: Callable[[Array, int], Any], k: complex, x: Array) -> tuple[ComplexArray, ComplexArray]:
+    """(A+, A-) at x of derivatives of a shape with wavenumber k, (n,) each."""
+    even = 0.5 * (shapes(x, 0) - shapes(x, 2) / k**2)
+    odd = 0.5j * (shapes(x, 1) - shapes(x, 3) / k**2) / k
+    return 0.5 * (even + odd), 0.5 * (even - odd)

@@ -1,37 +1,53 @@
-"""What a wave runs in: a beam by a theory, and how its section turns with its slope."""
+"""What a bending wave runs in: a beam's own section by a beam theory; crest speed and energy flux of two waves."""
 
 from typing import Any
 
 import msgspec
 import numpy as np
 
+from verify.linear.field import wavenumber
 from verify.problem.beam import Beam
 
 
-class Medium(msgspec.Struct, frozen=True):
-    """A beam's own section by a theory."""
+class Waveguide(msgspec.Struct, frozen=True):
+    """A beam's own section by a theory. All methods take arrays as well."""
 
     beam: Beam
     theory: str = "euler-bernoulli"
 
-    def turn(self, omega: Any) -> Any:
-        """The turn of the section over the slope of the line in a running wave: 1 where nothing shears.
+    def rotation_ratio(self, omega: Any) -> Any:
+        """Rotation of the section over the slope of the line in a running wave: 1 without shear.
 
         kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921);
-        complex where the beam has losses.
+        complex with losses.
         """
-        shear = self.beam.own.shear_stiffness
+        shear, loss = self.beam.own.shear_stiffness, self.beam.loss_factor
         if self.theory != "timoshenko" or shear is None:
             return 1.0
-        from verify.linear.fields import wavenumber
-
         hertz = np.asarray(omega) / (2.0 * np.pi)
         k2 = np.vectorize(lambda f: wavenumber(self.beam, float(f), self.theory) ** 2)(hertz)
-        loss = self.beam.loss_factor
-        held = shear * (1.0 + 1j * loss) * k2 if loss else shear * k2.real
-        return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / held
+        resisted = shear * (1.0 + 1j * loss) * k2 if loss else shear * k2.real
+        return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / resisted
 
-    def beside_shear(self, omega: Any) -> Any:
-        """What axial force and rotary inertia add to EI psi'' in the force across, times the slope, newton."""
-        turning = (self.beam.own.rotary_inertia or 0.0) * omega**2 if self.theory != "euler-bernoulli" else 0.0
-        return turning * self.turn(omega) - self.beam.tension
+    def axis_ratio(self, omega: Any, k: Any) -> Any:
+        """Of a pure wave: k h/2 times that ratio, width over height of the surface ellipse."""
+        return np.real(k * self.rotation_ratio(omega)) * self.beam.surface_distance
+
+    def crest_speed(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+        """Speed of the surface at the crests along +x, m/s, under both waves."""
+        plus, minus = abs(forward) ** 2, abs(backward) ** 2
+        return -omega * self.axis_ratio(omega, k) * (plus - minus) / np.sqrt(plus + minus)
+
+    def energy_flux(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+        """Power that both waves carry towards +x, W, at the point to which their amplitudes refer.
+
+        Transverse force times velocity and moment times angular velocity, 1/2 Re, with EI (1 + i eta); undamped
+        EI k^3 omega (|A+|^2 - |A-|^2). Axial force and rotary inertia contribute to the transverse force.
+        """
+        beam, k = self.beam, np.asarray(k, dtype=complex)
+        deflection, slope, ratio = forward + backward, 1j * k * (backward - forward), self.rotation_ratio(omega)
+        stiffness = beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * ratio
+        inertia = (beam.own.rotary_inertia or 0.0) * omega**2 if self.theory != "euler-bernoulli" else 0.0
+        force = stiffness * 1j * k**3 * (forward - backward) + (inertia * ratio - beam.tension) * slope
+        couple = stiffness * k**2 * deflection
+        return 0.5 * np.real(force * np.conj(1j * omega * deflection) + couple * np.conj(1j * omega * ratio * slope))

@@ -1,0 +1,154 @@
+"""Comparison of modes and errors: MAC, pairing, relative and shape errors, observed order. Sees arrays, no model."""
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import TypeVar
+
+import numpy as np
+
+from verify.arrays import Array, Indices
+from verify.errors import InputError, NoFigureError
+from verify.linear.modes import Modes
+
+T = TypeVar("T", float, complex)
+EIGENVALUE_FLOOR = 2e-14
+"""Relative frequency error that rounding may leave (measured: 1.1e-14 up to 10^4 segments or elements)."""
+ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
+"""Smallest error of which an order is observed; below it rounding changes the order."""
+ORDER_SPREAD = 1.0
+"""Largest difference between the orders of neighbouring sizes in the asymptotic range."""
+AT_REST = 1e-11
+"""A shape of this fraction of its typical size is rounding: mode 3 of a pinned beam at the nodes of three parts."""
+LEAST_MAC = 0.5
+"""Lowest MAC of a pair of modes."""
+LOW_MAC = 0.8
+"""Below this MAC supports differ: a clamped beam's first shapes have 0.62 and 0.75 with a cantilever's nearest, mode 6
+of a cantilever of twenty links has 0.996 with its own."""
+
+
+def relative_error(value: T, exact: T) -> T:
+    """(value - exact) / exact, signed or complex. Raises NoFigureError where the exact value is zero or infinite."""
+    if not exact or not np.isfinite(exact):
+        raise NoFigureError(
+            f"the exact value is {'infinite' if exact else 'zero'}, no error is relative to it: change the drive or "
+            "the position"
+        )
+    return (value - exact) / exact
+
+
+def mac(reference: Array, shapes: Array) -> Array:
+    """Modal assurance criterion of every pair, (n_reference, n_shapes), 0 to 1; shapes are (n, n_points).
+
+    Allemang, "The modal assurance criterion - twenty years of use and abuse", Sound and Vibration 37 (2003).
+    """
+    cross = reference @ shapes.T
+    squares = np.einsum("ij,ij->i", reference, reference)[:, None] * np.einsum("ij,ij->i", shapes, shapes)
+    return np.asarray(np.divide(cross**2, squares, out=np.zeros_like(cross), where=squares > 0.0))
+
+
+def pair_modes(macs: Array) -> tuple[Indices, Array]:
+    """The computed mode (index) of every exact mode, one to one, and their MAC: (n_reference,) each.
+
+    The pairing with the largest sum of MAC values; `macs` is (n_reference, n_shapes).
+    """
+    if (macs.argmax(axis=1) == np.arange(len(macs))).all():
+        index = np.arange(len(macs))
+    else:
+        from scipy.optimize import linear_sum_assignment
+
+        index = np.asarray(linear_sum_assignment(-macs)[1])
+    return index, macs[np.arange(len(index)), index]
+
+
+def paired_index(modes: Modes, exact_shapes: Array, mode: int, stride: int) -> int:
+    """The index in `modes` of the mode that pairs with exact mode `mode`.
+
+    exact_shapes (n_modes, n_points) at modes.points[::stride]. Raises InputError below `LEAST_MAC`.
+    """
+    index, macs = pair_modes(mac(exact_shapes, modes.sampled()[:, ::stride]))
+    if macs[mode - 1] < LEAST_MAC:
+        raise InputError(
+            f"mode = {mode}: no {modes.model} mode at count = {modes.count} has its shape "
+            f"(best MAC {macs[mode - 1]:.2f}), raise count"
+        )
+    return int(index[mode - 1])
+
+
+def node_weights(nodes: Array) -> Array:
+    """Trapezoidal weights of ascending positions, (n_nodes,)."""
+    gaps = np.diff(nodes)
+    return np.asarray(0.5 * (np.append(gaps, 0.0) + np.append(0.0, gaps)))
+
+
+def shape_error(exact: Array, computed: Array, weights: Array, typical: float = 0.0) -> float:
+    """Relative L2 distance of two mass-normalised shapes, free of sign; all (n_nodes,).
+
+    `typical` is the size of such a shape elsewhere. Raises NoFigureError where the exact shape is below `AT_REST` of it
+    at every node.
+    """
+    size = float(weights @ exact**2)
+    if size <= (AT_REST * typical) ** 2 * float(weights.sum()):
+        raise NoFigureError("count: the exact shape is zero at every node of so few parts, raise it")
+    distances = [float(weights @ (computed * sign - exact) ** 2) for sign in (1.0, -1.0)]
+    return float(np.sqrt(min(distances) / size))
+
+
+def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
+    """Zeros of a shape between the ends of the beam, (n_zeros,), m, ascending.
+
+    `shape` takes (n,) positions. Sampled 40 times per mode number, then Brent's method.
+    """
+    from scipy.optimize import brentq
+
+    margin = 1e-4 / mode  # the ends themselves are supports, not nodes
+    x = np.linspace(margin * length, (1.0 - margin) * length, 40 * mode + 1)
+    positive = shape(x) >= 0
+    changes = np.flatnonzero(positive[:-1] != positive[1:])
+
+    def at(position: float) -> float:
+        return float(shape(np.array([position]))[0])
+
+    return np.array([brentq(at, x[i], x[i + 1], xtol=1e-14 * length, rtol=1e-14) for i in changes])
+
+
+def observed_order(counts: Sequence[float], errors: Sequence[complex], given: str = "") -> float:
+    """Minus the least-squares slope of log |error| over log count; `errors` signed or complex.
+
+    `given` names the sizes where they are not counts: 'steps = [...]'. Raises InputError for fewer than three sizes,
+    equal sizes, an error that changes sign (or phase by more than 90 degrees), or one below `ORDER_FLOOR`.
+    """
+    given = given or f"counts = {list(counts)}"
+    sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=complex)
+    if len(sizes) < 3 or len(set(counts)) != len(sizes):
+        raise InputError(f"{given}: an observed order needs three or more different sizes")
+    if not np.isfinite(values).all():
+        raise InputError(f"{given}: an error is not finite, choose another mode or another quantity")
+    if (abs(values) < ORDER_FLOOR).any():
+        raise InputError(
+            f"{given}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "
+            "use coarser sizes or a higher mode"
+        )
+    if (np.outer(values, values.conj()).real < 0.0).any():
+        raise InputError(f"{given}: the error changes sign between them, so it has no order there")
+    return float(-np.polyfit(np.log(sizes), np.log(abs(values)), 1)[0])
+
+
+def asymptotic_order(
+    counts: Sequence[float], errors: Sequence[complex], expected: int | None = None, given: str = ""
+) -> float:
+    """`observed_order` of errors in the asymptotic range: orders from size to size within `ORDER_SPREAD` of `expected`.
+
+    Of each other where `expected` is None. Raises InputError outside it: sizes are too coarse, or the error is about to
+    change sign, and a slope through them is no order.
+    """
+    order = observed_order(counts, errors, given)
+    by_size = sorted(zip(counts, np.abs(errors), strict=True))
+    orders = [float(np.log(e / f) / np.log(m / n)) for (n, e), (m, f) in pairwise(by_size)]
+    low, high = (min(orders), max(orders)) if expected is None else (expected, expected)
+    if min(orders) <= 0.0 or max(orders) - low > ORDER_SPREAD or high - min(orders) > ORDER_SPREAD:
+        listed = ", ".join(f"{one:.2f}" for one in orders)
+        raise InputError(
+            f"{given or f'counts = {list(counts)}'}: outside the asymptotic range, orders from size to size are "
+            f"{listed}{'' if expected is None else f' and {expected} is expected'}: choose other sizes"
+        )
+    return order

@@ -1,0 +1,229 @@
+"""Weights by which forces, couples, bodies and springs act on a chain's joint positions and link rotations.
+
+The lever rule takes the rigid link as it is: order 2 for a force, 1 for a couple. The reciprocal rule weighs the four
+joints around with L_j + L_j''/12 (cubic Lagrange polynomials), for load and reading alike: order 4 for what one position
+moves at another. An attachment also acts on itself; its weights are corrected to have its own compliance as well
+(`docs/theory.md`, "Finite segments").
+"""
+
+from collections.abc import Iterator, Sequence
+from math import ceil, floor
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from verify.arrays import Array, Indices
+from verify.problem.beam import Beam
+from verify.problem.supports import HOLDS
+from verify.segments.chain import Chain, selection
+
+_BEFORE, _AFTER = 2, 4
+"""Joints before and from an attachment's link on whose weights are corrected."""
+_FEWEST = 6
+_WALL = 5
+"""Joints that a wall's corrections reach over, at most."""
+_SHORTEST = 8
+"""Links of the shortest chain with corrected weights."""
+_UNEQUAL = 0.05
+"""Relative difference of neighbouring links from which weights stay uncorrected: such chains are of order 2 anyway."""
+_PARABOLA = (0, 1, 2)
+_POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
+"""Powers of the distance from an end in the moments that loads far away cause there."""
+_TIE = 1e-10
+"""Added to what the weights are aligned with; decides where two solutions are equally near."""
+
+
+class Body(NamedTuple):
+    """Everything attached at one position (m), dimensionless."""
+
+    position: float
+    end: int | None = None
+    """The end, 0 or 1, that it is beyond the joint of."""
+    mass: float = 0.0
+    rotary_inertia: float = 0.0
+    stiffness: float = 0.0
+    rotational: float = 0.0
+
+
+def bodies_on(beam: Beam, unit: float, *, ends: bool) -> tuple[Body, ...]:
+    """Attached masses and springs of a beam; those at its ends are beyond a joint if `ends`."""
+    mass, stiffness, found = beam.mass_per_length * unit, beam.bending_stiffness / unit**3, dict[float, Body]()
+    each = [(m.position, (m.mass / mass, m.rotary_inertia / (mass * unit**2), 0.0, 0.0)) for m in beam.mass]
+    each += [(s.position, (0.0, 0.0, s.stiffness / stiffness, s.rotational / (stiffness * unit**2))) for s in beam.spring]
+    for at, values in each:
+        end = {0.0: 0, beam.length: 1}.get(at) if ends else None
+        before = found.get(at, Body(at, end))
+        found[at] = Body(at, end, *(a + b for a, b in zip(before[2:], values, strict=True)))
+    return tuple(found.values())
+
+
+def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
+    """(links, 0 to 1 along them) of positions (m), (p,) both; a position on a joint to rounding is that joint."""
+    nodes, n = chain.nodes / chain.unit, chain.n_segments
+    places = np.clip(positions / chain.unit, nodes[0], nodes[-1])
+    links = np.clip(np.searchsorted(nodes, places + 1e-9, side="right") - 1, 0, n - 1)
+    along = (places - nodes[links]) / chain.lengths[links]
+    return links, np.where(abs(places - nodes[links]) < 1e-9, 0.0, np.where(abs(nodes[links + 1] - places) < 1e-9, 1.0, along))
+
+
+def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
+    """Weights of joints 0..N for a force or a reading at positions (m), sparse (p, N + 1).
+
+    A joint beyond a pinned end is its odd reflection, beyond a guided end its even one; at free and clamped ends the
+    four joints move inward. Meant for equal links.
+    """
+    (links, s), n, p = link_at(chain, positions), chain.n_segments, len(positions)
+    if rule == "lever" or n < 3:
+        columns, weights = links[:, None] + np.arange(2), np.stack([1.0 - s, s], axis=1)
+    else:
+        reflects = [HOLDS[support] in (HOLDS["pinned"], HOLDS["guided"]) for support in chain.supports]
+        first = np.clip(links - 1, -int(reflects[0]), n - 3 + reflects[1])
+        s = s + links - first
+        cubics = [-(s - 1) * (s - 2) * (s - 3) / 6, s * (s - 2) * (s - 3) / 2, -s * (s - 1) * (s - 3) / 2,
+                  s * (s - 1) * (s - 2) / 6]  # fmt: skip
+        curvatures = [2.0 - s, 3.0 * s - 5.0, 4.0 - 3.0 * s, s - 1.0]
+        columns, weights = first[:, None] + np.arange(4), np.stack(cubics, axis=1) + np.stack(curvatures, axis=1) / 12.0
+        left, right = (-1.0 if support == "pinned" else 1.0 for support in chain.supports)
+        weights = weights * np.where(columns < 0, left, np.where(columns > n, right, 1.0))
+        columns = np.where(columns > n, 2 * n - columns, abs(columns))
+    return selection(np.repeat(np.arange(p), columns.shape[1]), columns.ravel(), (p, n + 1), weights.ravel())
+
+
+def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
+    """Weights of the links' rotations for a couple or a reading at positions (m), sparse (p, N): no end correction.
+
+    The link itself, on a joint the mean of both; by the reciprocal rule linear between the links' middles.
+    """
+    n, rows = chain.n_segments, np.arange(len(positions))
+    if rule == "lever" or n < 3:
+        links, s = link_at(chain, positions)
+        before, share = np.maximum(links - (s == 0.0), 0), np.where(s == 0.0, 0.5, 1.0)
+    else:
+        middles = chain.nodes[1:] - 0.5 * chain.lengths * chain.unit
+        links = np.clip(np.searchsorted(middles, positions), 1, n - 1)
+        before = links - 1
+        share = np.clip((positions - middles[before]) / (middles[links] - middles[before]), 0.0, 1.0)
+    return selection(rows, before, (len(rows), n), 1.0 - share) + selection(rows, links, (len(rows), n), share)
+
+
+def attachment_weights(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Any, Any]:
+    """Weights of joint positions, sparse (p, N + 1), and link rotations, (p, N), for attachments at distinct positions.
+
+    By the reciprocal rule with the compliances that attachments have by themselves and to each other on the beam.
+    Uncorrected between unequal links and on chains too short for them. At a free end: the end joint itself.
+    """
+    from scipy.sparse import csr_array
+
+    at = np.array(positions, dtype=float)
+    across, rotations = joint_weights(chain, at, rule), rotation_weights(chain, at, rule)
+    if rule == "lever" or chain.n_segments < 3 or not len(at):
+        return across, rotations
+    n, (links, along) = chain.n_segments, link_at(chain, at)
+    places, felt, turned = links + along, across.toarray(), rotations.toarray()
+    for end, support in zip((0, n), chain.supports, strict=True):
+        if support == "free":
+            felt[places == end] = np.eye(1, n + 1, end)
+    if n >= _SHORTEST and not chain.start:
+        for rows in _groups(chain, places):
+            _correct(chain, places[rows], rows, felt, turned)
+    return csr_array(felt), csr_array(turned)
+
+
+def _groups(chain: Chain, places: Array) -> Iterator[list[int]]:
+    """Rows of attachments whose corrections overlap, without those at ends, from left to right.
+
+    One on a joint is on both its links, so that distances are the same from either end.
+    """
+    n = chain.n_segments
+    ends = [end for end, support in zip((0, n), chain.supports, strict=True) if support != "guided"]
+    group, last = list[int](), (0, 0)
+    for row in np.argsort(places, kind="stable"):
+        place = places[row]
+        if place in ends:
+            continue
+        link = min(floor(place), n - 1), max(ceil(place) - 1, 0)
+        if group and min(link[0] - last[0], link[1] - last[1]) >= _BEFORE + _AFTER:
+            yield group
+            group = []
+        group.append(int(row))
+        last = link
+    if group:
+        yield group
+
+
+def _correct(chain: Chain, places: Array, rows: list[int], felt: Array, turned: Array) -> None:
+    """Correct some rows of the weights (p, N + 1), (p, N) in place, counting in links from the nearer end.
+
+    The moments m that a unit force (M = x' - x, x' > x) or couple (M = 1) causes in the joints have to satisfy
+    sum c_k m_k q(k) = integral M q for the moments q of loads far away, and sum c_k m_k n_k = integral M N for each
+    other. The nearest such m to those of the uncorrected weights are an orthogonal Procrustes problem (Schoenemann,
+    Psychometrika 31 (1966)).
+    """
+    n, count, from_right = chain.n_segments, len(places), bool(places.mean() > 0.5 * chain.n_segments)
+    order, there = (-1, n - places) if from_right else (1, places)
+    support, elastic = chain.supports[from_right], chain.elastic[from_right]
+    start = int(there.min()) - _BEFORE
+    first = max(start, 0 if HOLDS[support].rotation and not elastic else 1)
+    beyond = max(int(there.max()) + _AFTER, first + max(_FEWEST, 3 + 2 * count))
+    if beyond > n - 3:
+        return
+    lengths, compliances = chain.lengths[::order][max(first - 1, 0) : beyond + 1], chain.compliances[::order]
+    weights = compliances[first:beyond] / compliances[beyond]
+    inside = weights[max(_WALL - first, 0) :]
+    if np.ptp(lengths) > _UNEQUAL * lengths.max() or (abs(inside - 1.0) > _UNEQUAL).any():
+        return
+    at_end = first <= 1 and start <= first
+    origin = 0 if at_end else first
+    powers = np.array(_PARABOLA if not at_end or elastic else _POWERS.get(support, _PARABOLA))
+    joints, edge, x = np.arange(first, beyond) - float(origin), float(beyond - origin), there - origin
+    roots, before = np.sqrt(weights)[:, None], int(first > 0)
+    columns = slice(first - before, beyond + 1)
+    # moments of the uncorrected weights
+    forces, couples = felt[rows][:, ::order], turned[rows][:, ::order]
+    ahead = np.arange(first, n + 1)[:, None] - np.arange(first, beyond)
+    of_forces = joints[:, None] - x + (forces[:, first:] @ np.maximum(ahead, 0)).T
+    alone = roots * np.hstack([of_forces, 1.0 - (couples[:, first:] @ (ahead[:-1] >= 0)).T])
+    # the least moments that are right far away, and the rest that is right for each other
+    basis, triangle = np.linalg.qr(roots * joints[:, None] ** powers, mode="complete")
+    far = len(powers)
+    least = basis[:, :far] @ np.linalg.solve(triangle[:far].T, _far_integrals(x, edge, powers[:, None]))
+    values, vectors = np.linalg.eigh(_mutual_integrals(edge - x) - least.T @ least)
+    lacking = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+    aligned = basis[:, far:].T @ alone @ lacking
+    aligned += _TIE * abs(aligned).max() * np.eye(*aligned.shape)
+    left, _, right = np.linalg.svd(aligned, full_matrices=False)
+    moments = (least + basis[:, far:] @ (left @ right) @ lacking) / roots
+    # back to weights: changes of the links' forces, and of moments
+    every = np.zeros((2 * count, before + beyond - first + 2))
+    every[:, before:-2] = moments.T
+    every[:count, -2:] = np.arange(2.0) + edge - x[:, None]
+    every[count:, -2:] = 1.0
+    changes = np.diff(every)
+    forces, couples = np.zeros_like(forces), np.zeros_like(couples)
+    forces[:, columns] = np.diff(changes[:count], prepend=0.0)
+    couples[:, columns.start : columns.stop - 1] = changes[count:, :-1]
+    felt[rows], turned[rows] = forces[:, ::order], couples[:, ::order]
+
+
+def _far_integrals(x: Array, edge: float, p: Array) -> Array:
+    """Integrals of M s^p less the joints' from `edge` on, (powers, 2 n) of n forces, then couples at x.
+
+    The sum over those joints is that of Euler and Maclaurin, exact up to p = 4.
+    """
+
+    def joints(p: Array) -> Array:
+        return 0.5 * edge**p - p * edge ** (p - 1) / 12.0 + p * (p - 1) * (p - 2) * edge ** (p - 3) / 720.0
+
+    p = p.astype(float)
+    couples = (edge ** (p + 1) - x ** (p + 1)) / (p + 1)
+    forces = (edge ** (p + 2) - x ** (p + 2)) / (p + 2) - x * couples
+    return np.hstack([forces - joints(p + 1) + x * joints(p), couples - joints(p)])
+
+
+def _mutual_integrals(to_edge: Array) -> Array:
+    """Integrals of M N less the joints' from the edge on, (2 n, 2 n) of n forces, then couples so far before it."""
+    one, other = to_edge[:, None], to_edge
+    cut, product, total = np.minimum(one, other), one * other, one + other
+    forces = product * cut - total * cut**2 / 2.0 + cut**3 / 3.0 - product / 2.0 + total / 12.0
+    mixed = one * cut - cut**2 / 2.0 - one / 2.0 + 1.0 / 12.0 + 0.0 * other
+    return np.block([[forces, mixed], [mixed.T, cut - 0.5]])
