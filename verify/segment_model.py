@@ -111,11 +111,8 @@ class SegmentModel(DiscreteModel):
     @property
     def unit(self) -> float:
         """Mean length of a link, m; of a "welded" wall half a link at each clamped end is a part."""
-        return self.beam.length / (self.n_segments + 0.5 * sum(self._welded))
-
-    @property
-    def _welded(self) -> list[bool]:
-        return [self.wall == "welded" and support == "clamped" for support in self.beam.supports]
+        halves = self.beam.supports.count("clamped") if self.wall == "welded" else 0
+        return self.beam.length / (self.n_segments + 0.5 * halves)
 
     # --- Links, joints and walls ---------------------------------------------------------------------------------
 
@@ -136,7 +133,7 @@ class SegmentModel(DiscreteModel):
         return Chain(
             supports=self.beam.supports,
             unit=self.unit,
-            start=0.5 * self._welded[0],
+            start=0.5 * (self.wall == "welded" and self.beam.supports[0] == "clamped"),
             lengths=lengths,
             compliances=compliances,
             masses=masses,
@@ -276,12 +273,16 @@ class SegmentModel(DiscreteModel):
         bodies = self.bodies if self.attachment == "reciprocal" else ()
         return shear.slip_compliances(self.chain, self._softness, bodies, self._weights[0].toarray(), self.wall)
 
+    @property
+    def _massive(self) -> Any:
+        return np.array([body.mass > 0.0 for body in self.bodies], dtype=bool)
+
     @cached_property
     def motions(self) -> Motions:
         """Positions, rotations and slips as linear maps of the unknowns."""
         slips, gives = self._slips
         rotating = [end for end, body in enumerate(self._at_ends) if body.rotary_inertia]
-        return Motions(self.chain, rotating, slips, np.array([c for c, b in zip(gives, self.bodies) if c and b.mass]))
+        return Motions(self.chain, rotating, slips, gives[(gives > 0.0) & self._massive])
 
     @property
     def system(self) -> StructuralSystem:
@@ -323,8 +324,10 @@ class SegmentModel(DiscreteModel):
             gives = self._slips[1]
             # a spring without a mass is in series with its slip, or with its end's joint: no unknown is without mass
             lateral = lateral / (1.0 + lateral * np.where(masses, 0.0, gives))
-            rotational = np.where([b.end is not None and self._end_springs[b.end] for b in self.bodies], 0.0, rotational)
-            slipping = np.flatnonzero((gives > 0.0) & (masses > 0.0))
+            rotational = np.where(
+                [b.end is not None and self._end_springs[b.end] for b in self.bodies], 0.0, rotational
+            )
+            slipping = np.flatnonzero((gives > 0.0) & self._massive)
             own_slips = selection(slipping, np.arange(len(slipping)), (len(gives), len(slipping))) @ motions.body_slips
             across = self._weights[0] @ motions.positions + own_slips
             strains += [((across @ own)[lateral > 0.0], lateral[lateral > 0.0])]
@@ -350,15 +353,14 @@ class SegmentModel(DiscreteModel):
         x, motions = self.chain.nodes / self.unit, self.motions
         found = np.zeros((motions.n, self.beam.rigid_motions))
         for column, (start, tilt) in enumerate(self.beam.rigid_lines):
-            found[: len(motions.free), column] = start / self.unit + tilt * x[motions.free]
-            found[len(motions.free) : len(motions.free) + len(motions.rotating), column] = tilt
+            found[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
         springs = [i for i, body in enumerate(self.bodies) if body.stiffness]
         if springs and found.size:  # about the one spring, which unequal links read a little off its position
             found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
         return found
 
     def lossy_stiffness(self, omega: float) -> Any:
-        """D with the loss factor of the beam and the dashpots of the joints; springs, ground and tension lose nothing."""
+        """D with the beam's loss factor and the dashpots of joints; springs, ground and tension have no loss."""
         d, dashpots = self._assembled.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
         if not (self.beam.loss_factor or dashpots):
             return d
@@ -377,8 +379,14 @@ class SegmentModel(DiscreteModel):
 
         if not rotation:
             return joint_weights(self.chain, positions, self.load) @ self.motions.positions
-        each = [attachment_weights(self.chain, [float(position)], self.load)[1] for position in positions]
-        return vstack(each, format="csr") @ self.motions.rotations
+        ends = {body.position: body.end for body in self.bodies if body.end is not None and self._elastic[body.end]}
+        each = [
+            self.motions.end_rotations[[ends[position]]]
+            if position in ends
+            else attachment_weights(self.chain, [float(position)], self.load)[1] @ self.motions.rotations
+            for position in positions
+        ]
+        return vstack(each, format="csr")
 
     def _joints(self, unknowns: Any) -> Any:
         """Positions of joints 0..N of unknowns (n, k), (k, N + 1)."""
@@ -418,13 +426,11 @@ class SegmentModel(DiscreteModel):
 
     def modes_of(self, vectors: Array) -> dict[str, Any]:
         """Joints as nodes, their readings, and the curvature M/EI of every joint's moment."""
-        nodes = np.clip(self.chain.nodes, 0.0, self.beam.length)
 
         def curvatures() -> Array:
-            angles = self._assembled.strain(vectors)[: len(self._springs)].T
-            bent = np.zeros((vectors.shape[1], self.n_segments + 1))
-            stiffness = right_of(self.links.stiffnesses)[self._springs] * self._beam_compliances[self._springs]
-            bent[:, self._springs] = angles * self._own_share[self._springs] / stiffness
+            there, bent = self._springs, np.zeros((vectors.shape[1], self.n_segments + 1))
+            share = self._own_share / (right_of(self.links.stiffnesses) * self._beam_compliances)
+            bent[:, there] = self._assembled.strain(vectors)[: len(there)].T * share[there]
             if self.theory == "timoshenko":
                 values = self._assembled.rayleigh_quotients(vectors)
                 joints = self._corrected(vectors)
@@ -432,14 +438,10 @@ class SegmentModel(DiscreteModel):
             return bent / self.unit**2
 
         readings = {"corrected": lambda: self._corrected(vectors), "raw": lambda: self._joints(vectors)}
-        return {
-            "nodes": nodes,
-            "readings": readings,
-            "points": nodes,
-            "sampled": readings["corrected"],
-            "curvature_points": nodes,
-            "curvatures": curvatures,
-        }
+        places = dict.fromkeys(
+            ("nodes", "points", "curvature_points"), np.clip(self.chain.nodes, 0.0, self.beam.length)
+        )
+        return places | {"readings": readings, "sampled": readings["corrected"], "curvatures": curvatures}
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
@@ -449,13 +451,16 @@ class SegmentModel(DiscreteModel):
             rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
             return (rows @ self.motions.both @ vectors).T / self.unit
 
-        spline = replace(self, reading="corrected").line
-        return {
-            "shapes": self._links(vectors, both_sides=False) if line == "raw" else spline(vectors),
-            "edges": self.chain.nodes,
-            "degree": 1 if line == "raw" else 3,
-            "turns": rotations if self.beam.mass else None,
-        }
+        turns = rotations if self.beam.mass else None
+        if line == "raw":
+            return {
+                "shapes": self._links(vectors, both_sides=False),
+                "edges": self.chain.nodes,
+                "degree": 1,
+                "turns": turns,
+            }
+        shapes = line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
+        return {"shapes": shapes, "edges": self.chain.nodes, "degree": 3, "turns": turns}
 
     # --- Buckling, order, waves ----------------------------------------------------------------------------------
 
@@ -481,14 +486,7 @@ class SegmentModel(DiscreteModel):
 
     def expected_order(self) -> int | None:
         """Order of its frequencies in N (`segments.orders`); None where it depends on N."""
-        return order_of(
-            self.beam,
-            wall=self.wall,
-            joints=self.joints,
-            grading=self.grading,
-            theory=self.theory,
-            attachment=self.attachment,
-        )
+        return order_of(self.beam, **{name: getattr(self, name) for name in self.modal_settings})
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves along equal links of the beam's own section, 1/m.
@@ -497,22 +495,18 @@ class SegmentModel(DiscreteModel):
         """
         if self.theory != "euler-bernoulli":
             return super().wavenumber(frequency_hz)
-        link = self.beam.length / self.n_segments
-        load = (2.0 * pi * frequency_hz / self.beam.wave_constant * link**2) ** 2
-        load -= self.beam.foundation * link**4 / self.beam.bending_stiffness
-        tension = self.beam.tension * link**2 / self.beam.bending_stiffness
-        a, b = 16.0 * (1.0 + 1j * self.beam.loss_factor), 4.0 * tension + 2.0 * load / 3.0
+        load = (2.0 * pi * frequency_hz / self._omega_unit) ** 2 - self._foundation
+        a, b = 16.0 * (1.0 + 1j * self.beam.loss_factor), 4.0 * self._tension + 2.0 * load / 3.0
         if self.joints == "tensioned":
-            a -= 4.0 * tension / 3.0
-        k = complex(2.0 * np.arcsin(np.sqrt(2.0 * load / (b + np.sqrt(b * b + 4.0 * a * load + 0j)))) / link)
+            a -= 4.0 * self._tension / 3.0
+        k = complex(2.0 * np.arcsin(np.sqrt(2.0 * load / (b + np.sqrt(b * b + 4.0 * a * load + 0j)))) / self.unit)
         return k if k.imag <= 0.0 else k.conjugate()
 
     def check_propagates(self, frequency_hz: float) -> None:
         """Raise NoFigureError at and beyond omega^2 = 48 EI/(rho A l^4), a half wave on each link."""
-        highest = sqrt(48.0) * self.beam.wave_constant / self.beam.length**2 / (2.0 * pi)
-        if frequency_hz >= highest * self.n_segments**2:
+        n, of_one = self.n_segments, sqrt(48.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
+        if frequency_hz >= of_one * n**2:
             raise NoFigureError(
-                f"count = {self.n_segments}: {self.n_segments} segments carry waves up to "
-                f"{highest * self.n_segments**2:.6g} Hz and frequency_hz = {frequency_hz!r} lies beyond, give count = "
-                f"{int(sqrt(frequency_hz / highest)) + 1} or more"
+                f"count = {n}: {n} segments carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
+                f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
             )

@@ -8,12 +8,10 @@ from msgspec.structs import replace
 from tests.beams import PAIRED
 from verify import analytic_modes
 from verify.errors import InputError
-from verify.exact import closed_forms
 from verify.fem_beam import HermiteModel
 from verify.linear.mesh import divide, part_counts
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
-from verify.segment_model import SegmentModel
 
 STEPPED = Beam(
     length=0.6,
@@ -129,31 +127,9 @@ def order(model, mode, counts, **settings):
     return np.log(first / second) / np.log(counts[1] / counts[0])
 
 
-def test_eq_1_put_right_is_of_order_two_and_as_printed_of_order_one():
-    assert order(SegmentModel, 2, (96, 192)) == pytest.approx(2.0, abs=0.03)
-    assert order(SegmentModel, 2, (384, 768), joints="printed") == pytest.approx(1.0, abs=0.03)
-
-
 def test_elements_that_end_on_the_steps_keep_order_four():
     assert order(HermiteModel, 4, (24, 48)) == pytest.approx(4.0, abs=0.06)
     assert order(HermiteModel, 4, (24, 48), grading=0.6) == pytest.approx(4.0, abs=0.06)
-
-
-def test_unequal_segments_are_of_order_two(titanium_strip):
-    exact = closed_forms.frequency_hz(titanium_strip, 3)
-    first, second = (
-        SegmentModel(titanium_strip, n, grading=2.5).modes(3).frequencies_hz[2] / exact - 1 for n in (60, 120)
-    )
-    assert np.log2(abs(first / second)) == pytest.approx(2.0, abs=0.05)
-
-
-def test_printed_and_series_agree_where_the_paper_needs_them(titanium_strip):
-    for beam in (
-        titanium_strip,
-        replace(titanium_strip, section=(Section(length=0.3), Section(length=0.43, density=1000.0))),
-    ):
-        printed, series = (SegmentModel(beam, 20, joints=j).modes(5).frequencies_hz for j in ("printed", "series"))
-        assert printed == pytest.approx(series, rel=1e-13)
 
 
 def test_parts_follow_the_sections():

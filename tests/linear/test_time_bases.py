@@ -14,7 +14,6 @@ from verify.motion.surface import basis_of
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
@@ -95,21 +94,6 @@ def test_the_surface_is_smooth_across_the_nodes_as_far_as_its_model_says(model, 
         left, right = basis.shapes(nodes - tiny, derivative)[:8], basis.shapes(nodes + tiny, derivative)[:8]
         jump = abs(right - left).max() / abs(right).max()
         assert (jump < 1e-5) == (derivative < order), derivative
-
-
-def test_raw_links_are_straight_and_turn_at_the_joints():
-    raw, smooth = segment_motion.time_basis(STRIP, 12, line="raw"), segment_motion.time_basis(STRIP, 12)
-    joint, link = raw.edges[5], STRIP.length / 12
-    inside = joint + link * np.array([0.1, 0.5, 0.9])
-    assert np.ptp(raw.shapes(inside, 1), axis=1) == pytest.approx(0.0, abs=1e-9)
-    assert raw.shapes(inside, 2) == pytest.approx(0.0)
-    turn = raw.shapes(np.array([joint]), 1)[:, 0] - raw.shapes(np.array([joint - 1e-9]), 1)[:, 0]
-    mu = np.pi * np.arange(1, 12) / 12
-    expected = -4 * np.sin(mu / 2) ** 2 * raw.shapes(np.array([joint]), 0)[:, 0] / link
-    assert turn == pytest.approx(expected, abs=1e-6 * abs(expected).max())  # a joint turns by its second difference
-    # corrected joints: (1 - s^2/3) times the raw ones
-    at = np.array([joint])
-    assert smooth.shapes(at, 0)[:, 0] == pytest.approx((1 - np.sin(mu / 2) ** 2 / 3) * raw.shapes(at, 0)[:, 0])
 
 
 @pytest.mark.parametrize("supports", [("free", "free"), ("pinned", "free"), ("guided", "guided")])

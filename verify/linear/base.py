@@ -25,6 +25,7 @@ from verify.linear.time_basis import TimeBasis, check_held
 from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass
 
 _NEEDS = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "shear_stiffness")}
 
@@ -314,6 +315,9 @@ class DiscreteModel(BeamModel):
         Many frequencies are superposed from all modes where damping does not couple them.
         """
         acting, stationed = self.check_stationed(forces, devices)
+        if (cut := self._cut_at(stationed)) is not None:
+            field = cut.harmonic(acting, frequency_hz, devices=stationed, modal_damping=modal_damping)
+            return structs.replace(field, beam=self.beam)
         frequencies = frequencies_on(self.beam, frequency_hz)
         if stationed and np.ndim(frequency_hz):
             raise InputError("frequency_hz has several values: with devices give one at a time")
@@ -325,6 +329,19 @@ class DiscreteModel(BeamModel):
         unknowns = self._responses(loads, frequencies, modal_damping, rows)[:, :, 0]
         reactions = self._reactions(stationed, unknowns[0], 2.0 * pi * float(frequencies[0]))
         return self._field(unknowns, frequency_hz, (*acting, *reactions), stationed)
+
+    def _cut_at(self, devices: Sequence[Device]) -> "DiscreteModel | None":
+        """The model with negligible bodies at devices against rotation, None where it has bodies there.
+
+        A model divides its beam, and lets its ends rotate, at bodies; a couple elsewhere is of order 1 or 2.
+        """
+        beam, negligible = self.beam, 1e-15 * self.beam.mass_per_length * self.unit**3
+        bodies = {mass.position for mass in beam.mass if mass.rotary_inertia}
+        positions = sorted({device.position for device in devices if device.turning} - bodies)
+        if not positions:
+            return None
+        mass = [PointMass(position=position, rotary_inertia=negligible) for position in positions]
+        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))
 
     def _responses(
         self, loads: Any, frequencies: Array, modal_damping: float, rows: Sequence[tuple[Any, complex]] = ()
@@ -415,6 +432,8 @@ class DiscreteModel(BeamModel):
     ) -> HarmonicField:
         """The steady field under imposed harmonic displacements: constraint rows of the system; see `BeamModel`."""
         drives, stationed = self.check_stationed(displacements, devices)
+        if (cut := self._cut_at(stationed)) is not None:
+            return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
         omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
         rows = self.load_rows(np.array([drive.position for drive in drives]))
         if np.linalg.matrix_rank(rows.toarray()) < len(drives):

@@ -1,9 +1,8 @@
 """Weights by which forces, couples, bodies and springs act on a chain's joint positions and link rotations.
 
 The lever rule takes the rigid link as it is: order 2 for a force, 1 for a couple. The reciprocal rule weighs the four
-joints around with L_j + L_j''/12 (cubic Lagrange polynomials), for load and reading alike: order 4 for what one position
-moves at another. An attachment also acts on itself; its weights are corrected to have its own compliance as well
-(`docs/theory.md`, "Finite segments").
+joints around with L_j + L_j''/12 (cubic Lagrange polynomials), for load and reading alike: order 4 at a distance. An
+attachment also acts on itself; its weights are corrected for that (`docs/theory.md`, "Finite segments").
 """
 
 from collections.abc import Iterator, Sequence
@@ -49,7 +48,9 @@ def bodies_on(beam: Beam, unit: float, *, ends: bool) -> tuple[Body, ...]:
     """Attached masses and springs of a beam; those at its ends are beyond a joint if `ends`."""
     mass, stiffness, found = beam.mass_per_length * unit, beam.bending_stiffness / unit**3, dict[float, Body]()
     each = [(m.position, (m.mass / mass, m.rotary_inertia / (mass * unit**2), 0.0, 0.0)) for m in beam.mass]
-    each += [(s.position, (0.0, 0.0, s.stiffness / stiffness, s.rotational / (stiffness * unit**2))) for s in beam.spring]
+    each += [
+        (s.position, (0.0, 0.0, s.stiffness / stiffness, s.rotational / (stiffness * unit**2))) for s in beam.spring
+    ]
     for at, values in each:
         end = {0.0: 0, beam.length: 1}.get(at) if ends else None
         before = found.get(at, Body(at, end))
@@ -63,7 +64,9 @@ def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
     places = np.clip(positions / chain.unit, nodes[0], nodes[-1])
     links = np.clip(np.searchsorted(nodes, places + 1e-9, side="right") - 1, 0, n - 1)
     along = (places - nodes[links]) / chain.lengths[links]
-    return links, np.where(abs(places - nodes[links]) < 1e-9, 0.0, np.where(abs(nodes[links + 1] - places) < 1e-9, 1.0, along))
+    return links, np.where(
+        abs(places - nodes[links]) < 1e-9, 0.0, np.where(abs(nodes[links + 1] - places) < 1e-9, 1.0, along)
+    )
 
 
 def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:

@@ -63,7 +63,7 @@ class Chain:
 
 
 def link_inertia(mass: Any, length: Any) -> Any:
-    """m l^2 / 12: a uniform thin link about its middle."""
+    """M l^2 / 12: a uniform thin link about its middle."""
     return mass * length**2 / 12.0
 
 

@@ -1,7 +1,7 @@
 """Order in the number of links at which a chain's frequencies converge, by the beam and the settings of the chain.
 
-As derived in `docs/theory.md` and measured on 70 to 640 links: a body and a step leave terms of several orders, of which
-the lowest dominates at many links.
+Derived in `docs/theory.md` and measured on 70 to 640 links: a body and a step leave terms of several orders, of which the
+lowest dominates at many links.
 """
 
 from itertools import accumulate, pairwise
@@ -16,7 +16,12 @@ _WALL_ORDERS = {"half": 2, "welded": 2, "third-order": 3}
 
 def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: str, attachment: str) -> int | None:
     """The order of the frequencies of a chain of this beam; None where it depends on the number of links."""
-    graded, thick, sheared, lever = grading != 1.0, theory != "euler-bernoulli", theory == "timoshenko", attachment == "lever"
+    graded, thick, sheared, lever = (
+        grading != 1.0,
+        theory != "euler-bernoulli",
+        theory == "timoshenko",
+        attachment == "lever",
+    )
     ends = (0.0, beam.length)
     tips = [end for end, support in zip(ends, beam.supports, strict=True) if support == "free"]
     lateral = [m.position for m in beam.mass if m.mass] + [s.position for s in beam.spring if s.stiffness]

@@ -53,9 +53,7 @@ def line_through(chain: Chain, values: Callable[[], Any], *, slipping: bool = Fa
     return lambda x, derivative: made()(np.clip(x, nodes[0], nodes[-1]), derivative)
 
 
-def rigid_links(
-    chain: Chain, middles: Any, rotations: Any, *, both_sides: bool = True
-) -> Callable[[Array, int], Any]:
+def rigid_links(chain: Chain, middles: Any, rotations: Any, *, both_sides: bool = True) -> Callable[[Array, int], Any]:
     """(x in m, derivative) -> the straight links themselves at x, (k, len(x)).
 
     Of positions of their middles and their rotations, (k, N) in m and rad; at a joint the mean of both links, or the

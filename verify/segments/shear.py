@@ -52,7 +52,7 @@ def slip_compliances(
 def attachment_give(chain: Chain, softness: Array, position: float, weights: Array) -> float:
     """Compliance of the slip of an attachment at a position (m) whose weights of the joints are (N + 1,).
 
-    A chain slips less under a force, where it acts, than the beam by sum w_i w_j (|i - j|/2 + delta_ij/4) l/(kappa G A).
+    Where a force acts a chain slips less than the beam, by sum w_i w_j (|i - j|/2 + delta_ij/4) l/(kappa G A).
     At a guided end the attachment represents both its sides.
     """
     nearest = int(abs(chain.nodes - position).argmin())
@@ -121,8 +121,8 @@ def section_rotation(
     """Rotation psi of the section of unknowns (n, k): (x in m, derivative) -> (k, len(x)), rad per m^derivative.
 
     A C2 spline through the links' middles and the ends. A link's rotation is the mean of psi over its length,
-    psi = theta + l^2 psi''/24 at its middle; corrections of a wall's joints turn the links off that line. `own` (N + 1,)
-    is the part of a joint's angle that is the beam's, not a spring's beyond the end.
+    psi = theta + l^2 psi''/24 at its middle; corrections of a wall's joints turn the links off that line. `own`
+    (N + 1,) is the part of a joint's angle that is the beam's, not a spring's beyond the end.
     """
     from scipy.interpolate import CubicSpline
 

@@ -1,0 +1,122 @@
+"""The error laws of discrete models: dispersion, and what Gregory's joints leave at a clamped wall."""
+
+from functools import cache
+from itertools import pairwise
+from math import cos, exp, pi, sin
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify.exact import error_laws
+from verify.exact.closed_forms import frequency_hz, wavenumber_length
+from verify.fem_beam import HermiteModel
+from verify.problem.beam import Beam
+from verify.segment_model import SegmentModel
+
+STRIP = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850.0)
+MODELS = {"segment": SegmentModel, "fem": HermiteModel}
+FLOOR = 1e-12
+SIZES = (20, 23, 28, 40, 57, 80, 100, 123, 160, 320)
+CLAMPED = (("clamped", "free"), ("clamped", "pinned"), ("clamped", "clamped"), ("guided", "clamped"))
+
+
+@cache
+def errors(model, supports, count):
+    """Of the modes 1 to 10 at least, as many as 18 of 20 parts."""
+    n = min(count - 2, 30)
+    beam = replace(STRIP, supports=supports)
+    found = MODELS[model](beam, count).modes(n).frequencies_hz
+    return [float(f) / frequency_hz(beam, mode) - 1.0 for mode, f in enumerate(found, 1)]
+
+
+def terms(supports, mode, count):
+    """The dispersion's error and the wall's, summed and integrated plainly."""
+    mu, clamped = wavenumber_length(supports, mode) / count, supports.count("clamped")
+    square = sin(mu / 2) ** 2
+    return (48 * square**2 / (3 - 2 * square)) ** 0.5 / mu**2 - 1, -0.5 * clamped * residual(mu) / count
+
+
+@cache
+def residual(mu):
+    """Gregory's sum of M^2 less its integral, both under a window that lets it end: smooth, one at the wall."""
+    length = 4000.0 / mu
+    k = np.arange(int(length) + 1.0)
+    window, z = np.cos(0.5 * pi * k / length) ** 8, mu * k
+    squares = (np.cos(z) - np.sin(z) + np.exp(-z)) ** 2 * window
+    ends = sum(a * (cos(j * mu) - sin(j * mu) + exp(-j * mu)) ** 2 for j, a in enumerate((-5 / 8, 1 / 6, -1 / 24)))
+    fine = np.linspace(0.0, length, 2_000_001)
+    z = mu * fine
+    step, dense = fine[1], (np.cos(z) - np.sin(z) + np.exp(-z)) ** 2 * np.cos(0.5 * pi * fine / length) ** 8
+    slope = -2.0 * mu * 4.0  # of M^2 at the wall, 2 M M'
+    integral = step * (dense.sum() - 0.5 * dense[0]) + step**2 / 12 * slope
+    return float(squares.sum() + ends - integral)
+
+
+@pytest.mark.parametrize("mu", np.linspace(0.004, 2.5, 60))
+def test_what_a_wall_leaves_is_less_than_certainty_counts_with(mu):
+    assert abs(error_laws.wall_residual(mu)) <= mu**4 / 6
+
+
+@pytest.mark.parametrize("model", ["segment", "fem"])
+@pytest.mark.parametrize("supports", [*CLAMPED, ("free", "free"), ("free", "pinned"), ("guided", "free")])
+def test_errors_keep_to_the_law_within_a_third_of_its_terms_from_twenty_parts_on(model, supports):
+    """All modes up to mu = 2.5; the same errors moved by half of the terms do not."""
+    beam = replace(STRIP, supports=supports)
+    for count in SIZES:
+        for mode, error in enumerate(errors(model, supports, count), 1):
+            if wavenumber_length(supports, mode) / count <= 2.5:
+                assert error_laws.is_kept(model, beam, mode, count, error, FLOOR), (count, mode)
+    off = errors(model, supports, 40)[4] + 0.75 * sum(map(abs, terms(supports, 5, 40)))
+    assert not error_laws.is_kept(model, beam, 5, 40, off, FLOOR)
+
+
+@pytest.mark.parametrize("supports", CLAMPED)
+@pytest.mark.parametrize(("mode", "one", "two"), [(1, 176, 332), (3, 212, 372), (5, 240, 408), (10, 292, 480)])
+def test_the_leading_terms_are_a_law_of_fine_chains_alone(supports, mode, one, two):
+    """mu^4 (-1/1440 + c/12 N): a quarter off at most from these links on, a third and more at half of them."""
+    first = one if supports.count("clamped") == 1 else two
+
+    def ratio(count):
+        return errors("segment", supports, count)[mode - 1] / error_laws.leading_error("segment", supports, mode, count)
+
+    for count in (first, int(1.3 * first), 2 * first):
+        if mode > 1 or count < 400:  # rounding
+            assert 0.8 <= ratio(count) <= 1.25, count
+    half = errors("segment", supports, first // 2)[mode - 1]
+    assert abs(error_laws.leading_error("segment", supports, mode, first // 2) / half - 1) > 1 / 3
+    if mode >= 3:
+        assert ratio(20) < 0.5
+
+
+def test_where_errors_of_clamped_chains_change_sign():
+    """At the first of two neighbouring sizes, 16 to 160 links; the leading terms of one clamped end would at 120."""
+
+    def signs(supports, mode):
+        found = [errors("segment", supports, n)[mode - 1] for n in range(16, 162)]
+        return found, [n for n, (one, other) in enumerate(pairwise(found), 16) if one * other < 0]
+
+    assert signs(("clamped", "free"), 3)[1] == [27, 82]
+    assert signs(("clamped", "pinned"), 2)[1] == [23, 87]
+    assert signs(("clamped", "clamped"), 5)[1] == [63, 156]
+    for supports in (("clamped", "free"), ("clamped", "pinned"), ("clamped", "guided")):
+        (once,) = (n for n in signs(supports, 1)[1] if n > 20)
+        assert 100 <= once <= 112
+    for mode in (5, 10):
+        assert max(signs(("clamped", "free"), mode)[0]) < 0.0
+        assert error_laws.leading_error("segment", ("clamped", "free"), mode, 119) > 0.0
+
+
+@pytest.mark.parametrize("supports", [("clamped", "free"), ("clamped", "clamped"), ("free", "free")])
+@pytest.mark.parametrize("model", ["segment", "fem"])
+@pytest.mark.parametrize("mode", [1, 4, 9])
+@pytest.mark.parametrize("error", [1e-2, 1e-5, 3e-8])
+def test_what_is_certain_is_so_at_every_size_from_there_on(model, supports, mode, error):
+    beam = replace(STRIP, supports=supports)
+    first = error_laws.certain_from(model, beam, mode, error)
+    for count in (first, first + 1, int(1.3 * first), 2 * first):
+        if count < 700:
+            n = float(MODELS[model](beam, count).modes(mode).frequencies_hz[-1])
+            assert abs(n / frequency_hz(beam, mode) - 1) <= error
+        own, walls = terms(supports, mode, count) if model == "segment" else (0.0, 0.0)
+        assert 4 / 3 * (abs(own) + abs(walls)) <= error * 1.0001

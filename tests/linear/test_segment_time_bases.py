@@ -1,0 +1,86 @@
+"""Chains in time: their free modes, read along the contact line or along the raw links."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify.errors import InputError
+from verify.linear.field import phasor
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
+from verify.problem.point_attachments import PointMass, PointSpring
+from verify.segment_model import SegmentModel
+
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
+FREQUENCY = 1310.0
+FORCES = (
+    PointForce(position=0.037, amplitude=1.3, phase_deg=17.0),
+    PointForce(position=0.402, amplitude=0.8, phase_deg=101.0),
+)
+BODY = PointMass(position=0.11, mass=0.03, rotary_inertia=4e-6)
+LOADED = [
+    {},
+    {"supports": ("guided", "clamped")},
+    {"supports": ("pinned", "clamped"), "tension": 20.0},
+    {"supports": ("clamped", "free"), "spring": (PointSpring(position=0.3, stiffness=300.0, rotational=2.0),)},
+    {"foundation": 700.0, "mass": (BODY,)},
+    {"supports": ("clamped", "free"), "section": (Section(length=0.13, thickness=0.002), Section(length=0.3))},
+]
+
+
+@pytest.mark.parametrize("change", LOADED)
+def test_the_sum_over_all_modes_is_the_harmonic_field(change):
+    """Undamped: modes, their loads and their reading along the beam together."""
+    model = SegmentModel(replace(STRIP, **change), 33)
+    basis, field = model.time_basis(), model.harmonic(FORCES, FREQUENCY)
+    share = sum(phasor(f) * basis.loads(f.position) for f in FORCES) / (basis.omegas**2 - (2 * np.pi * FREQUENCY) ** 2)
+    x, every = np.array([0.013, 0.1417, 0.25, 0.3999]), np.linspace(0, STRIP.length, 99)
+    for derivative in (0, 1, 2):
+        bound = 1e-9 * abs(field.shapes(every, derivative)).max()
+        assert share @ basis.shapes(x, derivative) == pytest.approx(field.shapes(x, derivative), abs=bound)
+    modes = model.modes(20)
+    assert basis.omegas[:20] / (2 * np.pi) == pytest.approx(modes.frequencies_hz, rel=1e-9)
+    assert abs(basis.shapes(x, 0)[:20] - modes.shapes(x, 0)).max() < 2e-6 * abs(modes.shapes(x, 0)).max()
+
+
+@pytest.mark.parametrize("position", [0.11, 0.43])
+def test_a_body_rotates_as_the_beam_does(position):
+    """Inside by its weights of the links, at an end beyond the end joint."""
+    beam = replace(STRIP, supports=("clamped", "free"), mass=(replace(BODY, position=position),))
+    off = []
+    for count in (40, 80):
+        basis = SegmentModel(beam, count).time_basis()
+        slopes, found = basis.shapes(np.array([position]), 1)[:3, 0], basis.body_turns()[:3, 0]
+        off.append(abs(found / slopes - 1.0).max())
+    assert off[1] < 0.5 * off[0] < 5e-3
+
+
+def test_the_contact_line_has_a_continuous_curvature_and_no_more():
+    """C2 spline through the joints (Section II.B)."""
+    basis = SegmentModel(STRIP, 12).time_basis()
+    nodes, tiny = basis.edges[1:-1], 1e-9
+    for derivative in range(4):
+        left, right = basis.shapes(nodes - tiny, derivative)[:8], basis.shapes(nodes + tiny, derivative)[:8]
+        assert (abs(right - left).max() / abs(right).max() < 1e-5) == (derivative < 3), derivative
+
+
+def test_raw_links_are_straight_and_turn_at_the_joints():
+    model = SegmentModel(STRIP, 12)
+    raw, smooth = model.time_basis(line="raw"), model.time_basis()
+    joint, link = raw.edges[5], STRIP.length / 12
+    inside = joint + link * np.array([0.1, 0.5, 0.9])
+    assert np.ptp(raw.shapes(inside, 1), axis=1) == pytest.approx(0.0, abs=1e-9)
+    assert raw.shapes(inside, 2) == pytest.approx(0.0)
+    turn = raw.shapes(np.array([joint]), 1)[:, 0] - raw.shapes(np.array([joint - 1e-9]), 1)[:, 0]
+    mu = np.pi * np.arange(1, 12) / 12
+    expected = -4 * np.sin(mu / 2) ** 2 * raw.shapes(np.array([joint]), 0)[:, 0] / link
+    assert turn == pytest.approx(expected, abs=1e-6 * abs(expected).max())  # a joint's angle is its second difference
+    # corrected joints: (1 - s^2/3) times the raw ones
+    at = np.array([joint])
+    assert smooth.shapes(at, 0)[:, 0] == pytest.approx((1 - np.sin(mu / 2) ** 2 / 3) * raw.shapes(at, 0)[:, 0])
+
+
+@pytest.mark.parametrize("supports", [("free", "free"), ("pinned", "free"), ("guided", "guided")])
+def test_a_chain_that_can_drift_away_is_refused(supports):
+    with pytest.raises(InputError, match="rigid motion"):
+        SegmentModel(replace(STRIP, supports=supports), 20).time_basis()
