@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from verify.linear.catalogue import MODELS
 
 from verify import load_scene, run_scene, segment_model
 from verify.cli import status_of
 from verify.engines import ENGINES, chain_of
-from verify.linear.catalogue import MODELS
 from verify.quantities.base import QUANTITIES
 from verify.studies.base import STUDIES
 

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
+from verify.elements.mesh import build_elements
+from verify.elements.pencil import element_pencil
 
 from verify import analytic_modes
 from verify.elements import linear as fem_beam
-from verify.elements.mesh import build_elements
-from verify.elements.pencil import element_pencil
 from verify.linear.mesh import part_counts
 from verify.options import SUPPORTS
 from verify.problem.beam import Beam

@@ -48,9 +48,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Beam", "Bent", "Contact", "Device", "ExactModel", "Foot", "FreeVibration", "HarmonicField", "HermiteModel",
-    "InputError", "Modes", "Motion", "MotorRun", "PointForce", "PointMass", "PointSpring", "Section", "SegmentModel",
-    "Slider", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_motor", "run_motors",
-    "run_scene", "simulate", "travelling_wave",
+    "InputError", "Modes", "Motion", "MotorRun", "PointForce", "PointMass", "PointSpring", "Section",
+    "SegmentModel", "Slider", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_motor",
+    "run_motors", "run_scene", "simulate", "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
 
@@ -88,4 +88,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
+    """All public names, imported or not."""
     return sorted(__all__)

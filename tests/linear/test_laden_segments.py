@@ -5,11 +5,11 @@ from math import pi, sin
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from verify.exact.modes import mode_shapes
 
 from tests.reference.transfer import frequency_near, state
 from verify.errors import InputError
 from verify.exact import modes as exact_modes
-from verify.exact.modes import mode_shapes
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring

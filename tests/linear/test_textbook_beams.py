@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.optimize import brentq
+from verify.exact.buckling import buckling_load, check_stable
+from verify.exact.modes import exact_frequency_hz
 
 from tests.reference.transfer import has_frequency_within
 from verify import analytic_modes
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.exact.buckling import buckling_load, check_stable
-from verify.exact.modes import exact_frequency_hz
 from verify.options import SUPPORTS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section

@@ -4,11 +4,11 @@ import mpmath
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from verify.exact.modes import exact_frequency_hz, solve_modes
 
 from tests.reference import dense
 from verify.errors import InputError
 from verify.exact import closed_forms
-from verify.exact.modes import exact_frequency_hz, solve_modes
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
 

@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 from msgspec.structs import replace
 from reference.motor import Waves, waves_of
-
 from verify.exact.harmonic import solve_harmonic
+
 from verify.motor.run import run_motor
 from verify.problem.beam import Beam, PointForce
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 from msgspec.structs import replace
-
 from verify.analysis.bracket import Bracket
+
 from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import solve_harmonic
 from verify.errors import InputError

@@ -2,11 +2,11 @@
 
 import pytest
 from msgspec.structs import replace
+from verify.linear.catalogue import MODELS
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import frequency_hz
 from verify.errors import InputError
-from verify.linear.catalogue import MODELS
 from verify.quantities.base import evaluate
 from verify.scene.load import load_scene
 from verify.studies.axial_inertia import AxialInertia

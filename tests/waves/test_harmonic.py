@@ -5,12 +5,12 @@ from itertools import product
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from verify.exact.modes import mode_shape
 
 from tests.reference import transfer
 from verify.analytic_modes import ExactModel
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
-from verify.exact.modes import mode_shape
 from verify.fem_beam import HermiteModel
 from verify.linear.field import phasor
 from verify.options import SUPPORTS

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
+from verify.exact.modes import mode_shape
 
 from verify import Beam, PointForce, PointMass
 from verify.analytic_modes import ExactModel
 from verify.errors import InputError, NoFigureError, ResonanceError
-from verify.exact.modes import mode_shape
 from verify.fem_beam import HermiteModel
 from verify.linear.field import point_force
 from verify.problem.device import Device
