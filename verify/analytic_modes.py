@@ -84,7 +84,7 @@ class ExactModel(BeamModel):
         return self._beta_length(mode) ** 2 * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
 
     def _beta_length(self, mode: int) -> float:
-        """beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
+        """Beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
         if self.theory == "euler-bernoulli" and self.beam.uniform:
             return closed_forms.wavenumber_length(self.beam.supports, mode)
         return wavenumber_length(self.layout, mode + self.beam.rigid_motions)

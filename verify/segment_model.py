@@ -23,7 +23,7 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.checks import MOST_DASHPOT, MOST_PARTS, check_number, check_whole, check_word, plain
+from verify.checks import MOST_PARTS, check_number, check_whole, check_word, plain
 from verify.errors import InputError, NoFigureError
 from verify.linear.base import DiscreteModel
 from verify.linear.mesh import Parts, check_division, divide, part_counts
@@ -85,7 +85,7 @@ class SegmentModel(DiscreteModel):
         check_whole("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         for name, words in _WORDS.items():
             check_word(name, getattr(self, name), words)
-        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=MOST_DASHPOT)
+        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0)
         check_division(self.beam, self.n_segments, self.grading)
         self.check_theory()
         if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):

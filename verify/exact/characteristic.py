@@ -289,7 +289,7 @@ def _count_at_beta(layout: BeamLayout, beta: float) -> Count:
 
 
 def wavenumber_length(layout: BeamLayout, number: int) -> float:
-    """beta L of the frequency of a number, 1 the lowest, rigid motions included: omega = beta^2 sqrt(EI / rho A)."""
+    """Beta L of the frequency of a number, 1 the lowest, rigid motions included: omega = beta^2 sqrt(EI / rho A)."""
     return nth_root(lambda beta: _count_at_beta(layout, beta), number)
 
 

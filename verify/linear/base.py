@@ -15,7 +15,7 @@ import numpy as np
 from msgspec import structs
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number, check_whole, check_word, several
+from verify.checks import check_kind, check_number, check_whole, check_word, several
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
@@ -168,6 +168,7 @@ class BeamModel(ABC):
 
     def check_theory(self) -> None:
         """Raise InputError for an unknown theory, and for one that the beam has no figures for."""
+        check_kind("beam", self.beam, Beam)
         check_word("theory", self.theory, THEORIES)
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(
@@ -341,7 +342,7 @@ class DiscreteModel(BeamModel):
         if not positions:
             return None
         mass = [PointMass(position=position, rotary_inertia=negligible) for position in positions]
-        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))
+        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))  # type: ignore[type-var]
 
     def _responses(
         self, loads: Any, frequencies: Array, modal_damping: float, rows: Sequence[tuple[Any, complex]] = ()
@@ -373,7 +374,9 @@ class DiscreteModel(BeamModel):
         """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
         first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
         losses = np.imag(first / self.stable_system.stiffness)
-        return float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
+        return (
+            float(losses[0]) if np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last) else None
+        )
 
     def _superposes(self, omegas: Array) -> bool:
         """Whether all modes cost less than a factorisation for each frequency, and are not coupled."""

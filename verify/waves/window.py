@@ -1,10 +1,11 @@
 """Which window of a beam holds two waves alone: no force, device or attachment inside, half a wavelength or more."""
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 
-from verify.checks import LARGEST, check_kind, plain
+from verify.checks import check_kind, plain
 from verify.errors import InputError, WindowError, shown
 from verify.formatting import as_written
 from verify.linear.field import wavenumber
@@ -106,8 +107,8 @@ def check_wavenumber(name: str, value: object, span: Window) -> complex:
 
     Raises InputError for one that does not propagate towards +x, or has no or too many half wavelengths in the span.
     """
-    k = plain(value, name)
-    number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) <= LARGEST
+    k = plain(value)
+    number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) < inf
     if not number or not 0.0 <= -k.imag <= k.real or not k.real:
         raise InputError(
             f"{name} = {shown(value)}: give a finite k of e^{{-ikx}} in 1/m, its real part above 0, its imaginary "
