@@ -188,7 +188,10 @@ VERBS = [
     (lambda: bend(STRIP, 9, 1.0), r"beam\.supports"),
     (lambda: bend(CANTILEVER, 0, 1.0), r"count = 0"),
     (lambda: Beam(**TITANIUM, mass=np.array(3.0)), r"beam\.mass = 3\.0: give a list"),
-    (lambda: Beam(**TITANIUM | {"length": np.ma.array([0.7], mask=[True])}), r"beam\.length = \[None\]: give one number"),
+    (
+        lambda: Beam(**TITANIUM | {"length": np.ma.array([0.7], mask=[True])}),
+        r"beam\.length = \[None\]: give one number",
+    ),
     (figure("mode.frequncy"), r"quantity = 'mode\.frequncy' is not known: did you mean 'mode\.frequency'"),
     (figure("mode.frequency", model="segmnt", mode=3), r"model = 'segmnt'.* did you mean 'segment'"),
     (figure("mode.frequency", model="segment", mode=3), r"count is missing"),

@@ -9,8 +9,8 @@ At a clamped end the wall has joints too (`segments.walls`). Each link has its m
 m l^2/12. In small motion about the straight chain the unknowns are the transverse positions y of the joints that the
 supports leave free; the links' rotations are their differences.
 
-The angle of a joint is l times the mean curvature around it: the beam's deflection at the joint is y + l^2 y''/12, order
-4 (`segments.reading`). Between the joints the paper's C2 spline of Section II.B goes through it.
+The angle of a joint is l times the mean curvature around it: the beam's deflection at the joint is y + l^2 y''/12,
+order 4 (`segments.reading`). Between the joints the paper's C2 spline of Section II.B goes through it.
 """
 
 from collections.abc import Callable
@@ -32,8 +32,19 @@ from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachme
 from verify.problem.beam import Beam
 from verify.problem.supports import HOLDS
 from verify.segments import shear
-from verify.segments.attachments import Body, attachment_weights, bodies_on, joint_weights
-from verify.segments.chain import Chain, Motions, at_joints, link_inertia, link_mass, right_of, selection, squares
+from verify.segments.attachments import attachment_weights, joint_weights
+from verify.segments.bodies import Attached
+from verify.segments.chain import (
+    Chain,
+    Motions,
+    at_joints,
+    link_inertia,
+    link_mass,
+    plain_factors,
+    right_of,
+    selection,
+    squares,
+)
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
@@ -85,7 +96,7 @@ class SegmentModel(DiscreteModel):
         check_whole("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         for name, words in _WORDS.items():
             check_word(name, getattr(self, name), words)
-        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0)
+        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
         check_division(self.beam, self.n_segments, self.grading)
         self.check_theory()
         if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):
@@ -126,7 +137,7 @@ class SegmentModel(DiscreteModel):
         """The links and joints by themselves. Raises InputError where a tensioned joint has no stiffness left."""
         lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
         compliances = self._own_compliances.copy()
-        compliances[[0, -1]] += self._end_springs
+        compliances[[0, -1]] += self.attached.end_springs
         inertias = link_inertia(masses, lengths)
         if self.theory != "euler-bernoulli":
             inertias = inertias + self._thick
@@ -138,28 +149,27 @@ class SegmentModel(DiscreteModel):
             compliances=compliances,
             masses=masses,
             inertias=inertias,
-            elastic=self._elastic,
-            reading_factors=reading_factors(self._elastic, self.n_segments, self.wall) if any(self._elastic) else None,
+            elastic=self.attached.elastic,
+            reading_factors=reading_factors(self.attached.elastic, self.n_segments, self.wall)
+            if any(self.attached.elastic)
+            else None,
         )
 
     def _joint_compliances(self, stiffnesses: Array) -> Array:
-        """1/k of joints 0..N by Eq. (1), (N + 1,), of an end joint as if the end link continued, times its wall's factor.
-
-        `stiffnesses` (N,) are EI of the links.
-        """
-        l, ei = self.links.lengths, stiffnesses
+        """1/k of joints 0..N by Eq. (1), (N + 1,), times the factors of walls; `stiffnesses` (N,) are EI of links."""
+        lengths = self.links.lengths
+        halves = 0.5 * lengths / stiffnesses
+        inner = halves[:-1] + halves[1:]
         if self.joints == "printed":
-            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) has the right unit and the wrong pairing: order 1 where
-            # both E I and E / l differ
+            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) has the right unit and the wrong pairing: order 1
+            # where both E I and E / l differ
             e, i = self.links.moduli, self.links.second_moments
-            inner = l[1:] / (2.0 * e[1:] * i[:-1]) + l[:-1] / (2.0 * e[:-1] * i[1:])
-        else:
-            inner = l[:-1] / (2.0 * ei[:-1]) + l[1:] / (2.0 * ei[1:])
-        return np.concatenate([[l[0] / ei[0]], inner, [l[-1] / ei[-1]]]) * self._wall_factors
+            inner = 0.5 * lengths[1:] / (e[1:] * i[:-1]) + 0.5 * lengths[:-1] / (e[:-1] * i[1:])
+        return np.concatenate([2.0 * halves[:1], inner, 2.0 * halves[-1:]]) * self._wall_factors
 
     @cached_property
     def _wall_factors(self) -> Array:
-        return wall_factors(self.beam.supports, self.n_segments, self.wall, self._elastic)
+        return wall_factors(self.beam.supports, self.n_segments, self.wall, self.attached.elastic)
 
     @cached_property
     def _beam_compliances(self) -> Array:
@@ -174,15 +184,15 @@ class SegmentModel(DiscreteModel):
         tension, lengths, factors = self._tension, self.links.lengths, self._wall_factors
         stiffnesses = self.links.stiffnesses - tension * lengths**2 / 12.0
         found = self._joint_compliances(stiffnesses)
-        for end, (support, turns) in enumerate(zip(self.beam.supports, self._elastic, strict=True)):
+        for end, (support, turns) in enumerate(zip(self.beam.supports, self.attached.elastic, strict=True)):
             if support == "clamped" or turns:
                 excess = tension * lengths[-end] * tension_excess(self.wall) / 12.0 / factors[-end] ** 2
                 found[-end] = 1.0 / (1.0 / found[-end] - excess)
         if stiffnesses.min() <= 0.0 or found.min() <= 0.0:
             raise InputError(
                 f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
-                f"{self.n_segments} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of it: "
-                "give more segments or choose joints = 'series'"
+                f"{self.n_segments} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of "
+                "it: give more segments or choose joints = 'series'"
             )
         return found
 
@@ -207,51 +217,27 @@ class SegmentModel(DiscreteModel):
     # --- Attachments ---------------------------------------------------------------------------------------------
 
     @cached_property
-    def bodies(self) -> tuple[Body, ...]:
-        """Attached bodies and springs, those at one position together."""
-        return bodies_on(self.beam, self.unit, ends=self.attachment == "reciprocal")
-
-    @cached_property
-    def _at_ends(self) -> tuple[Body, Body]:
-        left, right = (next((b for b in self.bodies if b.end == end), Body(0.0)) for end in (0, 1))
-        return left, right
-
-    @property
-    def _elastic(self) -> tuple[bool, bool]:
-        """Ends with a joint of their own, and a rotational spring or a rotary inertia beyond it."""
-        left, right = (body.rotational + body.rotary_inertia > 0.0 for body in self._at_ends)
-        return left, right
-
-    @property
-    def _end_springs(self) -> Array:
-        """Compliances of rotational springs in series with an end joint, (2,): those without an inertia between."""
-        return np.array([b.rotational and not b.rotary_inertia and 1.0 / b.rotational for b in self._at_ends], float)
+    def attached(self) -> Attached:
+        """Bodies and springs."""
+        return Attached(self.beam, self.unit, self.attachment)
 
     @property
     def n_unknowns(self) -> int:
         """Free joint positions, rotations beyond elastic ends, slips of joints and of bodies."""
         held = sum(HOLDS[support].deflection for support in self.beam.supports)
-        found = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self._at_ends)
+        found = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self.attached.at_ends)
         if self.theory == "timoshenko":
-            slipping = self.attachment == "reciprocal"
-            found += self.n_segments - 1 + held + sum(slipping and body.mass > 0.0 for body in self.bodies)
+            bodies = int(self.attached.massive.sum()) if self.attachment == "reciprocal" else 0
+            found += self.n_segments - 1 + held + bodies
         return found
 
     @cached_property
     def _weights(self) -> tuple[Any, Any]:
-        """Of joint positions (bodies, N + 1) and link rotations (bodies, N) for bodies and springs."""
-        return attachment_weights(self.chain, [body.position for body in self.bodies], self.attachment)
+        return self.attached.weights(self.chain)
 
     @cached_property
     def _rotations(self) -> Any:
-        """Rotations of the bodies over (rotations of the links, unknowns), sparse (bodies, N + n)."""
-        from scipy.sparse import diags_array, hstack
-
-        beyond = np.array([body.end is not None and self._elastic[body.end] for body in self.bodies])
-        at = np.flatnonzero(beyond)
-        ends = selection(at, [self.bodies[i].end for i in at], (len(beyond), 2))
-        inside = diags_array(np.where(beyond, 0.0, 1.0)) @ self._weights[1]
-        return hstack([inside, ends @ self.motions.end_rotations], format="csr")
+        return self.attached.rotations(self._weights[1], self.motions)
 
     # --- Stiffness and mass --------------------------------------------------------------------------------------
 
@@ -269,20 +255,16 @@ class SegmentModel(DiscreteModel):
     def _slips(self) -> tuple[Array, Array]:
         """Compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without."""
         if self.theory != "timoshenko":
-            return np.zeros(0), np.zeros(len(self.bodies))
-        bodies = self.bodies if self.attachment == "reciprocal" else ()
+            return np.zeros(0), np.zeros(len(self.attached.bodies))
+        bodies = self.attached.bodies if self.attachment == "reciprocal" else ()
         return shear.slip_compliances(self.chain, self._softness, bodies, self._weights[0].toarray(), self.wall)
-
-    @property
-    def _massive(self) -> Any:
-        return np.array([body.mass > 0.0 for body in self.bodies], dtype=bool)
 
     @cached_property
     def motions(self) -> Motions:
         """Positions, rotations and slips as linear maps of the unknowns."""
         slips, gives = self._slips
-        rotating = [end for end, body in enumerate(self._at_ends) if body.rotary_inertia]
-        return Motions(self.chain, rotating, slips, gives[(gives > 0.0) & self._massive])
+        rotating = [end for end, body in enumerate(self.attached.at_ends) if body.rotary_inertia]
+        return Motions(self.chain, rotating, slips, gives[(gives > 0.0) & self.attached.massive])
 
     @property
     def system(self) -> StructuralSystem:
@@ -300,6 +282,9 @@ class SegmentModel(DiscreteModel):
         from scipy.sparse import csc_array, vstack
 
         beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
+        if not (motions.n_slips or beam.foundation or beam.tension or self.attached.bodies) and self.joints == "series":
+            stiffness = 1.0 / chain.compliances[self._springs]
+            return StructuralSystem(plain_factors(chain), stiffness, link_mass(motions), self._rigid(None))
         # strains over (rotations of the links, unknowns v), and what resists them
         links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
         own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
@@ -319,20 +304,11 @@ class SegmentModel(DiscreteModel):
             mass = mass - squares(motions.angles_of @ motions.both, inertias)
             if motions.n_slips:
                 mass = mass - squares(motions.joint_slips, shear.slip_masses(chain, motions.slips))
-        if self.bodies:
-            masses, rotary, lateral, rotational = np.array([body[2:] for body in self.bodies]).T
+        if self.attached.bodies:
             gives = self._slips[1]
-            # a spring without a mass is in series with its slip, or with its end's joint: no unknown is without mass
-            lateral = lateral / (1.0 + lateral * np.where(masses, 0.0, gives))
-            rotational = np.where(
-                [b.end is not None and self._end_springs[b.end] for b in self.bodies], 0.0, rotational
-            )
-            slipping = np.flatnonzero((gives > 0.0) & self._massive)
-            own_slips = selection(slipping, np.arange(len(slipping)), (len(gives), len(slipping))) @ motions.body_slips
-            across = self._weights[0] @ motions.positions + own_slips
-            strains += [((across @ own)[lateral > 0.0], lateral[lateral > 0.0])]
-            strains += [(self._rotations[rotational > 0.0], rotational[rotational > 0.0])]
-            mass = mass + squares(across, masses) + squares(self._rotations @ motions.both, rotary)
+            across = self.attached.deflections(self._weights[0], motions, gives)
+            attached, masses = self.attached.energies(across, self._rotations, motions, gives)
+            strains, mass = strains + attached, mass + masses
         rows, stiffnesses = zip(*strains, strict=True)
         factors = [*motions.factors, vstack(rows, format="csr")]
         return StructuralSystem(factors, np.concatenate(stiffnesses), csc_array(mass), self._rigid(across), bound)
@@ -354,7 +330,7 @@ class SegmentModel(DiscreteModel):
         found = np.zeros((motions.n, self.beam.rigid_motions))
         for column, (start, tilt) in enumerate(self.beam.rigid_lines):
             found[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
-        springs = [i for i, body in enumerate(self.bodies) if body.stiffness]
+        springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
         if springs and found.size:  # about the one spring, which unequal links read a little off its position
             found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
         return found
@@ -365,7 +341,7 @@ class SegmentModel(DiscreteModel):
         if not (self.beam.loss_factor or dashpots):
             return d
         there, series, found = self._springs, np.zeros(self.n_segments + 1), d.astype(complex)
-        series[[0, -1]] = self._end_springs
+        series[[0, -1]] = self.attached.end_springs
         loss = self.beam.loss_factor / self._beam_compliances[there] + dashpots
         found[: len(there)] = 1.0 / (1.0 / (1.0 / self._own_compliances[there] + 1j * loss) + series[there])
         found[len(there) : len(there) + self.motions.n_slips] *= 1.0 + 1j * self.beam.loss_factor
@@ -422,7 +398,7 @@ class SegmentModel(DiscreteModel):
 
     def leading_sign(self, vectors: Array) -> Array:
         """By the first free joint."""
-        return np.where(vectors[0] < 0.0, -1.0, 1.0)
+        return np.asarray(np.where(vectors[0] < 0.0, -1.0, 1.0))
 
     def modes_of(self, vectors: Array) -> dict[str, Any]:
         """Joints as nodes, their readings, and the curvature M/EI of every joint's moment."""
@@ -435,7 +411,7 @@ class SegmentModel(DiscreteModel):
                 values = self._assembled.rayleigh_quotients(vectors)
                 joints = self._corrected(vectors)
                 bent += shear.modal_shear_change(self.chain, self._shears, self._foundation, joints, values)
-            return bent / self.unit**2
+            return np.asarray(bent / self.unit**2)
 
         readings = {"corrected": lambda: self._corrected(vectors), "raw": lambda: self._joints(vectors)}
         places = dict.fromkeys(
@@ -445,11 +421,11 @@ class SegmentModel(DiscreteModel):
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
-        index = {body.position: i for i, body in enumerate(self.bodies)}
+        index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 
         def rotations() -> Array:
             rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
-            return (rows @ self.motions.both @ vectors).T / self.unit
+            return np.asarray((rows @ self.motions.both @ vectors).T / self.unit)
 
         turns = rotations if self.beam.mass else None
         if line == "raw":
@@ -464,7 +440,7 @@ class SegmentModel(DiscreteModel):
 
     # --- Buckling, order, waves ----------------------------------------------------------------------------------
 
-    @property
+    @cached_property
     def _buckling_factor(self) -> float:
         """On its own compression; 0 where nothing but the axial force resists a rotation as a whole."""
         free = msgspec.structs.replace(self.beam, tension=0.0).rigid_lines

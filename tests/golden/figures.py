@@ -6,7 +6,7 @@
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -17,19 +17,19 @@ from verify import (
     Beam,
     Contact,
     Device,
+    ExactModel,
     Foot,
+    HermiteModel,
     InputError,
     PointForce,
     PointMass,
     PointSpring,
     Section,
+    SegmentModel,
     Slider,
-    analytic_modes,
     bend,
-    fem_beam,
     free_vibration,
     run_motor,
-    segment_model,
     simulate,
     travelling_wave,
 )
@@ -79,19 +79,18 @@ FORCES = (
     PointForce(position=0.697, amplitude=0.8, phase_deg=97.0),
 )
 DRIVEN_HZ = 613.0
-Model = Callable[..., Any]
-SIZED: dict[str, Model] = {"segment": segment_model, "fem": fem_beam}  # type: ignore[dict-item]
+SIZED: dict[str, Any] = {"segment": SegmentModel, "fem": HermiteModel}
 
 
 def modes_of(beam: Beam, sized: dict[str, int]) -> Iterator[tuple[str, Any]]:
     """Frequencies, shapes, slopes and curvatures by three models."""
     x = np.array([0.037, 0.283, 0.611]) * beam.length
-    exact = analytic_modes.solve_modes(beam, 7)
+    exact = ExactModel(beam).modes(7)
     yield "analytic/frequency", exact.frequencies_hz
     yield "analytic/shape", exact.shapes(x, 0)[[0, 4]]
     yield "analytic/curvature", exact.shapes(x, 2)[[1, 6]]
     for name, n in sized.items():
-        found = SIZED[name].solve_modes(beam, 9, n)
+        found = SIZED[name](beam, n).modes(9)
         yield f"{name}/frequency", found.frequencies_hz
         yield f"{name}/shape", found.deflection(x)[[0, 4]]
         yield f"{name}/slope", found.slope(x)[[1, 6]]
@@ -104,15 +103,15 @@ def settings_of(beam: Beam) -> Iterator[tuple[str, Any]]:
     for option in options:
         with suppress(InputError):
             label = "-".join(map(str, *option.items()))
-            yield label, segment_model.solve_modes(beam, 5, 23, **option).frequencies_hz
-    yield "fem-grading", fem_beam.solve_modes(beam, 5, 23, grading=1.7).frequencies_hz
+            yield label, SegmentModel(beam, 23, **option).modes(5).frequencies_hz
+    yield "fem-grading", HermiteModel(beam, 23, grading=1.7).modes(5).frequencies_hz
 
 
 def theories_of(beam: Beam) -> Iterator[tuple[str, Any]]:
     for theory in ("rayleigh", "timoshenko"):
-        yield f"analytic/{theory}", analytic_modes.solve_modes(beam, 5, theory=theory).frequencies_hz
+        yield f"analytic/{theory}", ExactModel(beam, theory).modes(5).frequencies_hz
         for name, model in SIZED.items():
-            yield f"{name}/{theory}", model.solve_modes(beam, 5, 23, theory=theory).frequencies_hz
+            yield f"{name}/{theory}", model(beam, 23, theory=theory).modes(5).frequencies_hz
 
 
 def fields_of(beam: Beam) -> Iterator[tuple[str, Any]]:
@@ -120,34 +119,32 @@ def fields_of(beam: Beam) -> Iterator[tuple[str, Any]]:
     x = np.array([0.13, 0.37, 0.58, 0.81]) * beam.length
     forces = [replace(one, position=one.position * beam.length / 0.73) for one in FORCES]
     fields = {
-        "analytic": analytic_modes.solve_harmonic(beam, forces, DRIVEN_HZ),
-        "segment": segment_model.solve_harmonic(beam, forces, DRIVEN_HZ, 61),
-        "fem": fem_beam.solve_harmonic(beam, forces, DRIVEN_HZ, 53),
+        "analytic": ExactModel(beam).harmonic(forces, DRIVEN_HZ),
+        "segment": SegmentModel(beam, 61).harmonic(forces, DRIVEN_HZ),
+        "fem": HermiteModel(beam, 53).harmonic(forces, DRIVEN_HZ),
     }
     for name, field in fields.items():
         yield f"{name}/deflection", field.deflection(x)
         yield f"{name}/slope", field.slope(x)
-    yield "fem/damped", fem_beam.solve_harmonic(beam, forces, DRIVEN_HZ, 53, modal_damping=0.021).deflection(x)
-    yield "segment/damped", segment_model.solve_harmonic(beam, forces, DRIVEN_HZ, 61, modal_damping=0.021).deflection(x)
+    yield "fem/damped", HermiteModel(beam, 53).harmonic(forces, DRIVEN_HZ, modal_damping=0.021).deflection(x)
+    yield "segment/damped", SegmentModel(beam, 61).harmonic(forces, DRIVEN_HZ, modal_damping=0.021).deflection(x)
     at = [0.21 * beam.length, 0.77 * beam.length]
-    yield "analytic/unit", analytic_modes.unit_responses(beam, at, [211.0, 613.0], x)
-    yield "segment/unit", segment_model.unit_responses(beam, at, [211.0, 613.0], x, 61)
-    yield "fem/unit", fem_beam.unit_responses(beam, at, [211.0, 613.0], x, 53)
-    yield "sweep", fem_beam.sweep_harmonic(beam, forces, [97.0, 613.0], 53).deflection(x)
+    yield "analytic/unit", ExactModel(beam).receptance(at, [211.0, 613.0], x)
+    yield "segment/unit", SegmentModel(beam, 61).receptance(at, [211.0, 613.0], x)
+    yield "fem/unit", HermiteModel(beam, 53).receptance(at, [211.0, 613.0], x)
+    yield "sweep", HermiteModel(beam, 53).harmonic(forces, [97.0, 613.0]).deflection(x)
 
 
 def waves_of(beam: Beam, frequency_hz: float) -> Iterator[tuple[str, Any]]:
     """Measures of the wave in the middle half by three models, with a device as well."""
     forces = [replace(one, position=one.position * beam.length / 0.73) for one in FORCES]
     fields = {
-        "analytic": analytic_modes.solve_harmonic(beam, forces, frequency_hz),
-        "segment": segment_model.solve_harmonic(beam, forces, frequency_hz, 97),
-        "fem": fem_beam.solve_harmonic(beam, forces, frequency_hz, 97),
+        "analytic": ExactModel(beam).harmonic(forces, frequency_hz),
+        "segment": SegmentModel(beam, 97).harmonic(forces, frequency_hz),
+        "fem": HermiteModel(beam, 97).harmonic(forces, frequency_hz),
     }
     device = Device(position=0.9 * beam.length, dashpot=2.3, stiffness=310.0, mass=1.7e-3)
-    fields["analytic-device"] = travelling_wave.field_with_devices(
-        analytic_modes.solve_harmonic, beam, forces, frequency_hz, device
-    )
+    fields["analytic-device"] = ExactModel(beam).harmonic(forces, frequency_hz, devices=device)
     for name, field in fields.items():
         found = travelling_wave.measure(field, travelling_wave.middle_half(beam))
         yield (
@@ -162,9 +159,9 @@ def waves_of(beam: Beam, frequency_hz: float) -> Iterator[tuple[str, Any]]:
 
 
 def buckling_of(beam: Beam) -> Iterator[tuple[str, Any]]:
-    yield "analytic", analytic_modes.buckling_load(beam)
-    yield "segment", segment_model.buckling_load(beam, 37)
-    yield "fem", fem_beam.buckling_load(beam, 31)
+    yield "analytic", ExactModel(beam).buckling_load()
+    yield "segment", SegmentModel(beam, 37).buckling_load()
+    yield "fem", HermiteModel(beam, 31).buckling_load()
 
 
 def motions_of(beam: Beam) -> Iterator[tuple[str, Any]]:

@@ -15,6 +15,18 @@ TOLERANCE = {
 """Relative to the largest of a group: rounding of solvers whose order of operations may change. Fields lie up to a
 thousand times closer to a resonance than 1, and friction turns round at events."""
 
+MOVED = {
+    # one rule of order 4 for everything attached to a chain, in place of two: bodies and springs on segments
+    "modes/bodies/segment": 6e-2, "modes/taut-bodies/segment": 6e-2, "modes/bodies-springs-steps/segment": 5e-4,
+    "settings/bodies": 2e-4, "fields/bodies-springs-steps/segment": 3e-2, "modes/springs/segment": 3e-5,
+    "buckling/springs/segment": 3e-7,
+    # two modes of one frequency, any two of their plane are right
+    "modes/ground-free/segment/s": 2.0, "modes/ground-free/fem/s": 2.0,
+    # vectors of elements by singular values and not by Lanczos
+    "modes/guided-pinned/fem/shape": 3e-10, "modes/stepped-arm/fem/shape": 3e-10, "modes/free-clamped/fem/shape": 3e-10,
+}  # fmt: skip
+"""Figures that moved for a reason, by the beginning of their names, and how far."""
+
 
 def test_figures_have_not_moved() -> None:
     now = figures()
@@ -23,6 +35,7 @@ def test_figures_have_not_moved() -> None:
     for name, before in BEFORE.items():
         scale = float(np.abs(before).max()) or 1.0
         difference = float(np.abs(np.subtract(now[name], before)).max()) / scale
-        if difference > TOLERANCE[name.partition("/")[0]]:
+        known = [far for beginning, far in MOVED.items() if name.startswith(beginning)]
+        if difference > max(known, default=TOLERANCE[name.partition("/")[0]]):
             moved[name] = difference
     assert not moved

@@ -9,7 +9,7 @@ import pytest
 from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near
-from verify import analytic_modes
+from verify.analytic_modes import ExactModel
 from verify.exact import closed_forms, error_laws
 from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam
@@ -129,7 +129,7 @@ def test_the_leading_error_is_mu_to_the_fourth_over_1440(titanium_strip, model, 
 @pytest.mark.parametrize(("model", "bound"), [("segment", 6e-5), ("fem", 3e-5)])
 def test_deflection_and_slope_between_the_nodes_follow_the_exact_mode(titanium_strip, model, bound):
     x = np.array([0.0, 0.0171, 0.2003, 0.4444, 0.73])
-    exact = analytic_modes.solve_modes(titanium_strip, 5)
+    exact = ExactModel(titanium_strip).modes(5)
     found = MODELS[model](titanium_strip, 49).modes(5)
     assert found.deflection(x) == pytest.approx(exact.deflection(x), rel=bound, abs=bound * exact.deflection(x).max())
     slope = exact.slope(x)
@@ -142,7 +142,7 @@ def test_raw_joints_are_of_order_two_and_corrected_ones_of_order_four(titanium_s
         errors = []
         for count in (30, 60):
             modes = SegmentModel(titanium_strip, count).modes(mode)
-            exact = analytic_modes.mode_shape(titanium_strip, mode, modes.nodes)
+            exact = ExactModel(titanium_strip).mode_shape(mode, modes.nodes)
             errors.append(np.linalg.norm(modes.readings[reading]()[mode - 1]) / np.linalg.norm(exact) - 1)
         order = np.log2(errors[0] / errors[1])
         assert order == pytest.approx(2 if leading else 4, abs=0.03)
@@ -156,7 +156,7 @@ def test_raw_joints_are_of_order_two_and_corrected_ones_of_order_four(titanium_s
 @pytest.mark.parametrize("count", [12, 150])
 def test_hermite_elements_take_every_support(titanium_strip, supports, count):
     beam = replace(titanium_strip, supports=supports)
-    exact = analytic_modes.solve_modes(beam, 4)
+    exact = ExactModel(beam).modes(4)
     found = HermiteModel(beam, count).modes(4)
     mu = np.array([closed_forms.wavenumber_length(supports, n) for n in range(1, 5)]) / count
     excess = found.frequencies_hz / exact.frequencies_hz - 1

@@ -6,7 +6,7 @@ import pytest
 from msgspec.structs import replace
 
 from tests.beams import PAIRED
-from verify import analytic_modes
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError
 from verify.fem_beam import HermiteModel
 from verify.linear.mesh import divide, part_counts
@@ -92,7 +92,7 @@ def test_short_sections_cost_no_digit(supports, lengths):
     """By the sign of a count alone they cost five to ten: its stiffness grows as (L / shortest section)^3."""
     beam = many_sections(supports, lengths)
     for mode in (1, 2, 7, 24):
-        found = analytic_modes.stepped_frequency_hz(beam, mode)
+        found = ExactModel(beam).frequency_hz(mode)
         assert found == pytest.approx(near_root(beam, found), rel=1e-14)
 
 
@@ -103,7 +103,7 @@ def test_sections_beyond_what_counting_can_tell_are_refused():
 
 def test_two_frequencies_that_nearly_coincide_are_told_apart():
     """Two thin strips held by a block too heavy to move: a pair 2.4e-7 apart, each exact and none twice."""
-    pair = [analytic_modes.stepped_frequency_hz(PAIRED, mode) for mode in (4, 5)]
+    pair = [ExactModel(PAIRED).frequency_hz(mode) for mode in (4, 5)]
     assert pair[1] / pair[0] - 1 == pytest.approx(2.364e-7, rel=1e-3)
     for found in pair:
         with mpmath.workdps(60):
@@ -114,13 +114,13 @@ def test_two_frequencies_that_nearly_coincide_are_told_apart():
 def test_no_stepped_frequency_is_missed():
     beam = replace(STEPPED, supports=("free", "free"))
     elements = HermiteModel(beam, 240).modes(25).frequencies_hz
-    exact = [analytic_modes.stepped_frequency_hz(beam, n) for n in range(1, 26)]
+    exact = [ExactModel(beam).frequency_hz(n) for n in range(1, 26)]
     assert elements == pytest.approx(exact, rel=1e-4)
     assert (elements > exact).all()
 
 
 def order(model, mode, counts, **settings):
-    exact = analytic_modes.stepped_frequency_hz(STEPPED, mode)
+    exact = ExactModel(STEPPED).frequency_hz(mode)
     first, second = (
         abs(model(STEPPED, n, **settings).modes(mode).frequencies_hz[mode - 1] / exact - 1) for n in counts
     )

@@ -222,9 +222,9 @@ class SolutionCache:
 
     def exact_shape(self, mode: int, x: "Array", derivative: int = 0, theory: str = EULER) -> "Array":
         """The exact mass-normalised shape or a derivative at x (m), (len(x),), by a theory. Raises InputError."""
-        from verify.exact.modes import mode_shape
+        from verify.analytic_modes import ExactModel
 
-        return mode_shape(self.beam, mode, x, derivative, theory)
+        return ExactModel(self.beam, theory).mode_shape(mode, x, derivative)
 
     def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
         """Zeros of a mode between the ends, (n_nodes,), m, ascending. Raises InputError."""

@@ -59,11 +59,11 @@ def rms(values: Any, exact: Any) -> float:
 
 def modes(problem: Problem) -> Iterator[Question]:
     """A natural frequency over the number of parts."""
+    from verify.analytic_modes import ExactModel
     from verify.elements.stock import stock_frequency_hz
-    from verify.exact.modes import exact_frequency_hz
 
     beam, mode = problem.beam, problem.mode
-    exact = exact_frequency_hz(beam, mode)
+    exact = ExactModel(beam).frequency_hz(mode)
 
     def solver(model: str, **settings: str) -> Callable[[int], float]:
         return lambda n: float(MODELS[model].build(beam, n, **settings).modes(mode).frequencies_hz[mode - 1])
@@ -74,7 +74,7 @@ def modes(problem: Problem) -> Iterator[Question]:
         Method("elements", elements, problem.sizes, model="fem"),
         Method("mean of both", lambda n: 0.5 * (segments(n) + elements(n)), problem.sizes, model="mean"),
         Method("stock scikit-fem", lambda n: stock_frequency_hz(beam, mode, n), problem.sizes),
-        Method("exact", lambda _: exact_frequency_hz(beam, mode), (0,), "", "analytic"),
+        Method("exact", lambda _: ExactModel(beam).frequency_hz(mode), (0,), "", "analytic"),
     ]
     walls = ("half", "welded", "third-order") if "clamped" in beam.supports else ()
     methods += [Method(f"segments, {wall} wall", solver("segment", wall=wall), problem.sizes) for wall in walls]
@@ -208,14 +208,14 @@ def chain(problem: Problem) -> Iterator[Question]:
 
 def engines(problem: Problem) -> Iterator[Question]:
     """Modes, the nonlinear chain, and the slider in other engines beside segments."""
+    from verify.analytic_modes import ExactModel
     from verify.engines import ENGINES, chain_of, missing, references, rider_of
-    from verify.exact.modes import exact_frequency_hz
 
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
     if not adapters:
         raise InputError("engines: none is installed: pip install exudyn mujoco pin, or leave this set out")
     beam, mode, hertz, end = problem.beam, problem.mode, problem.frequency_hz, problem.duration
-    exact = exact_frequency_hz(beam, mode)
+    exact = ExactModel(beam).frequency_hz(mode)
 
     def frequency(adapter: Any) -> Callable[[int], float]:
         return lambda n: float(adapter.frequencies(chain_of(beam, n, (), hertz))[mode - 1])

@@ -263,8 +263,8 @@ def contact_line_error(
     The chain stands in a mode of the linear one, a millionth of its length high; the exact mode is the reference.
     Order 3, beside a clamped wall 1. Raises InputError, also for a stepped beam: its exact shapes are not known here.
     """
+    from verify.analytic_modes import ExactModel
     from verify.chain.ride import touched
-    from verify.exact.modes import mode_shape
     from verify.segment_model import SegmentModel
 
     check_whole("segments", n_segments, 2)
@@ -274,8 +274,8 @@ def contact_line_error(
     pieces, edges = touched(system, size * np.diff(joints), x)
     xi = np.linspace(0.0, 1.0, 17)
     found = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(pieces)) / (size * np.ptp(edges))
-    exact = mode_shape(beam, mode, edges[0] + xi * np.ptp(edges), 1)
-    largest = float(abs(mode_shape(beam, mode, system.nodes, 1)).max())
+    exact = ExactModel(beam).mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
+    largest = float(abs(ExactModel(beam).mode_shape(mode, system.nodes, 1)).max())
     return float(abs(found - exact).max()) / largest
 
 

@@ -127,8 +127,9 @@ def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) ->
     stations, supports = list(layout.stations), list(layout.supports)
     for xi, more in added:
         at = layout.station_at(xi)
-        sums = (a + b for a, b in zip(stations[at][:6], more[:6], strict=True))
-        stations[at] = Station(*sums, _both(stations[at].support, more.support))
+        here = stations[at]
+        sums = {name: getattr(here, name) + getattr(more, name) for name in Station._fields[:6]}
+        stations[at] = Station(**sums, support=_both(here.support, more.support))
     for end in (0, -1):
         supports[end] = _both(supports[end], stations[end].support)
         stations[end] = stations[end]._replace(support="free")

@@ -11,7 +11,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.errors import InputError, written
-from verify.linear.places import SLACK, Numbers, places
+from verify.linear.positions import SLACK, Numbers, positions_on
 from verify.problem.beam import Beam
 
 LEFT_BEAM = "left the beam"
@@ -20,7 +20,7 @@ LEFT_BEAM = "left the beam"
 def piece_at(beam: Beam, x: Numbers) -> Indices:
     """Which of `beam.pieces` stands at x (metres), of the shape of x, from 0. Raises InputError off the beam."""
     inner = np.cumsum([piece.length for piece in beam.pieces[:-1]]) - SLACK * beam.length
-    return np.asarray(np.searchsorted(inner, places("x", x, beam.length), side="right"), dtype=np.int64)
+    return np.asarray(np.searchsorted(inner, positions_on("x", x, beam.length), side="right"), dtype=np.int64)
 
 
 def standing_at(beam: Beam, x: float) -> Beam:

@@ -20,8 +20,10 @@ from verify.errors import InputError
 
 DENSE = 150
 """Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
-MOST_MODES = 1000
-"""Unknowns of which all modes are computed: beyond, the decomposition takes minutes and gigabytes."""
+MOST_MODES = 2000
+"""Unknowns of which all modes are computed: these take ten seconds, and the time grows with the cube."""
+LONG = 100_000
+"""Unknowns from which strains read off a vector are worse than those that a factorisation solves for, 1e-13."""
 RESONANCE = 1e-9
 """Relative distance in frequency to an undamped resonance below which a response is rounding."""
 FEW = 4
@@ -85,6 +87,10 @@ class StructuralSystem:
             product = factor @ product
         return product.tocsc()
 
+    def rayleigh_quotients(self, vectors: Array) -> Array:
+        """Eigenvalues (k,) of vectors (n, k)."""
+        return _sums(self.stiffness[:, None] * self.strain(vectors) ** 2) / _sums(vectors * (self.mass @ vectors))
+
     # --- Modes ---------------------------------------------------------------------------------------------------
 
     def modes(self, k: int) -> tuple[Array, Array]:
@@ -92,8 +98,8 @@ class StructuralSystem:
 
         Raises InputError where a compression leaves no positive eigenvalue, and where Lanczos does not converge.
         """
-        by = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
-        strains, vectors = by[self.method(k)](k)
+        ways = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
+        strains, vectors = ways[self.method(k)](k)
         masses = _sums(vectors * (self.mass @ vectors))
         values = _sums(self.stiffness[:, None] * strains**2) / masses
         if values.min(initial=1.0) <= 0.0:
@@ -149,7 +155,7 @@ class StructuralSystem:
     def _by_lanczos(self, k: int) -> tuple[Array, Array]:
         """Shift and invert, from below all eigenvalues.
 
-        Strains are solved for and not read off the vectors, whose last digit is a strain: 1e-4 of it at 1e6 parts.
+        The last digit of a vector is a strain, 1e-4 of it at 1e6 parts; beyond `LONG` those of the solution are better.
         """
         from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
@@ -162,9 +168,10 @@ class StructuralSystem:
             vectors = eigsh(inverse, k, **sought)[1]
         except ArpackNoConvergence:
             raise InputError(
-                f"the lowest {k} of {self.n} modes do not converge: hold the beam better, or lower count"
+                f"the lowest {k} of {self.n} modes do not converge: hold the beam or lower count"
             ) from None
-        return solve(self.mass @ vectors)
+        strains, vectors = solve(self.mass @ vectors)
+        return (self.strain(vectors) if self.n < LONG else strains), vectors
 
     def _inverse(self, shift: float) -> Callable[[Array], tuple[Array, Array]]:
         """Strains (m, k) and response (n, k) of K - shift M to loads (n, k).
@@ -295,7 +302,7 @@ class StructuralSystem:
     def modal_receptances(
         self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
     ) -> tuple[ComplexArray, Array, Array]:
-        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), vectors (n, k) of load and response.
+        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), and vectors (n, k): load, response.
 
         Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
         """

@@ -86,12 +86,12 @@ def damped_field(
     damping: float | None,
 ) -> "HarmonicField":
     """The steady field of a model with this damping ratio, that of the beam itself unless given. Raises InputError."""
-    model, settings = MODELS.named(name), {}
+    model, modal_damping = MODELS.named(name), 0.0
     if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
         by_mode = model.sized  # the exact beam has no modes to damp
         beam = replace(beam, loss_factor=0.0 if by_mode else 2.0 * damping)
-        settings = {"modal_damping": damping} if by_mode else {}
-    return model.build(beam, count).harmonic(forces, frequency_hz, **settings)
+        modal_damping = damping if by_mode else 0.0
+    return model.build(beam, count).harmonic(forces, frequency_hz, modal_damping=modal_damping)
 
 
 def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Coupling | None) -> Array:

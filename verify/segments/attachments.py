@@ -7,12 +7,11 @@ attachment also acts on itself; its weights are corrected for that (`docs/theory
 
 from collections.abc import Iterator, Sequence
 from math import ceil, floor
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.problem.beam import Beam
 from verify.problem.supports import HOLDS
 from verify.segments.chain import Chain, selection
 
@@ -30,32 +29,6 @@ _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 """Powers of the distance from an end in the moments that loads far away cause there."""
 _TIE = 1e-10
 """Added to what the weights are aligned with; decides where two solutions are equally near."""
-
-
-class Body(NamedTuple):
-    """Everything attached at one position (m), dimensionless."""
-
-    position: float
-    end: int | None = None
-    """The end, 0 or 1, that it is beyond the joint of."""
-    mass: float = 0.0
-    rotary_inertia: float = 0.0
-    stiffness: float = 0.0
-    rotational: float = 0.0
-
-
-def bodies_on(beam: Beam, unit: float, *, ends: bool) -> tuple[Body, ...]:
-    """Attached masses and springs of a beam; those at its ends are beyond a joint if `ends`."""
-    mass, stiffness, found = beam.mass_per_length * unit, beam.bending_stiffness / unit**3, dict[float, Body]()
-    each = [(m.position, (m.mass / mass, m.rotary_inertia / (mass * unit**2), 0.0, 0.0)) for m in beam.mass]
-    each += [
-        (s.position, (0.0, 0.0, s.stiffness / stiffness, s.rotational / (stiffness * unit**2))) for s in beam.spring
-    ]
-    for at, values in each:
-        end = {0.0: 0, beam.length: 1}.get(at) if ends else None
-        before = found.get(at, Body(at, end))
-        found[at] = Body(at, end, *(a + b for a, b in zip(before[2:], values, strict=True)))
-    return tuple(found.values())
 
 
 def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:

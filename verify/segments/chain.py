@@ -224,9 +224,28 @@ def link_mass(motions: Motions) -> Any:
     """Mass matrix of the links: their masses at their middles, and their inertias, sparse (n, n)."""
     from scipy.sparse import diags_array
 
-    chain = motions.chain
+    chain, first, free = motions.chain, int(motions.chain.held[0]), len(motions.free)
     if len(motions.sliding):
         return squares(motions.middles, chain.masses) + squares(motions.rotations, chain.inertias)
     diagonal, off = joint_masses(chain.masses, chain.inertias, chain.lengths)
-    each = diags_array([off, diagonal, off], offsets=[-1, 0, 1], format="csr")
-    return motions.positions.T @ each @ motions.positions
+    off = np.append(off, 0.0)[first : first + free - 1]
+    # unknowns beyond the joints have no part in it
+    shape = (motions.n, motions.n)
+    values = [np.append(v, np.zeros(motions.n - free)) for v in (off, diagonal[first : first + free], off)]
+    return diags_array(values, offsets=[-1, 0, 1], shape=shape, format="csc")
+
+
+def plain_factors(chain: Chain) -> tuple[Any, Any, Any]:
+    """Sparse factors v -> differences of positions -> rotations of the links -> angles of joints, of a plain chain.
+
+    Those of `Motions` without anything else, put together at once, which takes a tenth of the time.
+    """
+    from scipy.sparse import diags_array
+
+    n, (left, right), (first, last) = chain.n_segments, chain.held, chain.walls
+    differences = diags_array(
+        [-1.0, 1.0], offsets=[-int(left), 1 - left], shape=(n, n + 1 - left - right), format="csr"
+    )
+    skip = int(not first)
+    angles = diags_array([-1.0, 1.0], offsets=[skip - 1, skip], shape=(n - 1 + first + last, n), format="csr")
+    return differences, diags_array(1.0 / chain.lengths, format="csr"), angles

@@ -1,7 +1,7 @@
 """Order in the number of links at which a chain's frequencies converge, by the beam and the settings of the chain.
 
-Derived in `docs/theory.md` and measured on 70 to 640 links: a body and a step leave terms of several orders, of which the
-lowest dominates at many links.
+Derived in `docs/theory.md` and measured on 70 to 640 links: a body and a step leave terms of several orders, of which
+the lowest dominates at many links.
 """
 
 from itertools import accumulate, pairwise

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array
-from verify.segments.attachments import Body
+from verify.segments.bodies import Body
 from verify.segments.chain import Chain, Motions, right_of
 from verify.segments.walls import tension_excess, wall_factors
 

@@ -88,7 +88,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Simulate the slider on every model. Raises InputError."""
         import numpy as np
 
-        from verify.exact.in_time import check_beam
+        from verify.analytic_modes import check_in_time
         from verify.linear.registry import MODELS, bounding, discrete
         from verify.motion.simulate import simulate
         from verify.quantities.slider import TimeOptions, motion_arguments
@@ -98,7 +98,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         assert scene.slider is not None
         assert scene.drive is not None
         steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
-        check_beam(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
+        check_in_time(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
         runs: dict[str, Run] = {}
         for model in ("analytic", *(model.name for model in discrete("time_basis", scene.beam))):
             progress(f"slider on {MODELS[model].title}")

@@ -17,10 +17,10 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from verify.analytic_modes import ExactModel
 from verify.arrays import Array, ComplexArray
 from verify.checks import check_number, check_whole
 from verify.errors import InputError
-from verify.exact.modes import exact_frequency_hz, mode_shape
 from verify.linear.field import HarmonicField
 from verify.linear.positions import Numbers, vector_on
 from verify.problem.beam import Beam
@@ -49,7 +49,7 @@ class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
 
     def wavenumber(self, mode: int) -> float:
         """Of one of its modes, without losses, 1/m."""
-        return float(np.sqrt(2.0 * np.pi * exact_frequency_hz(self.beam, mode) / self.beam.wave_constant))
+        return float(np.sqrt(2.0 * np.pi * ExactModel(self.beam).frequency_hz(mode) / self.beam.wave_constant))
 
     def local_waves(self, x: Numbers) -> tuple[ComplexArray, ComplexArray]:
         """(A+, A-) at x (m), (n,) each, in the modes' own units. Raises InputError off the beam."""
@@ -57,7 +57,7 @@ class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
 
         def waves(mode: int) -> ComplexArray:
             return np.array(
-                _waves_of(lambda x, order: mode_shape(self.beam, mode, x, order), self.wavenumber(mode), at)
+                _waves_of(lambda x, order: ExactModel(self.beam).mode_shape(mode, x, order), self.wavenumber(mode), at)
             )
 
         forward, backward = waves(self.modes[0]) + self.ratio * np.exp(1j * np.deg2rad(self.phase_deg)) * waves(

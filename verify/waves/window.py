@@ -108,7 +108,7 @@ def check_wavenumber(name: str, value: object, span: Window) -> complex:
     Raises InputError for one that does not propagate towards +x, or has no or too many half wavelengths in the span.
     """
     k = plain(value)
-    number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) < inf
+    number = isinstance(k, int | float | complex) and not isinstance(k, bool) and np.isfinite(k)
     if not number or not 0.0 <= -k.imag <= k.real or not k.real:
         raise InputError(
             f"{name} = {shown(value)}: give a finite k of e^{{-ikx}} in 1/m, its real part above 0, its imaginary "
