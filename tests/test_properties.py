@@ -5,19 +5,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
-from verify.elements.mesh import build_elements
-from verify.elements.pencil import element_pencil
 
-from verify import analytic_modes
-from verify.elements import linear as fem_beam
+from verify import Beam, ExactModel, HermiteModel, Section, SegmentModel
 from verify.linear.mesh import part_counts
 from verify.options import SUPPORTS
-from verify.problem.beam import Beam
-from verify.problem.cross_section import Section
-from verify.segments import linear as segment_model
-from verify.segments import links as chain_of_links
 
-SOLVERS = {"segment": segment_model.solve_modes, "fem": fem_beam.solve_modes}
+MODELS = {"segment": SegmentModel, "fem": HermiteModel}
 supports = st.tuples(st.sampled_from(SUPPORTS), st.sampled_from(SUPPORTS))
 BASE = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 
@@ -39,79 +32,71 @@ def stepped_beams(draw):
 
 
 @settings(max_examples=60, deadline=None)
-@given(supports, st.integers(-9, 3), st.integers(6, 40), st.sampled_from(sorted(SOLVERS)))
+@given(supports, st.integers(-9, 3), st.integers(6, 40), st.sampled_from(sorted(MODELS)))
 def test_dimensionless_answers_do_not_depend_on_the_unit_of_length(ends, decade, count, model):
     beam = replace(BASE, supports=ends)
     scale = 10.0**decade / 0.73
     scaled = replace(beam, length=0.73 * scale, width=0.031 * scale, thickness=0.0023 * scale)
-    here, there = (SOLVERS[model](b, 4, count).frequencies_hz for b in (beam, scaled))
+    here, there = (MODELS[model](b, count).modes(4).frequencies_hz for b in (beam, scaled))
     assert there * scale == pytest.approx(here, rel=1e-13)
 
 
 @settings(max_examples=40, deadline=None)
-@given(stepped_beams(), st.integers(6, 30), st.sampled_from(sorted(SOLVERS)), st.floats(0.4, 2.5))
+@given(stepped_beams(), st.integers(6, 30), st.sampled_from(sorted(MODELS)), st.floats(0.4, 2.5))
 def test_a_stepped_beam_and_its_mirror_image_have_the_same_frequencies(beam, count, model, grading):
     lengths = [section.length for section in beam.section]
     assume(part_counts(lengths, count) == part_counts(lengths[::-1], count)[::-1])  # a tie goes to the left
-    here = SOLVERS[model](beam, 3, count, grading=grading).frequencies_hz
-    there = SOLVERS[model](beam.mirrored(), 3, count, grading=1.0 / grading).frequencies_hz
+    here = MODELS[model](beam, count, grading=grading).modes(3).frequencies_hz
+    there = MODELS[model](beam.mirrored(), count, grading=1.0 / grading).modes(3).frequencies_hz
     assert there == pytest.approx(here, rel=1e-11)
 
 
 @settings(max_examples=40, deadline=None)
-@given(stepped_beams(), st.integers(6, 24), st.sampled_from(sorted(SOLVERS)), st.integers(0, 1), st.floats(1.01, 3.0))
+@given(stepped_beams(), st.integers(6, 24), st.sampled_from(sorted(MODELS)), st.integers(0, 1), st.floats(1.01, 3.0))
 def test_stiffer_is_never_lower_and_heavier_never_higher(beam, count, model, which, factor):
     def changed(**fields):
         sections = list(beam.section)
         sections[which] = replace(sections[which], **fields)
-        return SOLVERS[model](replace(beam, section=tuple(sections)), 4, count).frequencies_hz
+        return MODELS[model](replace(beam, section=tuple(sections)), count).modes(4).frequencies_hz
 
     section = beam.section[which]
-    here = SOLVERS[model](beam, 4, count).frequencies_hz
+    here = MODELS[model](beam, count).modes(4).frequencies_hz
     assert (changed(youngs_modulus=section.youngs_modulus * factor) >= here * (1 - 1e-12)).all()
     assert (changed(density=section.density * factor) <= here * (1 + 1e-12)).all()
 
 
 @settings(max_examples=30, deadline=None)
-@given(supports, st.integers(7, 25))
-def test_elastic_eigenvalues_of_both_models_add_up_to_the_trace(ends, count):
-    beam = replace(BASE, supports=ends)
-    chain = segment_model.build_chain(beam, count)
-    pencils = [segment_model.chain_pencil(chain)]
-    pencils.append(element_pencil(build_elements(beam, count)))
-    for pencil in pencils:
-        strain = pencil.strain(np.eye(pencil.n))
-        stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
-        trace = np.trace(np.linalg.solve(pencil.mass_matrix(), stiffness))
-        from verify.linear.eigen import lowest
-
-        assert lowest(pencil, pencil.n - pencil.rigid_modes).values.sum() == pytest.approx(trace, rel=1e-11)
-        if pencil.rigid_modes:
-            assert abs(pencil.strain(pencil.rigid)).max() < 1e-12
+@given(supports, st.integers(7, 25), st.sampled_from(sorted(MODELS)))
+def test_elastic_eigenvalues_add_up_to_the_trace(ends, count, model):
+    system = MODELS[model](replace(BASE, supports=ends), count).system
+    strain = np.asarray(system.strain(np.eye(system.n)))
+    stiffness = strain.T @ (system.stiffness[:, None] * strain)
+    trace = np.trace(np.linalg.solve(system.mass.toarray(), stiffness))
+    values, vectors = system.modes(system.n - system.n_rigid)
+    assert values.sum() == pytest.approx(trace, rel=1e-11)
+    assert vectors.T @ system.mass @ vectors == pytest.approx(np.eye(len(values)), abs=1e-9)
+    if system.n_rigid:
+        assert abs(np.asarray(system.strain(system.rigid))).max() < 1e-12
 
 
 @settings(max_examples=30, deadline=None)
 @given(supports, st.integers(9, 40))
-def test_shapes_are_orthonormal_in_the_models_own_mass(ends, count):
+def test_shapes_of_elements_are_orthonormal_in_the_mass_of_the_beam(ends, count):
     beam = replace(BASE, supports=ends)
-    chain = segment_model.build_chain(beam, count)
-    raw = segment_model.solve_modes(beam, 6, count).readings["raw"]()
-    mass = chain_of_links.mass_matrix(replace(chain, supports=("free", "free")), dense=True)
-    gram = raw @ mass @ raw.T * beam.mass_per_length * chain.unit
-    assert gram == pytest.approx(np.eye(6), abs=1e-9)
-    modes = fem_beam.solve_modes(beam, 6, count)
     points, weights = np.polynomial.legendre.leggauss(4)
     h = beam.length / count
     x = (np.arange(count)[:, None] * h + (points + 1) / 2 * h).ravel()
-    gram = modes.deflection(x) * np.tile(weights / 2 * h, count) @ modes.deflection(x).T * beam.mass_per_length
-    assert gram == pytest.approx(np.eye(6), abs=1e-9)
+    shapes = HermiteModel(beam, count).modes(6).deflection(x)
+    assert shapes * np.tile(weights / 2 * h, count) @ shapes.T * beam.mass_per_length == pytest.approx(
+        np.eye(6), abs=1e-9
+    )
 
 
 @settings(max_examples=30, deadline=None)
 @given(stepped_beams())
 def test_elements_lie_above_the_exact_stepped_frequencies_and_come_down_to_them(beam):
-    exact = [analytic_modes.stepped_frequency_hz(beam, n) for n in (1, 2, 3)]
-    coarse, fine = (fem_beam.solve_modes(beam, 3, n).frequencies_hz for n in (12, 48))
-    assert (fine >= np.array(exact) * (1 - 1e-10)).all()
+    exact = ExactModel(beam).modes(3).frequencies_hz
+    coarse, fine = (HermiteModel(beam, n).modes(3).frequencies_hz for n in (12, 48))
+    assert (fine >= exact * (1 - 1e-10)).all()
     assert (fine <= coarse * (1 + 1e-10)).all()
     assert fine == pytest.approx(exact, rel=2e-4)

@@ -1,7 +1,6 @@
 """Which window of a beam holds two waves alone: no force, device or attachment inside, half a wavelength or more."""
 
 from collections.abc import Sequence
-from math import inf
 
 import numpy as np
 
