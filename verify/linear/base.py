@@ -95,8 +95,8 @@ class BeamModel(ABC):
 
     @property
     def count(self) -> int | None:
-        """Number of parts, the field after the beam; None for a model without."""
-        return getattr(self, fields(self)[1].name) if self.sized else None  # type: ignore[arg-type]
+        """Number of parts; None for a model without."""
+        return None
 
     @property
     @abstractmethod
@@ -152,7 +152,7 @@ class BeamModel(ABC):
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves in it, 1/m; that of the exact beam unless its dispersion is known."""
-        return wavenumber(self.beam, frequency_hz, self.theory)
+        return wavenumber(self.beam, frequency_hz)
 
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
         """Raise NoFigureError for a frequency above the cut-off of its parts."""
@@ -167,7 +167,7 @@ class BeamModel(ABC):
             )
 
     def check_theory(self) -> None:
-        """Raise InputError for what is no beam, an unknown theory, and one that the beam has no figures for."""
+        """Raise InputError for an unknown theory, and for one that the beam has no figures for."""
         check_kind("beam", self.beam, Beam)
         check_word("theory", self.theory, THEORIES)
         if self.theory != "euler-bernoulli" and self.beam.tension:
