@@ -304,7 +304,7 @@ class HermiteModel(DiscreteModel):
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves along equal elements of the beam's own section, 1/m; of the exact beam in other cases.
 
-        The determinant of both nodal equations is a quadratic in s^2 = sin^2(k l/2), with m = omega^2 rho A l^4 / 420 EI:
+        The determinant of both nodal equations is a quadratic in s^2 = sin^2(k l/2), m = omega^2 rho A l^4 / 420 EI:
         ((48 + 216 m) s^2 - 420 m) (12 - 2 m - (8 + 12 m) s^2) = 4 s^2 (1 - s^2) (12 + 26 m)^2.
         """
         if self.theory != "euler-bernoulli" or self.beam.tension or self.beam.foundation:

@@ -4,7 +4,6 @@ import mpmath
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.exact.modes import exact_frequency_hz, solve_modes
 
 from tests.reference import dense
 from verify.analytic_modes import ExactModel
