@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from verify.linear.catalogue import MODELS
+from verify.linear.registry import MODELS
 
-from verify import load_scene, run_scene, segment_model
+from verify import SegmentModel, load_scene, run_scene
 from verify.cli import status_of
 from verify.engines import ENGINES, chain_of
 from verify.quantities.base import QUANTITIES
@@ -59,7 +59,7 @@ def toys():
     toys = {"__name__": "toys"}
     with MODELS.registered(), QUANTITIES.registered(), STUDIES.registered(), ENGINES.registered():
         exec(LINES, toys)
-        MODELS.register(toys["Sines"]())
+        MODELS.register(toys["Sines"])
         STUDIES.register(toys["Load"])
         ENGINES.register(toys["TOY"])
         yield toys
@@ -88,7 +88,7 @@ def test_commands_include_registered_extensions(toys, scene, capsys):
 
 def test_engine_has_the_frequencies_of_the_chain(toys, scene):
     chain = chain_of(load_scene(scene).beam, 13, (), 120.0)
-    solved = segment_model.solve_modes(load_scene(scene).beam, n_modes=4, n_segments=13).frequencies_hz
+    solved = SegmentModel(load_scene(scene).beam, 13).modes(4).frequencies_hz
     assert toys["Dispersion"]().frequencies(chain)[3] == pytest.approx(solved[3], rel=1e-12)
 
 
