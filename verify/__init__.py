@@ -4,7 +4,7 @@ What there is (`help` of each says its fields, shapes and units; everything is S
 
   Beam, Section, PointMass, PointSpring, PointForce, Slider    what exists
   Device                                                       what takes up a wave, or drives it, beside the forces
-  ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, receptance, ...
+  ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
   Modes, HarmonicField                                         what those return
   travelling_wave                                              the wave that a field carries: measure, WaveMeasures
   simulate, Motion                                             a driven beam in time, with a slider or without

@@ -9,6 +9,7 @@ factor acts on the beam's own bending and shear stiffness; springs, foundation a
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from math import pi
 from typing import Any, ClassVar
 
@@ -84,9 +85,7 @@ class ExactModel(BeamModel):
         return self._beta_length(mode) ** 2 * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
 
     def _beta_length(self, mode: int) -> float:
-        """Beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
-        if self.theory == "euler-bernoulli" and self.beam.uniform:
-            return closed_forms.wavenumber_length(self.beam.supports, mode)
+        """Wavenumber beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
         return wavenumber_length(self.layout, mode + self.beam.rigid_motions)
 
     def n_below(self, frequency_hz: float) -> int:
@@ -103,20 +102,14 @@ class ExactModel(BeamModel):
         check_whole("n_modes", n_modes, 1, MOST_MODES)
         frequencies = np.array([self.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
-        def shapes(x: Array, derivative: int) -> Array:
-            blocks = [
-                self._shapes(range(first, min(first + _TOGETHER, n_modes + 1)), x, derivative)
-                for first in range(1, n_modes + 1, _TOGETHER)
-            ]
-            return np.concatenate(blocks)
-
+        blocks = [range(first, min(first + _TOGETHER, n_modes + 1)) for first in range(1, n_modes + 1, _TOGETHER)]
         empty = np.empty(0)
         return Modes(
             model=self.name,
             count=None,
             length=self.beam.length,
             frequencies_hz=frequencies,
-            shapes=shapes,
+            shapes=lambda x, derivative: np.concatenate([self._shapes(some, x, derivative) for some in blocks]),
             nodes=empty,
             points=empty,
             sampled=lambda: np.empty((n_modes, 0)),
@@ -170,7 +163,7 @@ class ExactModel(BeamModel):
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
         held = [at for at, support in zip((0.0, length), self.beam.supports, strict=True) if support[:4] in "pinnclam"]
-        close = [b - a <= _SAME * length for a, b in zip(places, places[1:], strict=False)]
+        close = [b - a <= _SAME * length for a, b in pairwise(places)]
         if any(close) or any(abs(at - end) <= _SAME * length for at in places for end in held):
             raise InputError(
                 "drive.force.position: displacements are imposed at one place twice, or at a support without "
@@ -191,7 +184,7 @@ class ExactModel(BeamModel):
             raise InputError("frequency_hz has several values: with devices give one at a time")
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
-        self._check_resonance(layout, frequencies, drives, devices)
+        self._check_resonance(frequencies, drives, devices)
         imposed = [(layout.station_at(drive.position / beam.length), phasor(drive)) for drive in drives]
         loads = [(force.position, np.array([phasor(force)])) for force in forces]
         blocks = np.split(frequencies, range(_SWEPT_TOGETHER, len(frequencies), _SWEPT_TOGETHER))
@@ -233,10 +226,9 @@ class ExactModel(BeamModel):
         at, frequencies = vector_on("positions", positions, self.beam.length), frequencies_on(self.beam, frequencies_hz)
         xi = vector_on("x", x, self.beam.length) / self.beam.length
         layout = self._stationed(tuple(at.tolist()), ())
+        steady = np.flatnonzero(np.array(self._resonances(self.layout, frequencies)) == 0)
         loads = list(zip(at.tolist(), np.eye(len(at)), strict=True))
         responses = np.full((len(frequencies), len(at), len(xi)), np.nan, dtype=complex)
-        steady = np.array([number == 0 for number in self._resonances(layout, frequencies)])
-        steady = np.flatnonzero(steady)
         for block in np.split(steady, range(_SWEPT_TOGETHER, len(steady), _SWEPT_TOGETHER)) if len(steady) else ():
             responses[block] = self._solve(layout, frequencies[block], loads)[0].read(xi, 0)
         return responses
@@ -290,23 +282,30 @@ class ExactModel(BeamModel):
         """Number, rigid motions included, of the undamped resonance at each frequency; 0 where there is none."""
         if self.beam.loss_factor:
             return [0] * len(frequencies)
-        near = (self._omega2(frequencies * (1.0 + side * RESONANCE)).tolist() for side in (-1.0, 1.0))
-        counts = [[count_at(layout, omega2).below for omega2 in side] for side in near]
-        return [up_to if up_to > max(below, 0) else 0 for below, up_to in zip(*counts, strict=True)]
+        low, high = self._omega2(frequencies * (1.0 - RESONANCE)), self._omega2(frequencies * (1.0 + RESONANCE))
+        below, up_to = count_at(layout, float(low.min())).below, count_at(layout, float(high.max())).below
+        if up_to - below < len(frequencies):  # compare with every resonance in the range
+            roots = [(number, wavenumber_length(layout, number) ** 4) for number in range(below + 1, up_to + 1)]
+            numbers = np.zeros(len(frequencies), dtype=int)
+            for number, omega2 in roots:
+                numbers[(low < omega2) & (omega2 <= high)] = number
+            return [int(number) for number in numbers]
+        counts = [[count_at(layout, omega2).below for omega2 in side.tolist()] for side in (low, high)]
+        return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
-    def _check_resonance(
-        self, layout: BeamLayout, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]
-    ) -> None:
-        """Raise ResonanceError at an undamped resonance of the beam with its devices, where the drives hold it."""
+    def _check_resonance(self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]) -> None:
+        """Raise ResonanceError at an undamped resonance of the beam with its devices, held at imposed displacements."""
         length = self.beam.length
+        layout = self._stationed(tuple(drive.position for drive in drives), devices)
         layout = with_stations(layout, [(one.position / length, Station(support="pinned")) for one in drives])
         numbers = self._resonances(layout, frequencies)
         if any(numbers) and (damped := [one for one in devices if one.dashpot or one.rotational_dashpot]):
             # a motion is undamped where it is also one of the beam held at its dashpots
             support = {(True, False): "pinned", (False, True): "guided", (True, True): "clamped"}
-            held = [(bool(one.dashpot), bool(one.rotational_dashpot)) for one in damped]
-            fixed = [(d.position / length, Station(support=support[h])) for d, h in zip(damped, held, strict=True)]
-            numbers = [n and m for n, m in zip(numbers, self._resonances(with_stations(layout, fixed), frequencies))]
+            held = [Station(support=support[one.dashpot > 0.0, one.rotational_dashpot > 0.0]) for one in damped]
+            fixed = with_stations(layout, [(d.position / length, at) for d, at in zip(damped, held, strict=True)])
+            still = self._resonances(fixed, frequencies)
+            numbers = [n if m else 0 for n, m in zip(numbers, still, strict=True)]
         for frequency, number in zip(frequencies.tolist(), numbers, strict=True):
             if number and (mode := number if devices or drives else number - self.beam.rigid_motions):
                 where = " with its devices or imposed displacements" if devices or drives else ""
@@ -364,7 +363,7 @@ class ExactModel(BeamModel):
         stops = np.array(self.layout.positions) * beam.length
         stops[-1] = beam.length
         cells = np.ceil(np.diff(stops) * (omegas[-1] / beam.wave_constant * np.sqrt(ratios)) ** 0.5 / 0.4).astype(int)
-        pieces = [np.linspace(a, b, n + 2)[1:] for a, b, n in zip(stops, stops[1:], cells, strict=False)]
+        pieces = [np.linspace(a, b, n + 2)[1:] for (a, b), n in zip(pairwise(stops), cells, strict=True)]
         return TimeBasis(
             model=self.name,
             count=None,

@@ -12,12 +12,14 @@ there of order 4. Lengths are in mean element lengths L/N: nodes of equal elemen
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from math import pi, sqrt
 from typing import Any
 
 import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.checks import MOST_PARTS, check_whole
+from verify.errors import NoFigureError
 from verify.linear.base import DiscreteModel
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
 from verify.linear.system import StructuralSystem
@@ -298,3 +300,26 @@ class HermiteModel(DiscreteModel):
     def expected_order(self) -> int:
         """Nodes stand at steps, masses and springs: order 4."""
         return 4
+
+    def wavenumber(self, frequency_hz: float) -> complex:
+        """Wavenumber of waves along equal elements of the beam's own section, 1/m; of the exact beam in other cases.
+
+        The determinant of both nodal equations is a quadratic in s^2 = sin^2(k l/2), with m = omega^2 rho A l^4 / 420 EI:
+        ((48 + 216 m) s^2 - 420 m) (12 - 2 m - (8 + 12 m) s^2) = 4 s^2 (1 - s^2) (12 + 26 m)^2.
+        """
+        if self.theory != "euler-bernoulli" or self.beam.tension or self.beam.foundation:
+            return super().wavenumber(frequency_hz)
+        m = (2.0 * pi * frequency_hz / self._omega_unit) ** 2 / (420.0 * (1.0 + 1j * self.beam.loss_factor))
+        a, b, c = 192.0 + (192.0 + 112.0 * m) * m, (3360.0 + 1904.0 * m) * m, (5040.0 - 840.0 * m) * m
+        # the lower branch, without a difference of large numbers
+        k = complex(2.0 * np.arcsin(np.sqrt(2.0 * c / (b + np.sqrt(b * b + 4.0 * a * c + 0j)))) / self.unit)
+        return k if k.imag <= 0.0 else k.conjugate()
+
+    def check_propagates(self, frequency_hz: float) -> None:
+        """Raise NoFigureError at and beyond omega^2 = (1680/17) EI/(rho A l^4), a half wave on each element."""
+        n, of_one = self.n_elements, sqrt(1680.0 / 17.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
+        if frequency_hz >= of_one * n**2:
+            raise NoFigureError(
+                f"count = {n}: {n} elements carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
+                f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
+            )

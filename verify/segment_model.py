@@ -50,8 +50,6 @@ from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
 
 _WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
-_MOST_UNKNOWNS = 5_000_000
-"""Above, the factorisation takes more than 10 GB."""
 _FEWEST_CORRECTED = 6
 """Links of which tensioned joints that slip leave a positive mass, whatever is at the ends."""
 _PASSES, _CONVERGED = 60, 1e-13
@@ -97,8 +95,8 @@ class SegmentModel(DiscreteModel):
         for name, words in _WORDS.items():
             check_word(name, getattr(self, name), words)
         check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
-        check_division(self.beam, self.n_segments, self.grading)
         self.check_theory()
+        check_division(self.beam, self.n_segments, self.grading)
         if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
                 "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
@@ -108,11 +106,7 @@ class SegmentModel(DiscreteModel):
                 f"n_segments = {self.n_segments}: joints = 'tensioned' with theory = 'timoshenko' take "
                 f"{_FEWEST_CORRECTED} or more, raise it or choose joints = 'series'"
             )
-        if self.n_unknowns > _MOST_UNKNOWNS:
-            raise InputError(
-                f"n_segments = {self.n_segments}: {self.n_unknowns} unknowns exceed the largest system of 10 GB, lower "
-                "n_segments"
-            )
+        self.check_memory()
 
     @property
     def count(self) -> int:
@@ -266,19 +260,9 @@ class SegmentModel(DiscreteModel):
         rotating = [end for end, body in enumerate(self.attached.at_ends) if body.rotary_inertia]
         return Motions(self.chain, rotating, slips, gives[(gives > 0.0) & self.attached.massive])
 
-    @property
-    def system(self) -> StructuralSystem:
-        """Its stiffness and mass. Raises InputError for a compression beyond buckling."""
-        if self.beam.tension < 0.0 and self._buckling_factor <= 1.0:
-            raise InputError(
-                f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling load: the chain of "
-                f"{self.n_segments} segments buckles at {self.buckling_load():.6g} N, lower the compression or hold "
-                "the beam better"
-            )
-        return self._assembled
-
     @cached_property
-    def _assembled(self) -> StructuralSystem:
+    def system(self) -> StructuralSystem:
+        """Stiffness and mass of links, joints and what is attached."""
         from scipy.sparse import csc_array, vstack
 
         beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
@@ -337,7 +321,7 @@ class SegmentModel(DiscreteModel):
 
     def lossy_stiffness(self, omega: float) -> Any:
         """D with the beam's loss factor and the dashpots of joints; springs, ground and tension have no loss."""
-        d, dashpots = self._assembled.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
+        d, dashpots = self.system.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
         if not (self.beam.loss_factor or dashpots):
             return d
         there, series, found = self._springs, np.zeros(self.n_segments + 1), d.astype(complex)
@@ -355,7 +339,7 @@ class SegmentModel(DiscreteModel):
 
         if not rotation:
             return joint_weights(self.chain, positions, self.load) @ self.motions.positions
-        ends = {body.position: body.end for body in self.bodies if body.end is not None and self._elastic[body.end]}
+        ends = {body.position: body.end for body in self.attached.at_ends if body.rotary_inertia}
         each = [
             self.motions.end_rotations[[ends[position]]]
             if position in ends
@@ -406,9 +390,9 @@ class SegmentModel(DiscreteModel):
         def curvatures() -> Array:
             there, bent = self._springs, np.zeros((vectors.shape[1], self.n_segments + 1))
             share = self._own_share / (right_of(self.links.stiffnesses) * self._beam_compliances)
-            bent[:, there] = self._assembled.strain(vectors)[: len(there)].T * share[there]
+            bent[:, there] = self.system.strain(vectors)[: len(there)].T * share[there]
             if self.theory == "timoshenko":
-                values = self._assembled.rayleigh_quotients(vectors)
+                values = self.system.rayleigh_quotients(vectors)
                 joints = self._corrected(vectors)
                 bent += shear.modal_shear_change(self.chain, self._shears, self._foundation, joints, values)
             return np.asarray(bent / self.unit**2)
@@ -421,6 +405,11 @@ class SegmentModel(DiscreteModel):
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
+        if self.joint_dashpot:
+            raise InputError(
+                f"joint_dashpot = {self.joint_dashpot!r} is for harmonic motion: leave it out in time, or give the "
+                "beam a loss_factor"
+            )
         index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 
         def rotations() -> Array:
@@ -440,23 +429,17 @@ class SegmentModel(DiscreteModel):
 
     # --- Buckling, order, waves ----------------------------------------------------------------------------------
 
-    @cached_property
-    def _buckling_factor(self) -> float:
-        """On its own compression; 0 where nothing but the axial force resists a rotation as a whole."""
-        free = msgspec.structs.replace(self.beam, tension=0.0).rigid_lines
-        return 0.0 if any(tilt for _, tilt in free) else self._assembled.buckling_factor()
-
     def buckling_load(self) -> float:
         """The compression at which the chain buckles first, N, whatever the beam's own axial force.
 
         Between pinned ends (4 EI/l^2) sin^2(pi/(2N)), order 2; tensioned joints stiffen as the force grows: order 4.
         """
-        force = self.beam.bending_stiffness / self.beam.length**2
-        for _ in range(_PASSES):
+        force = 0.0 if self._tilts else self.beam.bending_stiffness / self.beam.length**2
+        for _ in range(_PASSES if force else 0):
             compressed = msgspec.structs.replace(self.beam, tension=-force)
-            factor = replace(self, beam=compressed, theory="euler-bernoulli")._buckling_factor
+            factor = replace(self, beam=compressed, theory="euler-bernoulli").system.buckling_factor()
             force *= factor
-            if self.joints != "tensioned" or factor == 0.0 or abs(factor - 1.0) < _CONVERGED:
+            if self.joints != "tensioned" or abs(factor - 1.0) < _CONVERGED:
                 break
         return force
 

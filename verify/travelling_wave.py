@@ -24,7 +24,7 @@ from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
 from verify.errors import InputError
 from verify.linear.field import HarmonicField, phasor
-from verify.linear.intervals import extremes, mean_over, rule_over, whole_halves
+from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
 from verify.linear.positions import Numbers
 from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
@@ -39,26 +39,10 @@ from verify.waves.waveguide import Waveguide
 from verify.waves.window import Window, middle_half
 
 __all__ = [
-    "BestDrive",
-    "DrivenCase",
-    "OperatingMap",
-    "OperatingPoint",
-    "TwoWaves",
-    "WaveMeasures",
-    "best_drive",
-    "best_frequency",
-    "ellipse",
-    "fit_waves",
-    "matched_device",
-    "maximum_crest_speed",
-    "measure",
-    "measure_series",
-    "middle_half",
-    "phasors",
-    "power_imbalance",
-    "surface_motion",
-    "two_waves",
-]
+    "BestDrive", "DrivenCase", "OperatingMap", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
+    "best_frequency", "ellipse", "fit_waves", "matched_device", "maximum_crest_speed", "measure", "measure_series",
+    "middle_half", "phasors", "power_imbalance", "surface_motion", "two_waves",
+]  # fmt: skip
 SHARPNESS = 24
 """Points for each half wavelength of the window, for charts and to start the search for extremes from."""
 POINTS_OF_A_PART = 8
@@ -86,12 +70,12 @@ class WaveMeasures:
 
     @property
     def reflection(self) -> float:
-        """Gamma, 0 to 1."""
+        """Gamma, the weaker wave over the stronger, 0 to 1."""
         return self.waves.reflection
 
     @property
     def standing_wave_ratio(self) -> float:
-        """(1 + Gamma) / (1 - Gamma)."""
+        """(1 + Gamma) / (1 - Gamma), from 1 to infinity."""
         return self.waves.standing_wave_ratio
 
     @cached_property
@@ -108,18 +92,18 @@ class WaveMeasures:
         (1 - Gamma) / (1 + Gamma) for two waves.
         """
         whole, halves = whole_halves(self.window, self.waves.wavenumber.real)
-        rule = rule_over(whole, 2 * halves)
+        rule = gauss_rule(whole, 2 * halves)
         w = self.deflection(rule.x)
         values = np.linalg.svd(np.stack([w.real, w.imag]) * np.sqrt(rule.weights), compute_uv=False)
         return float(values[1] / values[0]) if values[0] > 0 else 0.0
-
-    def _ellipse(self, x: Array) -> tuple[Array, Array, Array]:
-        return ellipse(-self.guide.beam.surface_distance * self.section_rotation(x), self.deflection(x))
 
     @cached_property
     def ellipses(self) -> tuple[Array, Array, Array]:
         """(signed axis ratio, tilt in degrees, signed area S3 in m^2) of the surface ellipses at `x`, (n,) each."""
         return self._ellipse(self.x)
+
+    def _ellipse(self, x: Array) -> tuple[Array, Array, Array]:
+        return ellipse(-self.guide.beam.surface_distance * self.section_rotation(x), self.deflection(x))
 
     @cached_property
     def mean_axis_ratio(self) -> float:
@@ -135,12 +119,9 @@ class WaveMeasures:
     @cached_property
     def signed_area_range(self) -> tuple[float, float, float]:
         """Least, mean and largest signed area over the window, m^2."""
-
-        def area(x: Array) -> Array:
-            return self._ellipse(x)[2]
-
-        low, high = extremes(area, self.fine)
-        return low, mean_over(area, self.window, 2 * whole_halves(self.window, self.waves.wavenumber.real)[1]), high
+        halves = whole_halves(self.window, self.waves.wavenumber.real)[1]
+        low, high = extremes(lambda x: self._ellipse(x)[2], self.fine)
+        return low, mean_over(lambda x: self._ellipse(x)[2], self.window, 2 * halves), high
 
     @property
     def signed_area_spread(self) -> float:

@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from verify.exact.modes import exact_frequency_hz
 
 from verify.bench import Method, Question, Row, measure, result, time_at
 from verify.bench.methods import BEAM, Problem, questions
 from verify.cli import status_of
 from verify.errors import InputError
-from verify.exact.modes import exact_frequency_hz
 
 
 def rows_of(name, exponent, cost, sizes=(10, 20, 40, 80)):

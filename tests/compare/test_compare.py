@@ -10,10 +10,10 @@ from verify.compare.clamp import softened
 from verify.compare.compare import Options, compare
 from verify.compare.reading import ModeShapes, listed
 from verify.errors import InputError
-from verify.fem_beam import solve_modes as fem_modes
+from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointMass
-from verify.segment_model import solve_modes as segment_modes
+from verify.segment_model import SegmentModel
 
 LUMPED = tuple(lumped_rod(PAPER, 49)[:22])
 
@@ -144,7 +144,8 @@ class TestFaults:
     @pytest.mark.parametrize("model", ["segment", "fem"])
     def test_compliant_clamp(self, model):
         soft = softened(CANTILEVER, ("left",), 37.0)
-        modes = segment_modes(soft, 8, n_segments=30, wall="half") if model == "segment" else fem_modes(soft, 8, 30)
+        built = SegmentModel(soft, 30, wall="half") if model == "segment" else HermiteModel(soft, 30)
+        modes = built.modes(8)
         result = compared(CANTILEVER, modes.frequencies_hz, count=30)
         fault = result.data["best"]["fault"]
         assert (fault["kind"], fault["label"]) == ("clamp", "left")
@@ -236,8 +237,7 @@ def test_required_count_is_the_first():
     count = table(result, "Required N")[0]["N for 0.1 %"]
     exact = exact_hz(CANTILEVER, 5)[4]
     error = [
-        abs(segment_modes(CANTILEVER, 5, n_segments=n, wall="half").frequencies_hz[4] / exact - 1)
-        for n in (count - 1, count)
+        abs(SegmentModel(CANTILEVER, n, wall="half").modes(5).frequencies_hz[4] / exact - 1) for n in (count - 1, count)
     ]
     assert error[0] > 1e-3 >= error[1]
 
@@ -253,7 +253,7 @@ def test_acceptance_is_of_all_modes(within, passed):
 def test_body_between_the_joints():
     """Errors of a body on a rigid link change with where it falls within the link."""
     beam = Beam(**STRIP, supports=("clamped", "free"), mass=(PointMass(position=0.21, mass=0.03),))
-    hertz = segment_modes(beam, 6, n_segments=23, attachment="lever").frequencies_hz
+    hertz = SegmentModel(beam, 23, attachment="lever").modes(6).frequencies_hz
     result = compared(beam, hertz, count=23)
     assert best(result, "attachment", "count") == ("lever", 23)
 

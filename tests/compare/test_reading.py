@@ -58,13 +58,10 @@ def test_bad_shapes_are_one_sentence(tmp_path, text, message):
 
 
 MODEL = """
-from verify.segment_model import solve_modes
+from verify.segment_model import SegmentModel as Model
 
 def function(beam, n_modes, count):
-    return solve_modes(beam, n_modes, count, wall="third-order").frequencies_hz
-
-class Model:
-    solve_modes = staticmethod(solve_modes)
+    return Model(beam, count, wall="third-order").modes(n_modes).frequencies_hz
 
 def broken(beam, n_modes, count):
     raise ZeroDivisionError("no stiffness")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import segment_model
+from verify import SegmentModel
 from verify.chain.departure import linear_deflection
 from verify.chain.dynamics import at_rest
 from verify.chain.stepping import step_limit
@@ -92,7 +92,7 @@ def test_surface_speed_is_exact_for_parabolic_spins(chain, rider):
 
 
 def test_references_agree_with_the_package(titanium_strip, chain):
-    modes = segment_model.solve_modes(titanium_strip, 12, n_segments=13)
+    modes = SegmentModel(titanium_strip, 13).modes(12)
     assert references.frequencies(chain) == pytest.approx(modes.frequencies_hz, rel=1e-13)
     system = build_system(titanium_strip, 13, list(FORCES), FREQUENCY)
     times = np.linspace(1e-5, 7e-3, 141)

@@ -8,12 +8,13 @@ import pytest
 from msgspec.structs import replace
 
 from tests.beams import PAIRED, cut
-from verify import analytic_modes
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.options import SUPPORTS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
+from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass, PointSpring
 
 # --- Exact modes ---
@@ -50,7 +51,7 @@ def test_shapes_are_orthonormal_and_meet_their_ends(titanium_strip, supports):
     cell = beam.length / 60
     x = (np.arange(60)[:, None] * cell + (points + 1) / 2 * cell).ravel()
     mass = np.tile(weights / 2 * cell, 60) * beam.mass_per_length
-    modes = analytic_modes.solve_modes(beam, 30)
+    modes = ExactModel(beam).modes(30)
     shapes = modes.deflection(x)
     assert abs(shapes * mass @ shapes.T - np.eye(30)).max() < 5e-14
     conditions = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
@@ -60,22 +61,17 @@ def test_shapes_are_orthonormal_and_meet_their_ends(titanium_strip, supports):
             assert (abs(modes.shapes(np.array([end]), k)[:, 0]) < 2e-14 * size).all()
 
 
-def test_mode_226_and_mode_100000_do_not_overflow(titanium_strip):
-    beam = replace(titanium_strip, supports=("clamped", "free"))
-    x = np.linspace(0, beam.length, 7)
-    for n in (226, 227, 100_000):
-        assert np.isfinite(analytic_modes.mode_shape(beam, n, x)).all()
-    tip = analytic_modes.mode_shape(beam, 100_000, np.array([beam.length]))[0]
-    assert abs(tip) == pytest.approx(2 / np.sqrt(beam.mass_per_length * beam.length), rel=1e-13)
-
-
-def test_a_pinned_beams_shape_at_a_high_mode_is_its_sine_in_extended_precision(titanium_strip):
+@pytest.mark.parametrize("mode", [22, 401, 99_991])
+def test_shapes_of_high_modes_are_exact_to_the_rounding_of_their_phase(titanium_strip, mode):
     x = np.array([0.0731, 0.3172, 0.69])
     with mpmath.workdps(40):
-        scale = mpmath.sqrt(mpmath.mpf(2) / (mpmath.mpf(titanium_strip.mass_per_length) * titanium_strip.length))
-        exact = [scale * mpmath.sin(99_991 * mpmath.pi * mpmath.mpf(xi / titanium_strip.length)) for xi in x]
-    found = analytic_modes.mode_shape(titanium_strip, 99_991, x)
-    assert found == pytest.approx([float(v) for v in exact], rel=2e-13)
+        exact = [mpmath.sin(mode * mpmath.pi * mpmath.mpf(xi / titanium_strip.length)) for xi in x]
+    scale, rounding = np.sqrt(2.0 / (titanium_strip.mass_per_length * titanium_strip.length)), mode * np.pi * 2.2e-16
+    found = ExactModel(titanium_strip).mode_shape(mode, x)
+    assert found / scale == pytest.approx([float(v) for v in exact], abs=3.0 * rounding)
+    arm = replace(titanium_strip, supports=("clamped", "free"))
+    tip = ExactModel(arm).mode_shape(mode, arm.length)[0]
+    assert abs(tip) == pytest.approx(2 / np.sqrt(arm.mass_per_length * arm.length), rel=3.0 * rounding)
 
 
 def test_mode_22_of_the_papers_beam_by_three_theories(paper_beam):
@@ -116,9 +112,9 @@ def test_what_has_no_closed_form_is_refused(titanium_strip):
     with pytest.raises(InputError, match="mode = 0"):
         closed_forms.frequency_hz(titanium_strip, 0)
     with pytest.raises(InputError, match="n_modes = 0"):
-        analytic_modes.solve_modes(titanium_strip, 0)
+        ExactModel(titanium_strip).modes(0)
     with pytest.raises(InputError, match=r"x = 0\.74 lies off the beam"):
-        analytic_modes.solve_modes(titanium_strip, 2).deflection([0.1, 0.74])
+        ExactModel(titanium_strip).modes(2).deflection([0.1, 0.74])
 
 
 LONG = Beam(length=0.42, width=0.03, thickness=0.004, youngs_modulus=71e9, density=2710.0, supports=("clamped", "free"))
@@ -132,9 +128,9 @@ WORK = [
 @pytest.mark.parametrize("mode", [0, -3, 2.5, "2", None, 10**31, 10**400])
 def test_a_mode_that_is_none_or_beyond_all_formulas_is_refused(mode):
     for beam in (WORK[0][0], WORK[2][0]):
-        for solve in (analytic_modes.exact_frequency_hz, lambda beam, mode: analytic_modes.mode_shape(beam, mode, 0.1)):
+        for verb in (ExactModel(beam).frequency_hz, lambda mode, beam=beam: ExactModel(beam).mode_shape(mode, 0.1)):
             with pytest.raises(InputError, match="mode = "):
-                solve(beam, mode)
+                verb(mode)
 
 
 # --- Exact shapes ---
@@ -174,7 +170,7 @@ def gauss(beam, cells=12):
 @pytest.mark.parametrize("supports", [("clamped", "free"), ("free", "free"), ("pinned", "free")], ids="-".join)
 def test_shapes_are_orthonormal_in_all_that_has_mass(theory, supports):
     beam = replace(BAR, supports=supports)
-    modes = analytic_modes.solve_modes(beam, 12, theory)
+    modes = ExactModel(beam, theory).modes(12)
     x, weights, mass, turning = gauss(beam)
     w, slope = modes.deflection(x), modes.slope(x)
     gram = (w * weights * mass) @ w.T
@@ -190,25 +186,25 @@ def test_shapes_are_orthonormal_in_all_that_has_mass(theory, supports):
 def test_a_timoshenko_shape_turns_less_than_its_line_slopes():
     """M' = V + p psi by the third derivative: kappa G A (w' - psi) = -V; the clamp holds psi, not the line."""
     plain = replace(BAR, section=(), mass=(), spring=(), foundation=0.0)
-    own, omega = plain.own, 2 * np.pi * analytic_modes.exact_frequency_hz(plain, 2, "timoshenko")
+    own, omega = plain.own, 2 * np.pi * ExactModel(plain, "timoshenko").frequency_hz(2)
     end = np.array([0.0])
-    w, slope, bend, third = (analytic_modes.mode_shape(plain, 2, end, d, "timoshenko")[0] for d in range(4))
+    w, slope, bend, third = (ExactModel(plain, "timoshenko").mode_shape(2, end, d)[0] for d in range(4))
     assert abs(w) < 1e-15
     c, b = 1 / own.shear_stiffness, 1 / own.bending_stiffness
     p, q = -own.rotary_inertia * omega**2, own.mass_per_length * omega**2
     force = -slope / c  # psi = 0
     assert third == pytest.approx(b * force - c * q * slope, rel=1e-12)
     assert slope > 0
-    assert bend == pytest.approx(analytic_modes.mode_shape(plain, 2, end + 1e-13, 2, "timoshenko")[0], rel=1e-9)
+    assert bend == pytest.approx(ExactModel(plain, "timoshenko").mode_shape(2, end + 1e-13, 2)[0], rel=1e-9)
     assert p < 0
 
 
 def test_moments_and_forces_balance_over_what_is_fixed():
     """EI w'' rises by (k_r - J omega^2) w', EI w''' falls by (k - m omega^2) w; EI w'' goes on over a step."""
-    mode, omega = 5, 2 * np.pi * analytic_modes.exact_frequency_hz(BAR, 5)
+    mode, omega = 5, 2 * np.pi * ExactModel(BAR).frequency_hz(5)
 
     def at(x, derivative):
-        return analytic_modes.mode_shape(BAR, mode, np.array([x]), derivative)[0]
+        return ExactModel(BAR).mode_shape(mode, np.array([x]), derivative)[0]
 
     body, spring = BAR.mass[0], BAR.spring[0]
     for place, stiffness, k, turning in (
@@ -234,8 +230,8 @@ def test_a_beam_under_tension_has_shapes_with_layers_at_its_clamps():
     x = np.linspace(0.05, 0.56, 40)
     reach = beam.length - 2 * layer
     sine = np.sqrt(2 / (beam.mass_per_length * reach)) * np.sin(2 * np.pi * (x - layer) / reach)
-    assert analytic_modes.mode_shape(beam, 2, x) == pytest.approx(sine, abs=3e-3 * abs(sine).max())
-    near = analytic_modes.mode_shape(beam, 2, np.array([0.0, layer, 8 * layer]), 1)
+    assert ExactModel(beam).mode_shape(2, x) == pytest.approx(sine, abs=3e-3 * abs(sine).max())
+    near = ExactModel(beam).mode_shape(2, np.array([0.0, layer, 8 * layer]), 1)
     assert abs(near[0]) < 1e-14 * near[2]
     assert near[1] / near[2] == pytest.approx(1 - np.exp(-1), rel=0.02)
 
@@ -244,10 +240,10 @@ def test_two_strips_that_nearly_mirror_each_other_have_shapes_of_their_own():
     """A pair 2.4e-7 apart: even and odd, orthogonal."""
     x = np.linspace(0.01, 0.19, 9)
     for mode in (4, 5):
-        here, there = (analytic_modes.mode_shape(PAIRED, mode, places) for places in (x, 0.7 - x))
+        here, there = (ExactModel(PAIRED).mode_shape(mode, places) for places in (x, 0.7 - x))
         parity = np.sign(here @ there)
         assert here == pytest.approx(parity * there, abs=1e-5 * abs(here).max())
-    pair = analytic_modes.mode_shapes(PAIRED, 5, np.concatenate([x, 0.7 - x]))[3:]
+    pair = ExactModel(PAIRED).modes(5).deflection(np.concatenate([x, 0.7 - x]))[3:]
     assert pair[0, :9] @ pair[1, :9] == pytest.approx(-(pair[0, 9:] @ pair[1, 9:]), rel=1e-4)
 
 
@@ -291,7 +287,7 @@ def test_a_slow_cantilever_with_a_shear_spring_and_an_elastic_clamp_is_static():
     bent = 0.4**3 / 3 / own.bending_stiffness + 0.4**2 / turning + 1 / k
     for hertz in (1e-30, 1e-9, 1e-5):
         for theory, shear in (("euler-bernoulli", 0.0), ("rayleigh", 0.0), ("timoshenko", 0.4 / own.shear_stiffness)):
-            found = analytic_modes.solve_harmonic(beam, [PointForce(position=0.4, amplitude=7.0)], hertz, theory)
+            found = ExactModel(beam, theory).harmonic([PointForce(position=0.4, amplitude=7.0)], hertz)
             assert found.deflection(tip)[0] == pytest.approx(7.0 * (bent + shear), rel=1e-13)
 
 
@@ -304,7 +300,7 @@ def test_slow_struts_and_ties_bend_as_the_beam_column():
     for part in (-0.97, -0.4, 0.3, 40.0):
         u = np.pi / 2 * np.sqrt(abs(part))
         factor = 3 * (np.tan(u) - u) / u**3 if part < 0 else 3 * (u - np.tanh(u)) / u**3
-        found = analytic_modes.solve_harmonic(replace(beam, tension=part * euler), force, 1e-7).deflection(middle)
+        found = ExactModel(replace(beam, tension=part * euler)).harmonic(force, 1e-7).deflection(middle)
         assert found[0] == pytest.approx(plain * factor, rel=1e-12)
 
 
@@ -317,7 +313,7 @@ def test_a_long_slow_beam_on_a_foundation_is_hetenyis():
     rate = (beam.foundation / 4 / beam.bending_stiffness) ** 0.25
     assert rate * 4 > 35
     x = np.array([0.0, 0.05, 0.13, 0.4])
-    found = analytic_modes.solve_harmonic(beam, [PointForce(position=4.3)], 1e-8).deflection(4.3 + x)
+    found = ExactModel(beam).harmonic([PointForce(position=4.3)], 1e-8).deflection(4.3 + x)
     expected = rate / 2 / beam.foundation * np.exp(-rate * x) * (np.cos(rate * x) + np.sin(rate * x))
     assert found == pytest.approx(expected, rel=1e-11)
 
@@ -332,7 +328,7 @@ def test_a_free_beam_that_nothing_holds_answers_as_a_rigid_body():
     own = [p.mass_per_length * p.length**3 / 12 for p in beam.pieces] + [m.rotary_inertia for m in beam.mass]
     inertia = masses @ (places - centre) ** 2 + sum(own)
     x, omega = np.array([0.0, 0.2, 0.61]), 2 * np.pi * 1e-4
-    found = analytic_modes.solve_harmonic(beam, [PointForce(position=0.17, amplitude=3.0)], 1e-4).deflection(x)
+    found = ExactModel(beam).harmonic([PointForce(position=0.17, amplitude=3.0)], 1e-4).deflection(x)
     expected = -3.0 / omega**2 * (1 / masses.sum() + (x - centre) * (0.17 - centre) / inertia)
     assert found == pytest.approx(expected, rel=1e-11)
 
@@ -340,7 +336,7 @@ def test_a_free_beam_that_nothing_holds_answers_as_a_rigid_body():
 def test_springs_foundation_and_tension_lose_nothing_and_the_beam_all():
     """Power in, F v / 2, is eta omega / 2 times the integral of EI w''^2: what is lost in bending alone."""
     beam = replace(BAR_EXACT_FIELDS, tension=2e5)
-    field = analytic_modes.solve_harmonic(beam, FORCES, 730.0)
+    field = ExactModel(beam).harmonic(FORCES, 730.0)
     put_in = sum(
         (np.conj(f) * 2j * np.pi * 730.0 * field.deflection(np.array([at]))[0]).real / 2
         for at, f in phasors(FORCES).items()
@@ -357,16 +353,45 @@ def test_springs_foundation_and_tension_lose_nothing_and_the_beam_all():
 @pytest.mark.parametrize("theory", THEORIES)
 def test_an_undamped_resonance_is_refused_and_its_neighbourhood_is_not(theory):
     beam = replace(BAR_EXACT_FIELDS, loss_factor=0.0)
-    resonance = analytic_modes.exact_frequency_hz(beam, 4, theory)
+    resonance = ExactModel(beam, theory).frequency_hz(4)
     with pytest.raises(ResonanceError, match="of mode 4 of the analytic model"):
-        analytic_modes.solve_harmonic(beam, FORCES, resonance * (1 + 3e-10), theory)
-    nan = analytic_modes.unit_responses(beam, [0.2], np.array([resonance, 1.01 * resonance]), np.array([0.3]), theory)
+        ExactModel(beam, theory).harmonic(FORCES, resonance * (1 + 3e-10))
+    nan = ExactModel(beam, theory).receptance([0.2], np.array([resonance, 1.01 * resonance]), np.array([0.3]))
     assert np.isnan(nan[0]).all()
     assert np.isfinite(nan[1]).all()
     sides = [
-        analytic_modes.solve_harmonic(beam, FORCES[:1], resonance * (1 + side * 1e-7), theory)
-        .deflection([0.61])[0]
-        .real
+        ExactModel(beam, theory).harmonic(FORCES[:1], resonance * (1 + side * 1e-7)).deflection([0.61])[0].real
         for side in (-1, 1)
     ]
     assert sides[0] / sides[1] == pytest.approx(-1.0, rel=1e-4)
+
+
+def test_resonances_of_a_beam_with_devices_and_held_at_imposed_displacements_are_refused():
+    beam, force = replace(BAR_EXACT_FIELDS, loss_factor=0.0), PointForce(position=0.07)
+    device = Device(position=0.5, mass=0.2, stiffness=4e5, rotational=300.0)
+    laden = replace(
+        beam,
+        mass=(*beam.mass, PointMass(position=0.5, mass=0.2)),
+        spring=(*beam.spring, PointSpring(position=0.5, stiffness=4e5, rotational=300.0)),
+    )
+    resonance = ExactModel(laden).frequency_hz(3)
+    with pytest.raises(ResonanceError, match="of mode 3 of the analytic model with its devices"):
+        ExactModel(beam).harmonic(force, resonance * (1 + 5e-10), devices=device)
+    ExactModel(beam).harmonic(force, resonance * (1 + 3e-9), devices=device)
+    drive = PointForce(position=0.61, amplitude=1e-6)
+    held = replace(
+        beam, supports=("clamped", "pinned"), mass=(beam.mass[0], PointMass(position=0.61, rotary_inertia=2e-5))
+    )
+    resonance = ExactModel(held).frequency_hz(2)
+    with pytest.raises(ResonanceError, match="of mode 2"):
+        ExactModel(beam).imposed(drive, resonance * (1 - 5e-10))
+    ExactModel(beam).imposed(drive, resonance * (1 - 3e-9))
+
+
+def test_a_dashpot_on_a_node_leaves_a_resonance_undamped(titanium_strip):
+    model, middle = ExactModel(titanium_strip), titanium_strip.length / 2
+    resonance, force = model.frequency_hz(2), PointForce(position=0.1)
+    with pytest.raises(ResonanceError, match="of mode 2"):
+        model.harmonic(force, resonance, devices=Device(position=middle, dashpot=3.0))
+    model.harmonic(force, resonance, devices=Device(position=0.9 * middle, dashpot=3.0))
+    assert [model.n_below(resonance * (1 + side * 1e-12)) for side in (-1, 1)] == [1, 2]

@@ -84,3 +84,8 @@ def test_raw_links_are_straight_and_turn_at_the_joints():
 def test_a_chain_that_can_drift_away_is_refused(supports):
     with pytest.raises(InputError, match="rigid motion"):
         SegmentModel(replace(STRIP, supports=supports), 20).time_basis()
+
+
+def test_dashpots_of_the_joints_are_for_harmonic_motion():
+    with pytest.raises(InputError, match=r"joint_dashpot = 0\.3 is for harmonic motion"):
+        SegmentModel(STRIP, 20, joint_dashpot=0.3).time_basis()

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.optimize import brentq
-from verify.exact.buckling import buckling_load, check_stable
-from verify.exact.modes import exact_frequency_hz
 
 from tests.reference.transfer import has_frequency_within
-from verify import analytic_modes
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError
 from verify.exact import closed_forms
+from verify.exact.characteristic import check_stable
 from verify.options import SUPPORTS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
@@ -37,7 +36,7 @@ def hertz_of(beam, y):
 
 def solves(equation, beam, mode, theory="euler-bernoulli", rel=DIGITS):
     """The figure of a mode is a root of an equation in beta L, in extended precision."""
-    found = exact_frequency_hz(beam, mode, theory)
+    found = ExactModel(beam, theory).frequency_hz(mode)
     with mpmath.workdps(60):
         start = mpmath.mpf(wavenumber_length(beam, found))
         root = mpmath.findroot(equation, (start * (1 - mpmath.mpf("1e-8")), start), tol=1e-50, verify=False)
@@ -59,7 +58,7 @@ def test_a_cantilever_with_a_tip_mass_that_turns(mode):
         return 1 + c * ch + m * y * (c * sh - s * ch) + turning
 
     solves(equation, beam, mode)
-    assert exact_frequency_hz(beam, mode) < exact_frequency_hz(replace(beam, mass=()), mode)
+    assert ExactModel(beam).frequency_hz(mode) < ExactModel(replace(beam, mass=())).frequency_hz(mode)
 
 
 @pytest.mark.parametrize("mode", [1, 2, 3, 6, 14])
@@ -98,9 +97,9 @@ def test_a_free_beam_on_equal_end_springs(mode):
     bare = replace(beam, spring=())
     if mode < 3:
         rigid = np.sqrt(2 * beam.spring[0].stiffness / (BAR.mass_per_length * BAR.length) * (1, 3)[mode - 1])
-        assert exact_frequency_hz(beam, mode) == pytest.approx(rigid / (2 * np.pi), rel=0.03)
+        assert ExactModel(beam).frequency_hz(mode) == pytest.approx(rigid / (2 * np.pi), rel=0.03)
     else:
-        assert exact_frequency_hz(beam, mode) > exact_frequency_hz(bare, mode - 2)
+        assert ExactModel(beam).frequency_hz(mode) > ExactModel(bare).frequency_hz(mode - 2)
 
 
 @pytest.mark.parametrize("supports", PAIRS, ids="-".join)
@@ -112,7 +111,7 @@ def test_a_foundation_shifts_every_square_by_its_own(supports):
     for mode in (1, 2, 3, 8):
         elastic = mode - bare.rigid_motions
         square = own + (closed_forms.frequency_hz(bare, elastic) ** 2 if elastic > 0 else 0.0)
-        assert exact_frequency_hz(beam, mode) == pytest.approx(np.sqrt(square), rel=DIGITS)
+        assert ExactModel(beam).frequency_hz(mode) == pytest.approx(np.sqrt(square), rel=DIGITS)
 
 
 @pytest.mark.parametrize("mode", [1, 2, 5, 21])
@@ -124,7 +123,7 @@ def test_a_pinned_beam_under_axial_force(pull, mode):
     b2 = (mode * np.pi / BAR.length) ** 2
     omega = np.sqrt((BAR.bending_stiffness * b2 + force) * b2 / BAR.mass_per_length)
     loss = 1e3 if pull == -0.999 and mode == 1 else 1.0
-    assert exact_frequency_hz(beam, mode) == pytest.approx(omega / (2 * np.pi), rel=DIGITS * loss)
+    assert ExactModel(beam).frequency_hz(mode) == pytest.approx(omega / (2 * np.pi), rel=DIGITS * loss)
 
 
 @pytest.mark.parametrize("mode", [1, 2, 3, 11])
@@ -153,7 +152,7 @@ def test_a_beam_pulled_very_hard_is_a_string_with_stiff_ends():
     for n in (1, 2, 3):
         string = n / (2 * BAR.length) * np.sqrt(force / BAR.mass_per_length)
         expected = string * (1 + 2 * e + (4 + n**2 * np.pi**2 / 2) * e**2)
-        assert exact_frequency_hz(beam, n) == pytest.approx(expected, rel=3e-7)
+        assert ExactModel(beam).frequency_hz(n) == pytest.approx(expected, rel=3e-7)
 
 
 def test_stiff_springs_at_a_free_end_become_the_support():
@@ -161,13 +160,13 @@ def test_stiff_springs_at_a_free_end_become_the_support():
     held = {"pinned": (1.0, 0.0), "clamped": (1.0, 1.0), "guided": (0.0, 1.0)}
     sizes = BAR.bending_stiffness / BAR.length**3, BAR.bending_stiffness / BAR.length
     for support, (along, around) in held.items():
-        exact = exact_frequency_hz(replace(BAR, supports=(support, "free")), 3)
+        exact = ExactModel(replace(BAR, supports=(support, "free"))).frequency_hz(3)
         errors = []
         for k in (1e6, 1e8):
             spring = PointSpring(position=0.0, stiffness=k * along * sizes[0], rotational=k * around * sizes[1])
             beam = replace(BAR, supports=("free", "free"), spring=(spring,))
             free = beam.rigid_motions - replace(BAR, supports=(support, "free")).rigid_motions
-            errors.append(1 - exact_frequency_hz(beam, 3 - free) / exact)
+            errors.append(1 - ExactModel(beam).frequency_hz(3 - free) / exact)
         assert errors[0] > 0
         assert errors[0] / errors[1] == pytest.approx(100.0, rel=0.01)
 
@@ -175,11 +174,11 @@ def test_stiff_springs_at_a_free_end_become_the_support():
 def test_the_frequency_of_a_compressed_beam_vanishes_as_it_buckles():
     """omega^2 goes as 1 - P / P_c: by a mean value, linear to first order in what is left of the load."""
     beam = replace(BAR, supports=("clamped", "pinned"))
-    load = buckling_load(beam)
-    squares = [exact_frequency_hz(replace(beam, tension=-load * (1 - part)), 1) ** 2 for part in (1e-3, 1e-4)]
+    load = ExactModel(beam).buckling_load()
+    squares = [ExactModel(replace(beam, tension=-load * (1 - part))).frequency_hz(1) ** 2 for part in (1e-3, 1e-4)]
     assert squares[0] / squares[1] == pytest.approx(10.0, rel=1e-3)
     nearly = replace(beam, tension=-0.999 * load)
-    assert has_frequency_within(nearly, "euler-bernoulli", exact_frequency_hz(nearly, 1), 2e-13)
+    assert has_frequency_within(nearly, "euler-bernoulli", ExactModel(nearly).frequency_hz(1), 2e-13)
 
 
 # --- Buckling ---
@@ -203,14 +202,14 @@ def test_eulers_four_columns_and_two_more():
     }
     for supports, factor in expected.items():
         for beam in (replace(STRUT, supports=supports), replace(STRUT, supports=supports[::-1])):
-            assert buckling_load(beam) == pytest.approx(factor * EULER, rel=1e-14)
+            assert ExactModel(beam).buckling_load() == pytest.approx(factor * EULER, rel=1e-14)
 
 
 def test_what_can_turn_as_a_whole_carries_no_compression():
     for supports in (("free", "free"), ("pinned", "free")):
-        assert buckling_load(replace(STRUT, supports=supports)) == 0.0
+        assert ExactModel(replace(STRUT, supports=supports)).buckling_load() == 0.0
         with pytest.raises(InputError, match="buckling load of 0 N"):
-            analytic_modes.exact_frequency_hz(replace(STRUT, supports=supports, tension=-1e-3), 1)
+            ExactModel(replace(STRUT, supports=supports, tension=-1e-3)).frequency_hz(1)
 
 
 @pytest.mark.parametrize("size", [0.03, 2.7, 410.0])
@@ -218,7 +217,9 @@ def test_an_elastic_clamp_at_a_pinned_end(size):
     """Tan x = x / (1 + x^2 / k), k = k_r L / EI: from pinned-pinned to clamped-pinned (Timoshenko and Gere, 2.3)."""
     spring = PointSpring(position=STRUT.length, rotational=size * STRUT.bending_stiffness / STRUT.length)
     root = brentq(lambda x: np.sin(x) * (1 + x**2 / size) - x * np.cos(x), 3.1, 4.6, xtol=1e-15)
-    assert buckling_load(replace(STRUT, spring=(spring,))) == pytest.approx((root / np.pi) ** 2 * EULER, rel=1e-13)
+    assert ExactModel(replace(STRUT, spring=(spring,))).buckling_load() == pytest.approx(
+        (root / np.pi) ** 2 * EULER, rel=1e-13
+    )
 
 
 def test_a_strut_on_a_foundation_buckles_into_the_waves_that_cost_least():
@@ -226,7 +227,7 @@ def test_a_strut_on_a_foundation_buckles_into_the_waves_that_cost_least():
     for k in (30.0, 4e3, 7e5):
         beam = replace(STRUT, foundation=k * STRUT.bending_stiffness / STRUT.length**4)
         expected = min(n**2 + k / (np.pi**4 * n**2) for n in range(1, 30))
-        assert buckling_load(beam) == pytest.approx(expected * EULER, rel=1e-13)
+        assert ExactModel(beam).buckling_load() == pytest.approx(expected * EULER, rel=1e-13)
 
 
 def test_a_soft_spring_in_the_middle_and_a_stiff_one():
@@ -236,10 +237,10 @@ def test_a_soft_spring_in_the_middle_and_a_stiff_one():
     """
     middle, unit = STRUT.length / 2, STRUT.bending_stiffness / STRUT.length**3
     stiff = replace(STRUT, spring=(PointSpring(position=middle, stiffness=16.1 * np.pi**2 * unit),))
-    assert buckling_load(stiff) == pytest.approx(4 * EULER, rel=1e-13)
+    assert ExactModel(stiff).buckling_load() == pytest.approx(4 * EULER, rel=1e-13)
     soft = replace(STRUT, spring=(PointSpring(position=middle, stiffness=90.0 * unit),))
     root = brentq(lambda x: np.tan(x / 2) / (x / 2) - 1 + 4 * x**2 / 90.0, 3.3, 6.2, xtol=1e-15)
-    assert buckling_load(soft) == pytest.approx((root / np.pi) ** 2 * EULER, rel=1e-12)
+    assert ExactModel(soft).buckling_load() == pytest.approx((root / np.pi) ** 2 * EULER, rel=1e-12)
 
 
 def test_a_stepped_column():
@@ -257,20 +258,20 @@ def test_a_stepped_column():
         return np.tan(x * 0.31) * np.tan(y * 0.52) - y / x
 
     expected = brentq(equation, 0.1 * EULER, 0.25 * EULER, xtol=1e-14)
-    assert buckling_load(column) == pytest.approx(expected, rel=1e-13)
+    assert ExactModel(column).buckling_load() == pytest.approx(expected, rel=1e-13)
 
 
 def test_compression_at_and_beyond_buckling_is_refused_everywhere():
-    load = buckling_load(STRUT)
+    load = ExactModel(STRUT).buckling_load()
     check_stable(replace(STRUT, tension=-load * (1 - 1e-12)))
     for force in (-load, -3 * load):
         beam = replace(STRUT, tension=force)
         for ask in (
             lambda beam=beam: check_stable(beam),
-            lambda beam=beam: analytic_modes.exact_frequency_hz(beam, 1),
-            lambda beam=beam: analytic_modes.solve_modes(beam, 3),
-            lambda beam=beam: analytic_modes.mode_shape(beam, 1, np.zeros(1)),
-            lambda beam=beam: analytic_modes.solve_harmonic(beam, [PointForce(position=0.1)], 50.0),
+            lambda beam=beam: ExactModel(beam).frequency_hz(1),
+            lambda beam=beam: ExactModel(beam).modes(3),
+            lambda beam=beam: ExactModel(beam).mode_shape(1, np.zeros(1)),
+            lambda beam=beam: ExactModel(beam).harmonic([PointForce(position=0.1)], 50.0),
         ):
             with pytest.raises(InputError, match=rf"beam\.tension = {force!r} N compresses the beam beyond"):
                 ask()

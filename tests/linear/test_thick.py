@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from verify.exact.modes import exact_frequency_hz, solve_modes
 
 from tests.reference import dense
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.problem.beam import Beam
@@ -37,7 +38,7 @@ def huang(supports, b):
 @pytest.mark.parametrize("mode", [1, 2, 5, 8, 17, 40])
 def test_timoshenkos_beam_solves_huangs_equations(supports, mode):
     """Modes 17 and 40 lie above the cut-off, where both roots are waves: his equations go on, by imaginary alpha."""
-    found = exact_frequency_hz(replace(BLOCK, supports=supports), mode, "timoshenko")
+    found = ExactModel(replace(BLOCK, supports=supports), "timoshenko").frequency_hz(mode)
     assert (found > CUT_OFF) == (mode > 8)
     with mpmath.workdps(40):
         unit = mpmath.sqrt(mpmath.mpf(OWN.mass_per_length) / OWN.bending_stiffness) * mpmath.mpf(BLOCK.length) ** 2
@@ -50,7 +51,7 @@ def test_timoshenkos_beam_solves_huangs_equations(supports, mode):
 def test_no_mode_is_missed_across_the_cut_off(supports):
     beam = replace(BLOCK, supports=supports)
     others = dense.TimoshenkoElements(beam, np.linspace(0.0, beam.length, 41)).frequencies_hz(22)
-    found = solve_modes(beam, 22, "timoshenko").frequencies_hz
+    found = ExactModel(beam, "timoshenko").modes(22).frequencies_hz
     assert found[-1] > 1.5 * CUT_OFF
     assert others == pytest.approx(found, rel=2e-3)
 
@@ -65,14 +66,14 @@ def test_a_pinned_beam_has_its_closed_forms_and_above_the_cut_off_both_families(
         root = np.sqrt(half**2 - 4 * b2**2 * g * r2)
         upper = (half + root) / (2 * g * r2) * OWN.bending_stiffness / OWN.mass_per_length
         families += [np.sqrt(upper) / (2 * np.pi), closed_forms.frequency_hz(BLOCK, n, "timoshenko")]
-    found = solve_modes(BLOCK, 30, "timoshenko").frequencies_hz
+    found = ExactModel(BLOCK, "timoshenko").modes(30).frequencies_hz
     assert found == pytest.approx(sorted(families)[:30], rel=1e-13)
     cut = replace(BLOCK, section=(Section(length=0.1), Section(length=0.33)))
     for mode in (1, 4, 8):
         for theory in ("rayleigh", "timoshenko"):
             thin = Section(length=0.1, bending_stiffness=OWN.bending_stiffness, mass_per_length=OWN.mass_per_length)
             assert thin.shape is None
-            general = exact_frequency_hz(replace(cut, foundation=1e-9), mode, theory)
+            general = ExactModel(replace(cut, foundation=1e-9), theory).frequency_hz(mode)
             assert general == pytest.approx(closed_forms.frequency_hz(BLOCK, mode, theory), rel=1e-13)
 
 
@@ -88,15 +89,17 @@ def test_theories_meet_in_their_limits(supports):
         shear_stiffness=1e15,
     )
     for mode in (1, 4):
-        rayleigh = exact_frequency_hz(plain, mode, "rayleigh")
-        assert exact_frequency_hz(plain, mode, "timoshenko") == pytest.approx(rayleigh, rel=1e-7)
+        rayleigh = ExactModel(plain, "rayleigh").frequency_hz(mode)
+        assert ExactModel(plain, "timoshenko").frequency_hz(mode) == pytest.approx(rayleigh, rel=1e-7)
         softer = [
-            1 - exact_frequency_hz(replace(plain, shear_stiffness=k), mode, "timoshenko") / rayleigh
+            1 - ExactModel(replace(plain, shear_stiffness=k), "timoshenko").frequency_hz(mode) / rayleigh
             for k in (1e9, 1e10)
         ]
         assert softer[0] / softer[1] == pytest.approx(10.0, rel=0.02)
         thin = [
-            1 - exact_frequency_hz(replace(plain, rotary_inertia=j), mode, "rayleigh") / exact_frequency_hz(plain, mode)
+            1
+            - ExactModel(replace(plain, rotary_inertia=j), "rayleigh").frequency_hz(mode)
+            / ExactModel(plain).frequency_hz(mode)
             for j in (1e-5, 1e-6)
         ]
         assert thin[0] / thin[1] == pytest.approx(10.0, rel=0.01)
@@ -108,7 +111,9 @@ def test_a_beams_theories_rank_as_they_must():
     for supports in (("clamped", "free"), ("free", "pinned"), ("clamped", "guided")):
         beam = replace(BLOCK, supports=supports)
         for mode in (1, 3, 6):
-            found = [exact_frequency_hz(beam, mode, theory) for theory in ("timoshenko", "rayleigh", "euler-bernoulli")]
+            found = [
+                ExactModel(beam, theory).frequency_hz(mode) for theory in ("timoshenko", "rayleigh", "euler-bernoulli")
+            ]
             assert found == sorted(found)
             assert found[0] < 0.999 * found[2]
 
@@ -116,11 +121,11 @@ def test_a_beams_theories_rank_as_they_must():
 def test_what_a_theory_lacks_or_has_too_many_of_is_refused():
     plain = Beam(length=0.43, supports=("clamped", "free"), bending_stiffness=4100.0, mass_per_length=3.3)
     with pytest.raises(InputError, match=r"beam\.rotary_inertia is missing: theory = 'rayleigh'"):
-        exact_frequency_hz(plain, 1, "rayleigh")
+        ExactModel(plain, "rayleigh").frequency_hz(1)
     with pytest.raises(InputError, match=r"beam\.shear_stiffness is missing: theory = 'timoshenko'"):
-        exact_frequency_hz(replace(plain, rotary_inertia=1e-3), 1, "timoshenko")
+        ExactModel(replace(plain, rotary_inertia=1e-3), "timoshenko").frequency_hz(1)
     with pytest.raises(InputError, match="did you mean 'timoshenko'"):
-        exact_frequency_hz(plain, 1, "timoshenk")
+        ExactModel(plain, "timoshenk").frequency_hz(1)
     for theory in ("rayleigh", "timoshenko"):
         with pytest.raises(InputError, match=f"beam.tension = .* N with theory = '{theory}': there is more than one"):
-            exact_frequency_hz(replace(BLOCK, tension=3.0), 1, theory)
+            ExactModel(replace(BLOCK, tension=3.0), theory).frequency_hz(1)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from verify.linear.catalogue import MODELS
+from verify.linear.fields import phasor
 
 from verify import analytic_modes
 from verify.elements import linear as fem_beam
 from verify.errors import InputError
-from verify.linear.fields import phasor
 from verify.motion.free_vibration import free_vibration
 from verify.motion.surface import basis_of
 from verify.problem.beam import Beam, PointForce

@@ -5,8 +5,8 @@ from itertools import combinations_with_replacement, product
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.exact.modes import mode_shapes
 
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError, NoFigureError
 from verify.exact import closed_forms
 from verify.options import SUPPORTS, WALLS
@@ -115,7 +115,7 @@ def test_corrected_joints_are_of_order_four_but_two_next_to_a_clamped_wall(titan
     beam, found = replace(titanium_strip, supports=supports), {"raw": [], "corrected": []}
     for count in (80, 160):
         modes = SegmentModel(beam, count).modes(3)
-        exact = mode_shapes(beam, 3, modes.nodes)[2]
+        exact = ExactModel(beam).modes(3).shapes(modes.nodes, 0)[2]
         for reading, each in found.items():
             each.append(np.sqrt(np.mean((modes.readings[reading]()[2] - exact) ** 2)))
     orders = {reading: np.log2(a / b) for reading, (a, b) in found.items()}
@@ -132,7 +132,7 @@ def test_curvatures_converge_with_order_four(titanium_strip, supports):
     beam, off = replace(titanium_strip, supports=supports), []
     for count in (60, 120):
         modes = SegmentModel(beam, count).modes(3)
-        exact = mode_shapes(beam, 3, modes.curvature_points, 2)[2]
+        exact = ExactModel(beam).modes(3).shapes(modes.curvature_points, 2)[2]
         off.append(np.linalg.norm(modes.curvatures()[2] - exact) / np.linalg.norm(exact))
     assert np.log2(off[0] / off[1]) == pytest.approx(4.0, abs=0.6)
 
@@ -148,7 +148,7 @@ def test_a_pinned_chain_resonates_at_half_waves_of_its_own_wavenumber(titanium_s
         model.check_propagates(48**0.5 * beam.wave_constant * (23.5 / beam.length) ** 2 / (2 * np.pi))
 
 
-@pytest.mark.parametrize(("count", "message"), [(10**9, "lower n_segments"), (1, "at least 2"), (2.5, "whole number")])
+@pytest.mark.parametrize(("count", "message"), [(10**9, "lower the number of segments"), (1, "at least 2"), (2.5, "whole number")])
 def test_a_size_that_no_machine_can_solve_is_refused_at_once(titanium_strip, count, message):
     with pytest.raises(InputError, match=message):
         SegmentModel(titanium_strip, count)

@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 from msgspec.structs import replace
 from reference.motor import Waves, waves_of
-from verify.exact.harmonic import solve_harmonic
 
+from verify.analytic_modes import ExactModel
 from verify.motor.run import run_motor
 from verify.problem.beam import Beam, PointForce
 
@@ -21,7 +21,7 @@ HALF = 0.5 * STRIP.thickness
 @cache
 def drive(amplitude, backward=0.0):
     """(forces, Waves in the middle): a wave to the right of this amplitude, metres, `backward` of it coming back."""
-    units = [solve_harmonic(STRIP, [PointForce(position=place)], HERTZ) for place in PLACES]
+    units = [ExactModel(STRIP).harmonic(PointForce(position=place), HERTZ) for place in PLACES]
     k = float(abs(units[0].wavenumber))
     waves = [waves_of(unit.deflection, k, OMEGA, MIDDLE) for unit in units]
     matrix = np.array([[one.forward for one in waves], [one.backward for one in waves]])

@@ -6,13 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.analysis.bracket import Bracket
 
-from verify.analysis.solution_cache import SolutionCache
-from verify.analytic_modes import solve_harmonic
+from verify.analysis.solution_cache import Bracket, SolutionCache
+from verify.analytic_modes import ExactModel
 from verify.errors import InputError
-from verify.exact.closed_forms import frequency_hz
-from verify.fem_beam import solve_modes
+from verify.fem_beam import HermiteModel
 from verify.motion.simulate import simulate
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
@@ -76,7 +74,9 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     **{f"wave.{name}": ("device", {}) for name in ("standing_wave_ratio", "reflection", "energy_flux", "crest_speed")},
     **{f"wave.{name}": ("driven", {**SEGMENT, "count": 30}) for name in ("envelope", "travelling_index")},
     "wave.signed_area_spread": ("driven", {"window": [0.2, 0.5]}), "wave.axis_ratio": ("driven", {"x": 0.31}),
+    **{f"wave.{name}": ("driven", {"window": [0.2, 0.5]}) for name in ("best_ratio", "best_ratio_phase")},
     "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
+    "wave.best_ratio": ("driven", {}), "wave.best_ratio_phase": ("driven", {}),
     "wave.order": ("driven", {"model": "fem", "counts": [20, 40, 80]}),
     "wave.lumped_swr": ("bare", {"x": 0.31, "modes": [5, 6]}),
     "wave.fastest_crests": ("driven", {"limit": 0.7}), "wave.absorber_impedance": ("driven", {"position": 0.083}),
@@ -180,16 +180,16 @@ def test_argument_changes_value_or_is_refused(name, where, arguments):
 
 
 def test_equals_direct_call():
-    exact = frequency_hz(STRIP, 3)
+    exact = ExactModel(STRIP).frequency_hz(3)
     assert evaluate("mode.frequency", {"model": "analytic", "mode": 3}, SCENES["bare"], CACHES["bare"]) == exact
-    fem = float(solve_modes(STRIP, 3, 9).frequencies_hz[2])
+    fem = float(HermiteModel(STRIP, 9).modes(3).frequencies_hz[2])
     asked = {**FEM, "mode": np.int64(3)}
     assert evaluate("mode.frequency_error", asked, SCENES["bare"], CACHES["bare"]) == (fem - exact) / exact
     settings = {"model": "segment", "count": 12, "slider": RIDER, "steps_per_period": 40, "samples": 2}
     run = simulate(DAMPED, FORCES, 731.0, 1.1e-3, **settings)
     assert figure("slider.displacement") == run.displacement
     assert figure("slider.energy") == pytest.approx(run.ledger.rubbed, rel=1e-12)
-    wave = measure(solve_harmonic(DAMPED, FORCES, 731.0), (0.2, 0.5))
+    wave = measure(ExactModel(DAMPED).harmonic(FORCES, 731.0), (0.2, 0.5))
     assert figure("wave.signed_area_spread") == pytest.approx(wave.signed_area_spread, rel=1e-9)
 
 

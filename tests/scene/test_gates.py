@@ -5,10 +5,9 @@ from math import inf, nan
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.analysis.bracket import Bracket
 
 from verify import Beam, load_scene, run_scene
-from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.convert import convert
 from verify.errors import InputError
 from verify.quantities.base import QUANTITIES, quantity

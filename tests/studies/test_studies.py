@@ -2,11 +2,11 @@
 
 import pytest
 from msgspec.structs import replace
-from verify.linear.catalogue import MODELS
 
 from verify.analysis.solution_cache import SolutionCache
-from verify.analytic_modes import frequency_hz
 from verify.errors import InputError
+from verify.exact.closed_forms import frequency_hz
+from verify.linear.registry import MODELS
 from verify.quantities.base import evaluate
 from verify.scene.load import load_scene
 from verify.studies.axial_inertia import AxialInertia
@@ -57,7 +57,7 @@ def test_convergence_tabulates_direct_solves(run):
     result = run("paper", Convergence(modes=(2, 5), counts=(11, 23, 46)))
     for model, title in (("segment", "segments"), ("fem", "Hermite elements")):
         for row in rows_of(result.tables[0], model=title):
-            found = MODELS[model].solve_modes(PAPER.beam, 5, row["N"]).frequencies_hz[row["mode"] - 1]
+            found = MODELS[model].build(PAPER.beam, row["N"]).modes(5).frequencies_hz[row["mode"] - 1]
             assert row["frequency"] == pytest.approx(found, rel=1e-12)
             assert row["error"] == pytest.approx(found / frequency_hz(PAPER.beam, row["mode"]) - 1.0, rel=1e-6)
             assert row["solve time"] > 0.0

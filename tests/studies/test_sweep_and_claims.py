@@ -4,8 +4,8 @@ import pytest
 from msgspec.structs import replace
 
 from verify.analysis.solution_cache import SolutionCache
-from verify.analytic_modes import frequency_hz
 from verify.errors import InputError
+from verify.exact.closed_forms import frequency_hz
 from verify.quantities.base import evaluate
 from verify.scene.load import load_scene
 from verify.scene.model import Claim

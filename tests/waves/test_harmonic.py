@@ -5,14 +5,12 @@ from itertools import product
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.exact.modes import mode_shape
 
 from tests.reference import transfer
 from verify.analytic_modes import ExactModel
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.fem_beam import HermiteModel
-from verify.linear.field import phasor
 from verify.options import SUPPORTS
 from verify.problem.beam import PointForce
 from verify.problem.device import Device
@@ -47,26 +45,6 @@ def test_a_slow_force_bends_a_held_beam_as_a_dead_load_does(titanium_strip, freq
     cantilever = replace(titanium_strip, supports=("clamped", "free"))
     tip = 1.7 * a**2 * (3 * np.maximum(x, 0.311) - a) / (6 * ei)
     close(ExactModel(cantilever).harmonic(force, frequency).deflection(x), tip, 1e-8)
-
-
-def test_a_slow_force_drives_a_free_beam_as_a_rigid_body(titanium_strip):
-    free = replace(titanium_strip, supports=("free", "free"))
-    mass, omega = free.mass_per_length * 0.73, 2 * np.pi * 1e-3
-    x, lever = np.array([0.0, 0.4, 0.73]), 0.611 - 0.365
-    rigid = -2.3 / omega**2 * (1 / mass + lever * (x - 0.365) / (mass * 0.73**2 / 12))
-    close(ExactModel(free).harmonic(PointForce(position=0.611, amplitude=2.3), 1e-3).deflection(x), rigid, 1e-7)
-
-
-def test_the_exact_field_is_the_modal_sum_without_its_truncation(titanium_strip):
-    beam = replace(titanium_strip, loss_factor=0.02)
-    omega, total = 2 * np.pi * 311.0, 0.0
-    for n in range(1, 4001):
-        shape = mode_shape(beam, n, np.array([0.3333, 0.083]))
-        stiffness = (2 * np.pi * closed_forms.frequency_hz(beam, n)) ** 2 * (1 + 0.02j)
-        total += shape[0] * shape[1] / (stiffness - omega**2)
-    assert ExactModel(beam).harmonic(PointForce(position=0.083), 311.0).deflection(0.3333)[0] == pytest.approx(
-        total, rel=1e-9
-    )
 
 
 @pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)
@@ -105,22 +83,6 @@ def test_both_discrete_models_converge_with_order_four(titanium_strip, supports,
         assert errors[1] < 1e-4
     else:
         assert order == pytest.approx(4.0, abs=0.25)
-
-
-@pytest.mark.parametrize(
-    "supports", [("pinned", "pinned"), ("guided", "guided"), ("free", "free"), ("clamped", "pinned")], ids="-".join
-)
-@pytest.mark.parametrize("place", [0.0031, 0.0117, 0.4321, 0.7288])
-def test_a_force_anywhere_even_in_the_last_link_keeps_the_error_small(titanium_strip, supports, place):
-    beam, force = replace(titanium_strip, supports=supports, loss_factor=0.05), PointForce(position=place)
-    exact = ExactModel(beam).harmonic(force, 233.0)
-    fine, coarse = (error(SegmentModel(beam, n).harmonic(force, 233.0), exact) for n in (160, 40))
-    if supports[0] == "clamped" and place < 3 * 0.73 / 160:
-        # in the links next to a clamped wall the joints are of order 2, where the beam itself hardly moves
-        assert fine < 0.02
-    else:
-        assert fine < 2e-4
-        assert fine < 0.03 * coarse
 
 
 @pytest.mark.parametrize("model", DISCRETE)
@@ -194,24 +156,20 @@ def test_two_displacements_at_one_place_cannot_be_imposed(titanium_strip, model)
 def test_a_displacement_near_a_node_of_a_resonance_of_the_free_beam_is_imposed(titanium_strip, off, part):
     """The field under forces has a pole there, that under displacements has none."""
     hertz, place = closed_forms.frequency_hz(titanium_strip, 7) * (1.0 + part), (3.0 + off) * 0.73 / 7
-    # one more place clear of the resonance keeps the reference away from the pole
     x = np.array([0.1, 0.33, 0.6])
     found = ExactModel(titanium_strip).imposed(PointForce(position=place), hertz).deflection(x)
-    shift = 0.0 if part else 1e-13
     reference = transfer.deflection(
-        titanium_strip, "euler-bernoulli", hertz * (1.0 + shift), (PointForce(position=place),), [*x, place], 60
+        titanium_strip, "euler-bernoulli", hertz, (PointForce(position=place),), [*x, place], 60
     )
     close(found, reference[:-1] / reference[-1], 1e-6)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", ["analytic", "fem"])
 def test_a_resonance_of_the_beam_at_rest_at_its_actuators_is_refused(titanium_strip, model):
     """Found from outside: where the determinant of the receptance changes sign without a pole."""
     from scipy.optimize import brentq
 
     one, places = built(model, titanium_strip, 48), [force.position for force in FORCES]
-    if model == "segment":
-        pytest.skip("its readings are not the rows of its forces")
 
     def determinant(f):
         fields = [one.harmonic(PointForce(position=p), f) for p in places]
@@ -243,26 +201,3 @@ def test_drives_that_cannot_be_are_refused(titanium_strip, model, change, messag
     given = {"forces": FORCES, "frequency_hz": 100.0} | change
     with pytest.raises(InputError, match=message):
         built(model, titanium_strip, 20).harmonic(given["forces"], given["frequency_hz"])
-
-
-def test_damping_that_a_model_cannot_represent_is_refused(titanium_strip):
-    with pytest.raises(InputError, match=r"loss_factor = -0\.1: give a finite number of at least 0"):
-        replace(titanium_strip, loss_factor=-0.1)
-    with pytest.raises(InputError, match="modal_damping"):
-        HermiteModel(titanium_strip, 20).harmonic(FORCES, 100.0, modal_damping=-0.1)
-    clamped = replace(titanium_strip, supports=("clamped", "free"))
-    with pytest.raises(InputError, match="couple"):
-        SegmentModel(clamped, 20, joint_dashpot=0.1).harmonic(FORCES, 100.0, modal_damping=0.01)
-
-
-def test_forces_do_the_work_that_imposed_displacements_ask_for(titanium_strip):
-    beam = replace(titanium_strip, loss_factor=0.03)
-    field = ExactModel(beam).imposed(FORCES, 411.0)
-    speeds = 1j * field.omega * field.deflection([f.position for f in field.forces])
-    power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(field.forces, speeds, strict=True))
-    points, weights = np.polynomial.legendre.leggauss(60)
-    edges = np.array([0.0, 0.083, 0.611, 0.73])
-    x = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (points + 1)).ravel()
-    w = (0.5 * np.diff(edges)[:, None] * weights).ravel()
-    lost = 0.5 * field.omega * 0.03 * beam.bending_stiffness * (w @ abs(field.derivative(x, 2)) ** 2)
-    assert power == pytest.approx(lost, rel=1e-9)

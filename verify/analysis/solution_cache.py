@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import msgspec
 
 from verify.errors import InputError, NoBracketError
-from verify.linear.registry import EXACT, MEAN, MODELS, bounding, discrete
+from verify.linear.registry import MEAN, MODELS, bounding, discrete
 from verify.problem.beam import Beam
 
 if TYPE_CHECKING:
+    from verify.analytic_modes import ExactModel
     from verify.arrays import Array
     from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
@@ -115,7 +116,13 @@ class SolutionCache:
         key = self._key(model, count, settings)
         stored = self._modes.get(key)
         if stored is None or stored.n_modes < n_modes:
-            self._modes[key] = MODELS.named(model).build(self.beam, count, **dict(key[2])).modes(n_modes)
+            built = MODELS.named(model).build(self.beam, count, **dict(key[2]))
+            if n_modes > built.n_elastic:
+                raise InputError(
+                    f"mode = {n_modes}: the {model} model at count = {count} has {built.n_elastic} elastic modes, "
+                    "raise count"
+                )
+            self._modes[key] = built.modes(n_modes)
         return self._modes[key]
 
     def _key(self, model: str, count: int, settings: Settings) -> tuple[str, int, Settings]:
@@ -128,8 +135,10 @@ class SolutionCache:
             self._exact[mode, theory] = self._exact_model(theory).frequency_hz(mode)
         return self._exact[mode, theory]
 
-    def _exact_model(self, theory: str) -> Any:
-        return MODELS[EXACT].build(self.beam, theory=theory)
+    def _exact_model(self, theory: str) -> "ExactModel":
+        from verify.analytic_modes import ExactModel
+
+        return ExactModel(self.beam, theory)
 
     def frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """The frequency of mode number `mode` by rank, Hz; model "mean" is the middle of the bracket."""
@@ -222,9 +231,7 @@ class SolutionCache:
 
     def exact_shape(self, mode: int, x: "Array", derivative: int = 0, theory: str = EULER) -> "Array":
         """The exact mass-normalised shape or a derivative at x (m), (len(x),), by a theory. Raises InputError."""
-        from verify.analytic_modes import ExactModel
-
-        return ExactModel(self.beam, theory).mode_shape(mode, x, derivative)
+        return self._exact_model(theory).mode_shape(mode, x, derivative)
 
     def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
         """Zeros of a mode between the ends, (n_nodes,), m, ascending. Raises InputError."""

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
+from verify.analytic_modes import ExactModel
 from verify.arrays import Array
 from verify.bench.work_precision import Method, Question
 from verify.errors import InputError, near_name
@@ -59,7 +60,6 @@ def rms(values: Any, exact: Any) -> float:
 
 def modes(problem: Problem) -> Iterator[Question]:
     """A natural frequency over the number of parts."""
-    from verify.analytic_modes import ExactModel
     from verify.elements.stock import stock_frequency_hz
 
     beam, mode = problem.beam, problem.mode
@@ -208,7 +208,6 @@ def chain(problem: Problem) -> Iterator[Question]:
 
 def engines(problem: Problem) -> Iterator[Question]:
     """Modes, the nonlinear chain, and the slider in other engines beside segments."""
-    from verify.analytic_modes import ExactModel
     from verify.engines import ENGINES, chain_of, missing, references, rider_of
 
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}

@@ -269,13 +269,15 @@ def contact_line_error(
 
     check_whole("segments", n_segments, 2)
     system = build_system(beam, n_segments, wall=wall, grading=grading)
-    joints = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode).readings["raw"]()[mode - 1]
+    modes = SegmentModel(beam, n_segments, wall=wall, grading=grading).modes(mode)
+    joints = modes.readings["raw"]()[mode - 1]
     size = 1e-6 * beam.length / float(abs(joints).max())
     pieces, edges = touched(system, size * np.diff(joints), x)
     xi = np.linspace(0.0, 1.0, 17)
     found = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(pieces)) / (size * np.ptp(edges))
-    exact = ExactModel(beam).mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
-    largest = float(abs(ExactModel(beam).mode_shape(mode, system.nodes, 1)).max())
+    model = ExactModel(beam)
+    exact = model.mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
+    largest = float(abs(model.mode_shape(mode, system.nodes, 1)).max())
     return float(abs(found - exact).max()) / largest
 
 

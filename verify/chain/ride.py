@@ -19,7 +19,7 @@ from verify.chain.stretching import ElasticMotion
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, written
-from verify.linear.surface import standing_at
+from verify.linear.surface import section_at
 from verify.motion.contact import Coupling, couple, coupling_of, law_of, surface_speed, turned_by
 from verify.motion.records import KEPT_FRICTION, Given, Rider
 from verify.motion.request import check_seen
@@ -130,7 +130,7 @@ def coupling_on_chain(
 
     speed, unit = surface_speed(steady(forces), x), complex(steady([PointForce(position=x)]).deflection([x])[0])
     turned = turned_by(steady(couple(beam, x, frequency_hz)), x)
-    found = coupling_of(slider, standing_at(beam, x), frequency_hz, speed, unit, turned)
+    found = coupling_of(slider, section_at(beam, x), frequency_hz, speed, unit, turned)
     if slider.coupling == "auto" and found.two_way:
         raise InputError(
             "slider.coupling = 'auto': a nonlinear chain carries a slider one way, and this one moves the surface by "
@@ -150,7 +150,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider, couplin
     n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
     local, along, edges = _surface(chain, start)
     given, kept = Given(local, along, edges - start), np.zeros((n_steps + 1, 4))
-    under = standing_at(beam, start)
+    under = section_at(beam, start)
     rider = Rider(fresh_motion(slider.speed), law_of(slider, under), two_way=None)
     ready = perf_counter()
     done = kernels.slide_given(n_steps, dt, given, rider, kept, contact_space())

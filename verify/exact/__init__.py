@@ -1,5 +1,5 @@
-"""The exact beam by three theories, and what is known of the discrete models without solving them.
+"""The exact beam by three theories, and the error laws of the discrete models.
 
-Takes a beam, gives modes, shapes, harmonic fields, buckling loads and time bases: in closed form where there is one,
-else by one characteristic equation with counting. Stands behind `analytic_modes`; knows neither elements nor segments.
+Layout of spans and stations, characteristic equation with counting, multiple-shooting fields and shapes, closed forms.
+Stands behind `analytic_modes`; imports neither elements nor segments.
 """

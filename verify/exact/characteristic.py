@@ -19,6 +19,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from verify.errors import InputError
+from verify.exact import closed_forms
 from verify.exact.layout import BeamLayout, Station, layout_of
 from verify.problem.beam import Beam
 
@@ -288,8 +289,17 @@ def _count_at_beta(layout: BeamLayout, beta: float) -> Count:
     return count_at(layout, beta**4)
 
 
+@lru_cache(maxsize=20_000)
 def wavenumber_length(layout: BeamLayout, number: int) -> float:
-    """Beta L of the frequency of a number, 1 the lowest, rigid motions included: omega = beta^2 sqrt(EI / rho A)."""
+    """Wavenumber beta L of a frequency by its number, 1 the lowest, rigid motions included: omega = beta^2 at L = 1.
+
+    In closed form for a uniform Euler-Bernoulli beam without attachments.
+    """
+    plain = set(layout.stations) == {_NOTHING} and not (layout.tension or layout.foundation)
+    if plain and all(span[1:] == (1.0, 1.0, 0.0, 0.0) for span in layout.spans):
+        deflections, rotations = (sum(s in (held, "clamped") for s in layout.supports) for held in ("pinned", "guided"))
+        rigid = max(2 - deflections - min(rotations, 1), 0)
+        return closed_forms.wavenumber_length(layout.supports, number - rigid) if number > rigid else 0.0
     return nth_root(lambda beta: _count_at_beta(layout, beta), number)
 
 

@@ -1,4 +1,4 @@
-"""Exact beam frequencies one at a time, in plain floating point: no arrays, no imports to pay for.
+"""Exact frequencies of uniform beams in closed form, in plain floating point.
 
 Roots of the Euler-Bernoulli frequency equations for every pair of supports, and the frequencies of a
 pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model form).
@@ -38,35 +38,28 @@ def check_uniform(beam: Beam) -> None:
     """Raise InputError where the beam is stepped or something stands on it, naming the models that can."""
     if beam.stepped:
         raise InputError(
-            f"beam.section: a beam of {len(beam.pieces)} sections has no closed form here, use exact_frequency_hz, the "
-            "fem or segment model"
+            f"beam.section: a beam of {len(beam.pieces)} sections has no closed form here, use the analytic, fem or "
+            "segment model"
         )
     if beam.added:
         raise InputError(
-            f"beam.{beam.added[0]}: a beam with it has no closed form here, use exact_frequency_hz, the fem or segment "
-            "model, or none of it"
+            f"beam.{beam.added[0]}: a beam with it has no closed form here, use the analytic, fem or "
+            "segment model, or none of it"
         )
 
 
-def root_parts(supports: tuple[str, str], mode: int) -> tuple[float, float]:
-    """beta_n L as (n + c) and a remainder in radians: beta_n L = (n + c) pi + remainder, both to rounding."""
+def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
+    """beta_n L, dimensionless: (n + c) pi and a remainder by fixed-point iteration. Raises InputError for mode < 1."""
+    check_mode(mode)
     c, rule, g = _ROOTS[frozenset(supports)]
     sign = (1 if mode % 2 else -1) if rule == "odd" else int(rule)
-    turns = mode + c
-    remainder = 0.0
+    whole, remainder = (mode + c) * pi, 0.0
     for _ in range(40):
-        following = sign * g * atan(exp(-2.0 * (turns * pi + remainder) / g))
+        following = sign * g * atan(exp(-2.0 * (whole + remainder) / g))
         if following == remainder:
             break
         remainder = following
-    return turns, remainder
-
-
-def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
-    """beta_n L, dimensionless. Raises InputError for mode < 1."""
-    check_mode(mode)
-    turns, remainder = root_parts(supports, mode)
-    return turns * pi + remainder
+    return whole + remainder
 
 
 def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:
@@ -83,7 +76,7 @@ def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> floa
         if beam.supports != ("pinned", "pinned"):
             raise InputError(
                 f"theory = {theory!r} has a closed form here for pinned-pinned beams only, "
-                f"not {'-'.join(beam.supports)}: use euler-bernoulli, or exact_frequency_hz"
+                f"not {'-'.join(beam.supports)}: use euler-bernoulli, or the analytic model"
             )
         omega *= sqrt(_thickness_factor(beam, beta, theory))
     return omega / (2.0 * pi)

@@ -1,14 +1,14 @@
-"""Frequencies and errors of both discrete models known without solving them, in plain floating point.
+"""Frequencies and errors of both discrete models without solving them: discrete dispersion and error laws.
 
-Exact discrete dispersion where a sine fits the ends (pinned and guided), leading error laws for the others.
-The models are not asked: this is what they are checked against.
+The dispersion is exact where a sine fits the ends (pinned and guided); leading error laws hold for the others. Both
+verify the models. mu = beta L / N throughout.
 """
 
 from cmath import asin
 from cmath import exp as cexp
 from cmath import sqrt as csqrt
 from collections.abc import Callable
-from math import ceil, cos, exp, factorial, pi, sin, sqrt
+from math import cos, exp, factorial, pi, sin, sqrt
 
 import msgspec
 
@@ -18,10 +18,8 @@ from verify.problem.beam import Beam
 
 MEAN_LIMIT = 2.187653657707005
 """mu at which the error of segments is -3 times that of Hermite elements, so that their mean has the elements' size."""
-_HERMITE_HUMP = 2.975626
-"""mu at which the Hermite elements' frequency error is largest on the lower branch, 3.7056 %."""
-KEPT, KEPT_FROM, _KEPT_TO = 1.0 / 3.0, 20, 2.5
-"""Errors keep to `expected_error` within this share of its terms, from these parts on, for these mu (tests/exact)."""
+_LAW_TO = 2.5
+"""mu up to which errors follow `expected_error` within a third of its terms from 20 parts on (measured)."""
 _GREGORY = (-5.0 / 8.0, 1.0 / 6.0, -1.0 / 24.0)
 _BERNOULLI = {2: 1 / 6, 4: -1 / 30, 6: 1 / 42, 8: -1 / 30, 10: 5 / 66, 12: -691 / 2730, 14: 7 / 6, 16: -3617 / 510}
 _SMALL = 0.2
@@ -68,12 +66,12 @@ def _hermite_root(mu: float) -> float:
 
 
 def cut_off_hz(model: str, beam: Beam, count: int) -> float:
-    """The frequency, Hz, above which no wave runs along a discrete model of equal parts: a half wave on each part."""
+    """The frequency above which no wave propagates in a discrete model of equal parts, Hz: a half wave on each."""
     return sqrt(law_of(model).cut_off_root) * beam.wave_constant * (count / beam.length) ** 2 / (2.0 * pi)
 
 
-def check_carried(model: str, beam: Beam, count: int, frequency_hz: float) -> None:
-    """Raise NoFigureError, with the fewest parts that carry it, for a frequency beyond the model's cut-off."""
+def check_propagates(model: str, beam: Beam, count: int, frequency_hz: float) -> None:
+    """Raise NoFigureError, with the fewest parts that it propagates in, for a frequency beyond the model's cut-off."""
     if frequency_hz < cut_off_hz(model, beam, count):
         return
     fewest = int(count * sqrt(frequency_hz / cut_off_hz(model, beam, count)))
@@ -85,13 +83,13 @@ def check_carried(model: str, beam: Beam, count: int, frequency_hz: float) -> No
 
 
 def discrete_wavenumber(model: str, beam: Beam, count: int, frequency_hz: float) -> complex:
-    """The wavenumber at which a wave runs along a discrete model of equal parts, 1/m, with the loss factor.
+    """The wavenumber of a wave in a discrete model of equal parts, 1/m, with the loss factor.
 
     The inverse of the discrete dispersion on its lower branch, solved for s^2 = sin^2(mu/2), which keeps its
-    digits on the finest mesh. Raises InputError for stepped beams and NoFigureError where no wave runs.
+    digits on the finest mesh. Raises InputError for stepped beams and NoFigureError beyond the cut-off.
     """
     check_uniform(beam)
-    check_carried(model, beam, count, frequency_hz)
+    check_propagates(model, beam, count, frequency_hz)
     length = beam.length / count
     root = (2.0 * pi * frequency_hz / beam.wave_constant * length**2) ** 2 / (1.0 + 1j * beam.loss_factor)
     s2 = law_of(model).s2(root)
@@ -128,66 +126,27 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
 
 
 def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
-    """What error to expect of a uniform beam: that of the dispersion, exact between pinned and guided ends, and walls'.
+    """The relative frequency error of a uniform beam by the dispersion and the residual of clamped ends.
 
-    At other ends it is a law for practical sizes too: from N = 20 on errors keep to it within a third of the sum of its
-    terms' sizes. Its leading terms, `leading_error`, are right only beyond some hundred links. Where `has_law` is not
-    so it means nothing: elements have modes beyond their lower branch, of which it knows none.
+    Exact between pinned and guided ends. At other ends errors follow it from N = 20 on within a third of the sum of its
+    terms' sizes; its leading terms, `leading_error`, hold only beyond some hundred links. Valid where `has_law`.
     """
-    own, walls = _terms(model, beam.supports, mode, count)
-    return own + walls
+    mu, law = wavenumber_length(beam.supports, mode) / count, law_of(model)
+    clamped = beam.supports.count("clamped") if law.clamped_terms else 0
+    return sqrt(law.root(mu)) / mu**2 - 1.0 - (0.5 * clamped * wall_residual(mu) / count if clamped else 0.0)
 
 
 def has_law(beam: Beam, mode: int, count: int) -> bool:
-    """Whether `expected_error` speaks of a mode of so many parts: on the lower branch, mu < pi, between sines' ends.
-
-    At other ends up to mu = 2.5, as far as errors were found to keep to it.
-    """
+    """Whether `expected_error` is valid: on the lower branch, mu < pi, where a sine fits the ends, else to mu = 2.5."""
     mu = wavenumber_length(beam.supports, mode) / count
-    return mu < pi if sine_fits(beam.supports) else mu <= _KEPT_TO
-
-
-def _terms(model: str, supports: tuple[str, str], mode: int, count: int) -> tuple[float, float]:
-    """(the dispersion's error, what clamped ends add) of a mode."""
-    mu, law = wavenumber_length(supports, mode) / count, law_of(model)
-    clamped = supports.count("clamped") if law.feels_clamps else 0
-    return sqrt(law.root(mu)) / mu**2 - 1.0, -0.5 * clamped * wall_residual(mu) / count if clamped else 0.0
-
-
-def is_kept(model: str, beam: Beam, mode: int, count: int, error: float, floor: float) -> bool:
-    """Whether an error found is within a third of the terms of `expected_error`, or `floor`, of it."""
-    own, walls = _terms(model, beam.supports, mode, count)
-    return abs(error - own - walls) <= KEPT * (abs(own) + abs(walls)) + floor
-
-
-def certain_from(model: str, beam: Beam, mode: int, error: float) -> int:
-    """The size from which on every error that keeps to `expected_error` (`is_kept`) is within `error`.
-
-    There the dispersion's error and mu^4/6 for the residual of a clamped end, which is less, only fall.
-    """
-    y, law = wavenumber_length(beam.supports, mode), law_of(model)
-    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
-
-    def reached(count: int) -> bool:
-        mu = y / count
-        own = abs(sqrt(law.root(mu)) / mu**2 - 1.0)
-        return (1.0 + KEPT) * (own + clamped * mu**4 / 12.0 / count) <= error
-
-    high = max(KEPT_FROM, ceil(y / _KEPT_TO), smallest_count(beam, mode))
-    low = high - 1
-    while not reached(high):
-        low, high = high, 2 * high
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high
+    return mu < pi if sine_fits(beam.supports) else mu <= _LAW_TO
 
 
 def wall_residual(mu: float) -> float:
-    """What Gregory's sum of M^2 over the joints from a clamped end on has more than its integral, in links.
+    """Gregory's sum of M^2 over the joints from a clamped end on less its integral, in links.
 
-    M^2 = (cos z - sin z + e^-z)^2 at z = k mu, of mean 1, is the bending moment there. Half of it over N is taken off
-    the frequency. -mu^4/6 for small mu, zero at 0.42, largest 0.12 mu^4 up to mu = 2.5.
+    M^2 = (cos z - sin z + e^-z)^2 at z = k mu, of mean 1, is the bending moment there. Half of the residual over N
+    lowers the frequency. -mu^4/6 for small mu, zero at 0.42, largest 0.12 mu^4 up to mu = 2.5.
     """
     if mu < _SMALL:
         return _wall_series(mu)
@@ -212,65 +171,15 @@ def _wall_series(mu: float) -> float:
     return total
 
 
-def parts_from_here_on(model: str, beam: Beam, mode: int, error: float) -> int:
-    """The size from which on the exact or else the leading error is within `error`, there and at every larger size.
-
-    Raises InputError for an error that is as small as rounding.
-    """
-    if error < 1e-12:
-        raise InputError(f"error = {error!r} is as small as rounding: ask for 1e-12 or more")
-
-    expected = expected_error if sine_fits(beam.supports) else _leading
-
-    def reached(count: int) -> bool:
-        return abs(expected(model, beam, mode, count)) <= error
-
-    smallest = smallest_count(beam, mode)
-    falls_to, hump = last_hump(model, beam, mode)
-    beside = [max(int(hump), smallest), max(int(hump) + 1, smallest)]
-    if all(reached(count) for count in beside):
-        low, high = smallest - 1, max(falls_to, smallest)
-    else:
-        low, high = beside[0], beside[1]
-    while not reached(high):
-        low, high = high, 2 * high
-        if high > 10**9:
-            raise InputError(f"error = {error!r}: the {model} model does not reach it at any size")
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high
-
-
-def _leading(model: str, beam: Beam, mode: int, count: int) -> float:
-    """`leading_error` of a beam's supports."""
-    return leading_error(model, beam.supports, mode, count)
-
-
-def last_hump(model: str, beam: Beam, mode: int) -> tuple[int, float]:
-    """(the size down to whose error it falls at first, the size of its last hump), beyond which it falls for good.
-
-    With pinned and guided ends the chain's error only falls with the size, proven by its dispersion; that of Hermite
-    elements rises from 0.72 % at mu = pi to 3.71 % at mu = 2.9756 and then falls. Of the laws, mu^4 / 1440 only
-    falls; mu^4 (-1/1440 + c / (12 N)) is zero at N = 120 c and has a hump at 150 c. (0, 0) where it only falls.
-    """
-    law = law_of(model)
-    if sine_fits(beam.supports):
-        return 0, wavenumber_length(beam.supports, mode) / law.hump if law.hump else 0.0
-    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
-    return 120 * clamped, 150.0 * clamped
-
-
 def smallest_count(beam: Beam, mode: int) -> int:
     """The fewest parts that have the mode on their lower branch."""
     return max(int(wavenumber_length(beam.supports, mode) / pi) + 1, mode + 1, 2)
 
 
 class Law(msgspec.Struct, frozen=True, kw_only=True):
-    """What is known of a discrete model of equal parts without solving it."""
+    """The dispersion and the error law of a discrete model of equal parts."""
 
     parts: str
-    """What it is made of, in a word."""
     root: Callable[[float], float]
     """mu = beta L / N -> omega^2 rho A l^4 / EI, the exact dispersion on the lower branch."""
     s2: Callable[[complex], complex]
@@ -279,10 +188,8 @@ class Law(msgspec.Struct, frozen=True, kw_only=True):
     """The root at mu = pi, the end of the lower branch."""
     leading: Callable[[float, int, int], float]
     """(mu^4, clamped ends, count) -> the leading relative frequency error."""
-    feels_clamps: bool
-    """Whether clamped ends are in it."""
-    hump: float | None
-    """mu at which the error is largest on the lower branch; None where it only grows."""
+    clamped_terms: bool
+    """Whether clamped ends add to the error."""
 
 
 LAWS = {
@@ -292,8 +199,7 @@ LAWS = {
         s2=_segment_s2,
         cut_off_root=48.0,
         leading=lambda mu4, clamped, count: mu4 * (-1.0 / 1440.0 + clamped / (12.0 * count)),
-        feels_clamps=True,
-        hump=None,
+        clamped_terms=True,
     ),
     "fem": Law(
         parts="elements",
@@ -301,15 +207,14 @@ LAWS = {
         s2=_hermite_s2,
         cut_off_root=1680.0 / 17.0,
         leading=lambda mu4, clamped, count: mu4 / 1440.0,
-        feels_clamps=False,
-        hump=_HERMITE_HUMP,
+        clamped_terms=False,
     ),
 }
 """By the name of the model."""
 
 
 def law_of(model: str) -> Law:
-    """The law of a discrete model. Raises InputError for one of which none is known."""
+    """The law of a discrete model. Raises InputError for one without."""
     if model not in LAWS:
         raise InputError(f"model = {model!r}: no error law of it is known, choose one of {', '.join(LAWS)}")
     return LAWS[model]

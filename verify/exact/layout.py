@@ -128,7 +128,7 @@ def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) ->
     for xi, more in added:
         at = layout.station_at(xi)
         here = stations[at]
-        sums = {name: getattr(here, name) + getattr(more, name) for name in Station._fields[:6]}
+        sums = {name: getattr(here, name) + getattr(more, name) for name in Station._fields[:-1]}
         stations[at] = Station(**sums, support=_both(here.support, more.support))
     for end in (0, -1):
         supports[end] = _both(supports[end], stations[end].support)

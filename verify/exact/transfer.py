@@ -151,10 +151,12 @@ def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]]
     from scipy.linalg.lapack import get_lapack_funcs
 
     layout, left = division.layout, division.left
-    powers = [np.broadcast_to(np.eye(4), division.rates.shape)]
-    for _ in range(3):
-        powers.append(powers[-1] @ division.rates)
-    transfer = sum(_taylor(powers, division.sums[:, None, None], division.products[:, None, None]))
+    # e^A is the sum of c_j A^j, j < 4, with the solutions c_j of c'''' = S c'' - P c of unit derivatives at 0
+    shares: Any = sum(_taylor(np.eye(4)[:, :, None], division.sums, division.products))
+    power, transfer = np.eye(4), shares[0, :, None, None] * np.eye(4)
+    for share in shares[1:]:
+        power = power @ division.rates
+        transfer = transfer + share[:, None, None] * power
     held = np.array([division.station_ends[:, station] for station, _ in imposed], dtype=int).reshape(-1)
     over = division.over
     jumps = np.array(jumps, dtype=np.result_type(jumps, over, transfer, complex if imposed else float))

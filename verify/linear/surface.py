@@ -1,12 +1,12 @@
-"""What of a stepped beam stands under a point: its section, how far off its surface lies, how far that goes on.
+"""The section of a stepped beam at a position, and the range in which its surface has no step.
 
-Where two sections meet, the one to the right stands.
+At a step the section to the right counts.
 """
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
-import msgspec
 import numpy as np
 
 from verify.arrays import Array, Indices
@@ -18,69 +18,50 @@ LEFT_BEAM = "left the beam"
 
 
 def piece_at(beam: Beam, x: Numbers) -> Indices:
-    """Which of `beam.pieces` stands at x (metres), of the shape of x, from 0. Raises InputError off the beam."""
+    """Index of the piece of the beam at x (m), of the shape of x. Raises InputError off the beam."""
     inner = np.cumsum([piece.length for piece in beam.pieces[:-1]]) - SLACK * beam.length
     return np.asarray(np.searchsorted(inner, positions_on("x", x, beam.length), side="right"), dtype=np.int64)
 
 
-def standing_at(beam: Beam, x: float) -> Beam:
-    """The beam as if the section that stands at x (metres) were all of it; itself where that is its own.
-
-    Its `surface_distance` and `wave_constant` are those at x. Raises InputError off the beam.
-    """
-    return _standing(beam, int(piece_at(beam, x))) if beam.section else beam
+def section_at(beam: Beam, x: float) -> Beam:
+    """A uniform beam of the section at x (m), for its `surface_distance` and `wave_constant`. Raises InputError."""
+    return _uniform(beam, int(piece_at(beam, x))) if beam.section else beam
 
 
-@lru_cache(maxsize=4096)
-def _standing(beam: Beam, number: int) -> Beam:
-    piece, own = beam.pieces[number], beam.own
-    if msgspec.structs.replace(piece, length=own.length) == own:
-        return beam
-    return Beam(
-        length=beam.length,
-        supports=beam.supports,
-        poissons_ratio=beam.poissons_ratio,
-        loss_factor=beam.loss_factor,
-        tension=beam.tension,
-        foundation=beam.foundation,
-        bending_stiffness=piece.bending_stiffness,
-        mass_per_length=piece.mass_per_length,
-        extreme_fibre=piece.extreme_fibre,
-        shear_stiffness=piece.shear_stiffness,
-        rotary_inertia=piece.rotary_inertia,
-    )
+@lru_cache(maxsize=256)
+def _uniform(beam: Beam, number: int) -> Beam:
+    kept = ("length", "supports", "poissons_ratio", "loss_factor", "tension", "foundation")
+    taken = ("bending_stiffness", "mass_per_length", "extreme_fibre", "shear_stiffness", "rotary_inertia")
+    piece = beam.pieces[number]
+    return Beam(**{name: getattr(beam, name) for name in kept}, **{name: getattr(piece, name) for name in taken})
 
 
 def surface_distance_at(beam: Beam, x: Numbers) -> Array:
-    """From the neutral line to the surface of the section that stands at x (metres), metres, of the shape of x.
-
-    Raises InputError off the beam and where the distance is not known.
-    """
-    number = piece_at(beam, x)
-    found = [_standing(beam, i).surface_distance if i in number else np.nan for i in range(len(beam.pieces))]
-    return np.asarray(np.array(found)[number])
+    """From the neutral line to the surface at x (m), m, of the shape of x. Raises InputError where it is unknown."""
+    at, beams = piece_at(beam, x), [_uniform(beam, i) if beam.section else beam for i in range(len(beam.pieces))]
+    return np.asarray(np.array([one.surface_distance if i in at else np.nan for i, one in enumerate(beams)])[at])
 
 
-class Ground(msgspec.Struct, frozen=True):
-    """A stretch of a beam on which its surface has no step: all of it where its sections are as thick."""
+class ContactRange(NamedTuple):
+    """The range of a beam, m, in which its surface has no step."""
 
     start: float
-    """Metres, as is the next."""
     end: float
     ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
-    """What a slider has done that goes beyond its start, and beyond its end."""
+    """What a slider did that is beyond its start, and beyond its end."""
 
 
-def ground_at(beam: Beam, x: float) -> Ground:
-    """The stretch that x (metres) stands on. Raises InputError off the beam."""
-    first, last = _alike(beam, x)
+def contact_range(beam: Beam, x: float) -> ContactRange:
+    """The contact range about x (m). Raises InputError off the beam."""
+    distances, at = [piece.extreme_fibre for piece in beam.pieces], int(piece_at(beam, x))
     steps = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
-    left, right = float(steps[first]), float(steps[last + 1])
-    begins, stops = first > 0, last < len(beam.pieces) - 1
-    return Ground(
-        start=min(left, x) if begins else 0.0,
-        end=right if stops else beam.length,
-        ends=(_came_to(left) if begins else LEFT_BEAM, _came_to(right) if stops else LEFT_BEAM),
+    differs = [i for i, distance in enumerate(distances) if distance != distances[at]]
+    left = [float(steps[i + 1]) for i in differs if i < at]
+    right = [float(steps[i]) for i in differs if i > at]
+    return ContactRange(
+        start=min(left[-1], x) if left else 0.0,
+        end=right[0] if right else beam.length,
+        ends=(_came_to(left[-1]) if left else LEFT_BEAM, _came_to(right[0]) if right else LEFT_BEAM),
     )
 
 
@@ -88,23 +69,12 @@ def _came_to(x: float) -> str:
     return f"came to a step of beam.section at {written(x)} m"
 
 
-def _alike(beam: Beam, x: float) -> tuple[int, int]:
-    """The first and the last of the pieces about x, in a row, whose surface lies as far off as that at x."""
-    first = last = int(piece_at(beam, x))
-    distances = [piece.extreme_fibre for piece in beam.pieces]
-    while first > 0 and distances[first - 1] == distances[first]:
-        first -= 1
-    while last < len(distances) - 1 and distances[last + 1] == distances[last]:
-        last += 1
-    return first, last
-
-
-def check_one_ground(beam: Beam, positions: Sequence[float]) -> None:
-    """Raise InputError for sliders put at positions (metres) between which the surface of the beam has a step."""
-    first = _alike(beam, positions[0])
+def check_one_range(beam: Beam, positions: Sequence[float]) -> None:
+    """Raise InputError for sliders at positions (m) between which the surface of the beam has a step."""
+    first = contact_range(beam, positions[0])
     for x in positions:
-        if _alike(beam, x) != first:
+        if contact_range(beam, x).ends != first.ends:
             raise InputError(
-                f"slider.position = {written(x)} m stands on another beam.section than {written(positions[0])} m, and "
+                f"slider.position = {written(x)} m lies on another beam.section than {written(positions[0])} m, and "
                 "the surface has a step between: put all sliders on sections of one thickness"
             )

@@ -280,12 +280,18 @@ class StructuralSystem:
             return solve(loads.astype(complex))
         start = np.random.default_rng(0).standard_normal((self.n, 1))
         parts = solve(np.hstack([start, loads.real, loads.imag] if np.iscomplexobj(loads) else [start, loads]))
-        # one step of inverse iteration on the coupled system: omega_n^2 - omega^2 of the nearest resonance
-        first = self.mass @ parts[:, :1]
-        distance = float((parts[:, :1] * first).sum() / (first * solve(first)).sum())
+        self._check_resonance(solve, parts[:, :1], omega2)
+        return parts[:, 1 : k + 1] + 1j * parts[:, k + 1 :] if np.iscomplexobj(loads) else parts[:, 1:]
+
+    def _check_resonance(self, solve: Callable[[Any], Any], response: Any, omega2: float) -> None:
+        """Raise LinAlgError within `RESONANCE` of a resonance, by the response (n, 1) to a random load.
+
+        One step of inverse iteration on the coupled system: omega_n^2 - omega^2 of the nearest resonance.
+        """
+        first = self.mass @ response
+        distance = float((response * first).sum() / (first * solve(first)).sum())
         if abs(distance) <= 2.0 * RESONANCE * omega2:
             raise np.linalg.LinAlgError(distance)
-        return parts[:, 1 : k + 1] + 1j * parts[:, k + 1 :] if np.iscomplexobj(loads) else parts[:, 1:]
 
     def harmonic_sweep(
         self, loads: Any, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
@@ -327,9 +333,19 @@ class StructuralSystem:
         stiffness: Any = None,
         devices: Sequence[tuple[Any, complex]] = (),
     ) -> tuple[ComplexArray, ComplexArray]:
-        """The steady response (n,) where rows (p, n) of it are given, and the forces (p,) that hold them there."""
+        """The steady response (n,) where rows (p, n) of it are given, and the forces (p,) that hold them there.
+
+        Raises LinAlgError within `RESONANCE` of a resonance of the system so held where nothing is damped.
+        """
         m, d = len(self.stiffness), self.stiffness if stiffness is None else stiffness
         factor = self._factor(omega2, np.asarray(d, dtype=complex), devices, rows)
+
+        def solve(loads: Any) -> Any:
+            padded = [np.zeros((m, 1)), loads, np.zeros((rows.shape[0], 1))]
+            return factor.solve(np.concatenate(padded).astype(complex))[m : m + self.n].real
+
+        if not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices):
+            self._check_resonance(solve, solve(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
         solution = factor.solve(np.concatenate([np.zeros(m + self.n), displacements]).astype(complex))
         return solution[m : m + self.n], -solution[m + self.n :]
 

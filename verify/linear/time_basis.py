@@ -1,4 +1,4 @@
-"""What every model brings to time: its free modes, read along the beam, and how point forces load them."""
+"""The modal basis of a beam's motion in time: free modes, their shapes, and their loads by point forces."""
 
 from collections.abc import Callable, Sequence
 from math import comb, factorial
@@ -13,18 +13,17 @@ from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointForce
 
 Ratio: TypeAlias = float | Array
-"""Of damping: of all modes, or (n,), of each."""
+"""Damping ratio of all modes, or (n,), of each."""
 
 
 class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """All modes that one model moves in, of unit modal mass (SI)."""
+    """The free modes of one model, of unit modal mass (SI)."""
 
     model: str
-    """Its name."""
+    """Name of the model."""
     count: int | None
-    """Segments or elements; None for the exact beam, whose modes are cut off."""
+    """Segments or elements; None for the exact beam, whose modes are truncated."""
     beam: Beam
-    """The beam that moves in them."""
     omegas: Array
     """(n,), rad/s, undamped."""
     shapes: Callable[[Array, int], Array]
@@ -35,43 +34,43 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     edges: Array
     """(pieces + 1,), metres: between them the shapes are polynomials of `degree`."""
     degree: int
-    """Of those polynomials."""
+    """Degree of those polynomials."""
     method: str
-    """Where the modes come from."""
+    """Origin of the modes, for a summary."""
     tail: Callable[[Sequence[PointForce], float, Ratio], Callable[[Array, int], ComplexArray]] | None = None
-    """What modes beyond the last would add: (forces, frequency_hz, damping) -> (x, derivative) -> (len(x),) complex.
+    """Steady response of the truncated modes: (forces, frequency_hz, damping) -> (x, derivative) -> (len(x),) complex.
 
-    None where no mode is cut off.
+    None where no mode is truncated.
     """
     ratios: Array | None = None
-    """(n,), what the beam's loss factor comes to at each mode's own frequency: half of it times the share of what has
-    loss in the mode's stiffness. None where all has: half of it is every mode's."""
+    """(n,), damping ratio of each mode by the beam's loss factor: half of it times the share of the lossy stiffness in
+    the mode's. None where all stiffness is lossy: half of it for every mode."""
     turns: Callable[[], Array] | None = None
-    """() -> (n, bodies): how far the bodies of `beam.mass` turn; None where they turn as the shapes do there."""
+    """() -> (n, bodies): rotation of the bodies of `beam.mass`; None where it is the slope of the shapes there."""
 
     def body_turns(self) -> Array:
-        """How far the bodies of `beam.mass` turn, (n, bodies), in 1/(sqrt(kg) m)."""
+        """Rotation of the bodies of `beam.mass`, (n, bodies), 1/(sqrt(kg) m)."""
         if self.turns is not None:
             return self.turns()
         return np.asarray(self.shapes(np.array([mass.position for mass in self.beam.mass]), 1))
 
     def deflection(self, x: Numbers) -> Array:
-        """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg); a number is a row of one. Raises InputError off it."""
+        """Shapes at x (m), (n, *shape of x), 1/sqrt(kg). Raises InputError off the beam."""
         return reshape_like(self.shapes(positions_on("x", x, self.beam.length).ravel(), 0), x)
 
 
 def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:
-    """The damping ratio of every mode, one or (n,): `ratio` if given, else what the beam's loss factor comes to.
+    """The damping ratio of every mode, one or (n,): `ratio`, or that of the beam's loss factor for None.
 
-    Raises InputError where a mode would not swing.
+    Raises InputError for an overdamped mode.
     """
     if ratio is not None or basis.ratios is None:
         return 0.5 * basis.beam.loss_factor if ratio is None else ratio
     if basis.ratios.max() >= 1.0:
         worst = int(basis.ratios.argmax())
         raise InputError(
-            f"beam.loss_factor = {basis.beam.loss_factor!r} comes to a ratio of {basis.ratios[worst]:.3g} in mode "
-            f"{worst + 1}, which does not swing: give a smaller one or modal_damping"
+            f"beam.loss_factor = {basis.beam.loss_factor!r} is a ratio of {basis.ratios[worst]:.3g} in mode "
+            f"{worst + 1}, which is overdamped: give a smaller one or modal_damping"
         )
     return basis.ratios
 

@@ -8,9 +8,9 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
-from verify.linear.surface import standing_at
-from verify.linear.system import RESONANCE
+from verify.linear.surface import section_at
 from verify.linear.time_basis import Ratio, TimeBasis
+from verify.motion.forcing import RESONANCE
 from verify.motion.records import Law
 from verify.options import NormalChoice
 from verify.problem.beam import Beam, PointForce
@@ -110,13 +110,13 @@ def larger(friction_size: float | None, normal_size: float) -> float | None:
 
 def surface_speed(field: "HarmonicField", x: float) -> float:
     """First-order speed amplitude of the surface at x, (h/2) omega |w'|, m/s."""
-    return standing_at(field.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
+    return section_at(field.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
 def friction_speed(slider: Slider, beam: Beam, omega: float, turning: complex) -> float:
     """Surface speed due to full friction, m/s: a couple (h/2) mu N turns the beam, the surface lies h/2 off.
 
-    `beam` has the slider's own section (`standing_at`).
+    `beam` has the slider's own section (`section_at`).
     """
     return float(slider.mu * slider.load * beam.surface_distance**2 * omega * abs(turning))
 
@@ -186,7 +186,7 @@ def weighed_down(basis: TimeBasis, x: float, load: float) -> Array:
 
     The weight acts at the material point x + (h/2) w', square to the surface, so that it also turns it by (h/2) w'.
     """
-    half, here = standing_at(basis.beam, x).surface_distance, basis.shapes(np.array([x]), 1)[:, 0]
+    half, here = section_at(basis.beam, x).surface_distance, basis.shapes(np.array([x]), 1)[:, 0]
     still = np.zeros(len(basis.omegas))
     for _ in range(PASSES):
         at = np.array([min(max(x + half * float(still @ here), 0.0), basis.beam.length)])

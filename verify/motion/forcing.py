@@ -9,9 +9,11 @@ import numpy as np
 from verify.arrays import Array, BoolArray, ComplexArray
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import phasor
-from verify.linear.system import RESONANCE
 from verify.linear.time_basis import Ratio, TimeBasis
 from verify.problem.beam import PointForce
+
+RESONANCE = 1e-9
+"""Relative distance to an undamped resonance within which a drive is refused."""
 
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
@@ -170,8 +172,8 @@ def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) ->
     nearest = int(ratio.argmin())
     if ratio[nearest] < RESONANCE and not np.broadcast_to(damping, ratio.shape)[nearest]:
         raise ResonanceError(
-            f"frequency_hz = {frequency_hz!r} is the undamped resonance of mode {nearest + 1} of the {basis.model} model: "
-            "give the beam a loss_factor or choose another frequency"
+            f"frequency_hz = {frequency_hz!r} lies {ratio[nearest]:.1e} (relative) from the undamped resonance of mode "
+            f"{nearest + 1} of the {basis.model} model: give the beam a loss_factor or choose another frequency"
         )
 
 

@@ -11,12 +11,12 @@ from msgspec import Struct
 from verify.arrays import Array
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown
-from verify.linear.intervals import extremes
+from verify.linear.numerics import extremes
 from verify.linear.positions import Numbers, real_array, vector_on
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import check_free_phases, free_part, modal, state_of
 from verify.motion.result import EndState
-from verify.motion.surface import basis_of, modes_in_time
+from verify.motion.surface import basis_of
 from verify.problem.beam import Beam
 
 Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
@@ -156,7 +156,7 @@ def free_vibration(
     if samples > MOST_SAMPLES:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
     points = vector_on("at", at, beam.length)
-    basis = basis_of(beam, model, count, modes_in_time(model, modes))
+    basis = basis_of(beam, model, count, modes)
     damping = damping_in(basis, modal_damping)
     check_free_phases(basis, damping, duration)
     q, rates, unread = _start(basis, shape, amplitude, velocity)
@@ -192,7 +192,8 @@ def _mode(basis: TimeBasis, mode: int, amplitude: float | None) -> Array:
         raise InputError(f"shape = {mode}: the {basis.model} model has {len(basis.omegas)} modes, raise count or modes")
     if amplitude is None:
         raise InputError(f"amplitude is missing: give mode {mode} its largest deflection in metres")
-    check_number("amplitude", amplitude, "metres")
+    most = 1e100 * basis.beam.length
+    check_number("amplitude", amplitude, "metres", at_least=-most, at_most=most)
 
     def along(x: Array) -> Array:
         return np.asarray(basis.shapes(x, 0)[mode - 1])

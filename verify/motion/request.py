@@ -12,13 +12,13 @@ from verify.arrays import Array
 from verify.checks import check_kind, check_number, check_unmasked, check_whole
 from verify.errors import InputError, shown, written
 from verify.linear.mesh import part_counts
-from verify.linear.positions import Numbers, forces_on, frequencies_on, vector_on
+from verify.linear.positions import Numbers, forces_on, vector_on
 from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP, check_phase
 from verify.motion.result import EndState, Motion
-from verify.motion.surface import EXACT_MODES, Growth, check_line, cut, modes_in_time
-from verify.problem.beam import Beam, PointForce
+from verify.motion.surface import Growth, check_line, cut
+from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     frequency_hz: float
     model: str
     count: int | None
-    modes: int
+    modes: int | None
     start: str
     damping: float
     """Ratio of every mode: as given, else half the beam's loss factor."""
@@ -115,12 +115,12 @@ def requested(
     envelope: Envelope = (),
     before: "Motion | FreeVibration | None" = None,
     ledger: bool = False,
-    default_modes: int = EXACT_MODES,
+    default_modes: int | None = None,
 ) -> Request:
     """A checked request; arguments as those of `simulate`. Raises InputError."""
+    check_frequency("frequency_hz", frequency_hz, beam)
     if not forces_on(beam, forces):
         raise InputError("forces is empty: give at least one PointForce")
-    frequencies_on(beam, frequency_hz)
     check_number("duration", duration, "seconds", above=0)
     check_number("duration", duration, "seconds", at_least=SHORTEST)
     check_kind("ledger", ledger, bool)
@@ -137,7 +137,7 @@ def requested(
     if before is not None and slider is not None:
         _check_same_slider(before, slider)
     check_phase("the drive", frequency_hz, duration, before.end.time if before else 0.0)
-    kept = modes_in_time(model, modes, default_modes)
+    kept = default_modes if modes is None and not MODELS.named(model).sized else modes
     if modes is not None and start == "steady" and slider is None:
         raise InputError(f"modes = {modes!r}: a beam with start = 'steady' has a field and no modes, leave it out")
     return Request(

@@ -9,7 +9,7 @@ import numpy as np
 from verify.checks import check_kind
 from verify.linear.positions import Forces, Numbers, forces_on
 from verify.linear.registry import MODELS
-from verify.linear.surface import ground_at
+from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_free_phases, check_no_resonance
@@ -135,7 +135,7 @@ def simulate(
     stages, basis, coupling = _prepare(request)
     if slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
-    ground = ground_at(beam, put_on(request, slider)[0])
+    ground = contact_range(beam, put_on(request, slider)[0])
     laid = Laid(
         request=request,
         slider=slider,

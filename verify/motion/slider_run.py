@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, written
 from verify.linear.registry import MODELS
-from verify.linear.surface import standing_at
+from verify.linear.surface import section_at
 from verify.linear.time_basis import TimeBasis
 from verify.motion import records
 from verify.motion.contact import (
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:
     """Coupling of the slider where it starts. Raises InputError."""
     x, omega = put_on(request, slider)[0], request.omega
-    beam, slope = standing_at(request.beam, x), abs(stage.drive_shapes(np.array([x]), 1))[:2]
+    beam, slope = section_at(request.beam, x), abs(stage.drive_shapes(np.array([x]), 1))[:2]
     speed = beam.surface_distance * omega * float(np.hypot(*slope[:, 0]))
     lifted, turned = yielding_at(request, x, np.array([x]), basis)
     return coupling_of(slider, beam, request.frequency_hz, speed, complex(lifted[0]), complex(turned[0]))
@@ -197,7 +197,7 @@ def _ran(laid: Laid, stages: list[Stage], progress: Callable[[float], None]) -> 
     began = perf_counter()
     z = begin(request, stages[0], basis, coupling)
     start, speed, stuck = put_on(request, slider)
-    law = law_of(slider, standing_at(request.beam, start))
+    law = law_of(slider, section_at(request.beam, start))
     rider = Rider(fresh_motion(speed, stuck), law, coupling.two_way or None)
     samples = sum(stage.n_steps // stage.every for stage in stages)
     booked = request.accounts and request.start == "rest"

@@ -11,7 +11,7 @@ from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS
-from verify.linear.surface import LEFT_BEAM, Ground
+from verify.linear.surface import LEFT_BEAM, ContactRange
 from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 from verify.problem.beam import Beam, PointForce
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 Shapes = Callable[[Array, int], Array]
 ANALYTIC_DEGREE = 8
-EXACT_MODES = 400
-"""Modes of the exact beam in time, by default."""
 
 
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -123,19 +121,9 @@ def free_at(stage: Stage, z: Array, t: float) -> Array:
     return np.array([z[0] * real - z[1] * imaginary, z[0] * imaginary + z[1] * real])
 
 
-def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = "spline") -> TimeBasis:
+def basis_of(beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline") -> TimeBasis:
     """The free modes of a model by name. Raises InputError."""
-    built = MODELS.named(model).build(beam, count)
-    return built.time_basis(modes=None if built.sized else modes, line=line)
-
-
-def modes_in_time(model: str, modes: int | None, default: int = EXACT_MODES) -> int:
-    """Number of modes of a model without parts, `default` unless given. Raises InputError for one with parts."""
-    if modes is not None and MODELS.named(model).sized:
-        raise InputError(
-            f"modes = {modes!r} is for model = analytic: {model} has a mode for each unknown, leave it out"
-        )
-    return default if modes is None else modes
+    return MODELS.named(model).build(beam, count).time_basis(modes=modes, line=line)
 
 
 def check_line(model: str, start: str, line: str) -> None:
@@ -231,7 +219,7 @@ def _stage(
     )
 
 
-def on_ground(stage: Stage, ground: Ground) -> Stage:
+def on_ground(stage: Stage, ground: ContactRange) -> Stage:
     """The stage for a slider that stays on a stretch of the beam: its pieces end there."""
     if ground.ends == stage.ends:  # all of the beam
         return stage

@@ -64,7 +64,7 @@ def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -
     mode = nearest_mode(beam, drive_hz)
     if wavenumber_length(beam.supports, mode) >= pi * count:
         return None
-    if "clamped" in beam.supports and LAWS[model].feels_clamps:
+    if "clamped" in beam.supports and LAWS[model].clamped_terms:
         return expected_error(model, beam, mode, count)
     return leading_error(model, beam.supports, mode, count)
 

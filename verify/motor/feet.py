@@ -8,7 +8,7 @@ import numpy as np
 from verify.arrays import Array, Indices
 from verify.errors import InputError, written
 from verify.linear.positions import SLACK
-from verify.linear.surface import ground_at, standing_at
+from verify.linear.surface import contact_range, section_at
 from verify.linear.time_basis import TimeBasis
 from verify.motion.request import Request
 from verify.motion.surface import Stage, basis_of
@@ -128,7 +128,7 @@ def _points(slider: Slider, foot: Foot, beyond: float) -> Array:
 
 def check_on_beam(slider: Slider, beam: Beam, start: float) -> None:
     """Raise InputError for feet longer than the beam, or off it or over a step where the slider is put."""
-    ground, near = ground_at(beam, start), SLACK * beam.length
+    ground, near = contact_range(beam, start), SLACK * beam.length
     for foot in slider.feet:
         if foot.length > beam.length:
             raise InputError(
@@ -216,7 +216,7 @@ def weighed(basis: TimeBasis, placed: Sequence[Placed]) -> Array:
 def _places(basis: TimeBasis, placed: Sequence[Placed], feet: Feet) -> tuple[Array, Array]:
     """(places of all points on the beam, how far above its mid-line), (points,) each, metres."""
     p = feet.points
-    half = standing_at(basis.beam, placed[0].start).surface_distance
+    half = section_at(basis.beam, placed[0].start).surface_distance
     lever = half * p[:, records.FACE] * p[:, records.IMAGE]
     return placed[0].start + p[:, records.OFFSET], lever
 
@@ -254,7 +254,7 @@ def sag_of(request: Request, placed: Sequence[Placed]) -> float | None:
 
     None where they would push away, or turn away, a beam that nothing holds.
     """
-    beam, n = request.beam, min(request.modes, SAGGING)
+    beam, n = request.beam, min(request.modes or SAGGING, SAGGING)
     if beam.rigid_motions and any(_moves(one) for one in placed):
         return None
     if request.model == "analytic" and set(beam.added) - {"section", "mass"}:  # no exact modes of these
@@ -287,7 +287,7 @@ def contact_rate(one: Placed, basis: TimeBasis | None) -> float:
     ease = given[:, records.FOOT_INVERSE_MASS] + p[:, records.ARM] ** 2 * given[:, records.FOOT_INVERSE_INERTIA]
     along = np.full(len(ease), 1.0 / one.slider.mass)
     if basis is not None:
-        places, lever = one.start + p[:, records.OFFSET], standing_at(basis.beam, one.start).surface_distance
+        places, lever = one.start + p[:, records.OFFSET], section_at(basis.beam, one.start).surface_distance
         ease = ease + (basis.shapes(places, 0) ** 2).sum(axis=0)
         along = along + lever**2 * (basis.shapes(places, 1) ** 2).sum(axis=0)
     rates = [np.sqrt(p[:, records.GRIP] @ along)]
@@ -300,7 +300,7 @@ def contact_rate(one: Placed, basis: TimeBasis | None) -> float:
 def levels_of(stage: Stage, z: Array, beam: Beam, placed: Sequence[Placed], feet: Feet) -> Array:
     """The surface under every point at the start, (points,), metres: of the material X = x + face (h/2) w' there."""
     x, p = placed[0].start + feet.points[:, records.OFFSET], feet.points
-    half = standing_at(beam, placed[0].start).surface_distance
+    half = section_at(beam, placed[0].start).surface_distance
     lever, at = half * p[:, records.FACE] * p[:, records.IMAGE], x
     factors = np.concatenate([z[0], stage.drive_factors(np.zeros(1))[0]])
     for _ in range(PASSES):

@@ -14,7 +14,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.linear.surface import standing_at
+from verify.linear.surface import section_at
 from verify.motor.case import MotorCase, blocks
 from verify.motor.result import MotorRun, uninterrupted
 from verify.motor.settling import (
@@ -278,7 +278,7 @@ def not_converged(found: AtSpeed, periods: int) -> str:
 def crest_speed(case: MotorCase) -> float:
     """First-order speed amplitude of the surface where the slider is put, (h/2) omega |w'|, m/s. Raises InputError."""
     field, x = case.field(), case.slider.start_on(case.beam)
-    return standing_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
+    return section_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
 class Timed(Struct, frozen=True, eq=False, kw_only=True):

@@ -6,7 +6,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.linear.field import travelling_wavenumber
-from verify.linear.surface import standing_at
+from verify.linear.surface import section_at
 from verify.motion.result import Statistics
 from verify.motion.slider_run import reached
 from verify.motor import records
@@ -38,7 +38,7 @@ def outcome(b: int, setup: "Setup", riding: Riding, ended: Ended) -> MotorRun:
     times = np.concatenate([[setup.stages[0].origin], *stages])[: n + 1]
     log, feet, put, (events, notes) = riding.log, riding.feet, riding.put_down, _events(riding, b)
     own, own_feet = feet.owner == b, feet.keeper == b
-    beam = standing_at(request.beam, one.start)
+    beam = section_at(request.beam, one.start)
     k = travelling_wavenumber(beam, request.frequency_hz)
     assert riding.first is not None
     return MotorRun(

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
-from verify.linear.surface import check_one_ground, ground_at, standing_at
+from verify.linear.surface import check_one_range, contact_range, section_at
 from verify.linear.time_basis import TimeBasis
 from verify.motion.contact import FELT, Coupling, Margins, friction_speed
 from verify.motion.forcing import check_no_resonance
@@ -67,8 +67,8 @@ def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[Motor
     """Stages, modes, coupling and step of a run. Raises InputError."""
     for one in placed:
         check_on_beam(one.slider, request.beam, one.start)
-    check_one_ground(request.beam, [one.start for one in placed])
-    ground = ground_at(request.beam, placed[0].start)
+    check_one_range(request.beam, [one.start for one in placed])
+    ground = contact_range(request.beam, placed[0].start)
     origin, basis = before[0].time if before else 0.0, None
     if request.start == "rest":
         basis = basis_of(request.beam, request.model, request.count, request.modes, "spline")
@@ -132,7 +132,7 @@ def coupling_of(request: Request, placed: Sequence[Placed], stage: Stage, basis:
     Across by the normal force, along by full friction (None where the drive does not turn the surface); each under the
     slider where it is largest.
     """
-    beam, omega = standing_at(request.beam, placed[0].start), request.omega
+    beam, omega = section_at(request.beam, placed[0].start), request.omega
     places = np.array([one.start for one in placed])
     across, friction = np.zeros(len(placed)), np.zeros(len(placed))
     for one in placed:

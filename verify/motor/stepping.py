@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.linear.surface import LEFT_BEAM, standing_at
+from verify.linear.surface import LEFT_BEAM, section_at
 from verify.motion.records import Surface
 from verify.motion.request import Request
 from verify.motion.result import END
@@ -57,7 +57,7 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         """The same with what is at hand."""
         return cls(
             feet=feet,
-            rubbing=rubbing_of(placed[0].slider, standing_at(beam, placed[0].start)),
+            rubbing=rubbing_of(placed[0].slider, section_at(beam, placed[0].start)),
             log=log,
             before=np.full((len(feet.points), 2), -1.0),
             start=placed[0].start,

@@ -229,10 +229,9 @@ def link_mass(motions: Motions) -> Any:
         return squares(motions.middles, chain.masses) + squares(motions.rotations, chain.inertias)
     diagonal, off = joint_masses(chain.masses, chain.inertias, chain.lengths)
     off = np.append(off, 0.0)[first : first + free - 1]
-    # unknowns beyond the joints have no part in it
-    shape = (motions.n, motions.n)
+    # zero for the unknowns that are no positions
     values = [np.append(v, np.zeros(motions.n - free)) for v in (off, diagonal[first : first + free], off)]
-    return diags_array(values, offsets=[-1, 0, 1], shape=shape, format="csc")
+    return diags_array(values, offsets=[-1, 0, 1], shape=(motions.n, motions.n), format="csc")
 
 
 def plain_factors(chain: Chain) -> tuple[Any, Any, Any]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
+from verify.analytic_modes import ExactModel
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
@@ -29,8 +30,6 @@ E, RHO = 113e9, 4470.0
 
 def frequency(model: str, beam: Beam, mode: int, n: int = N, **settings: float) -> float:
     """Hz, of one mode of a model."""
-    from verify.analytic_modes import ExactModel
-
     if model == "analytic":
         return ExactModel(beam).frequency_hz(mode)
     return float(MODELS[model].build(beam, n, **settings).modes(mode).frequencies_hz[mode - 1])
@@ -142,8 +141,6 @@ _PRINTED = ("cosh - cos - sigma (sinh - sin)", printed_shape_error, (1, 5, 10, 1
 @check("exact-shape", "mode", (1, 2, 5, 50, 1000, 100_000), 4e-16, baseline=_PRINTED)
 def exact_shape(mode: float) -> float:
     """Exact cantilever shape of amplitude 2 at four places, over the amplitude."""
-    from verify.analytic_modes import ExactModel
-
     beam = replace(CANTILEVER, length=1.0)
     found = ExactModel(beam).mode_shape(int(mode), np.array(PLACES)) * np.sqrt(beam.mass_per_length)
     return worst(found - [shape_value(mode, place) for place in PLACES]) / 2.0

@@ -24,7 +24,7 @@ from verify.waves.window import Window, middle_half
 HUGE = 10.0
 """Amplitude ratio, or its inverse, from which the result says so."""
 PROPORTIONAL, NEARLY = 1e-4, 0.05
-"""Independence of the unit waves below which no ratio exists but for near fields, and below which the result says so."""
+"""Independence of the unit waves below which no ratio exists, but for near fields, and that the result mentions."""
 
 
 class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -95,7 +95,8 @@ def best_drive(
         phase = float(np.angle(drive[1] * np.conj(drive[0]), deg=True))
     plus, minus = (squared(wave[:, 0], wave[:, 1]) for wave in (wanted, unwanted))
     plus, minus = (FirstHarmonic(one.mean.sum(keepdims=True), one.first.sum(keepdims=True)) for one in (plus, minus))
-    equal = min(minus.stationary_ratio(plus)[0], key=lambda phase: float(minus.at(phase)[0] / plus.at(phase)[0]))
+    total = minus.less(-1.0, plus)
+    equal = min(minus.stationary_ratio(plus)[0], key=lambda phase: float(minus.at(phase)[0] / total.at(phase)[0]))
     turned = np.exp(1j * equal)
     return BestDrive(
         frequencies_hz=frequencies[known],

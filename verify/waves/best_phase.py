@@ -1,13 +1,9 @@
 """Phases between two drives of fixed amplitudes, in closed form, at many frequencies at once.
 
 Two drives a phase phi apart, z = e^{i phi}, make waves A+ = a + b z and A- = c + d z. Their squares are first
-harmonics of phi, |a + b z|^2 = |a|^2 + |b|^2 + 2 Re(conj(a) b z), so that three conditions have closed forms:
-
-- |A+|^2 = l^2 |A-|^2 or the reverse, a reflection at its limit l: the zeros of a first harmonic;
-- |A-|^2 / |A+|^2 stationary: N' D = N D' of two first harmonics is again one, as their products' second harmonics
-  cancel;
-- the crest speed, as D / sqrt(S) with D = |A+|^2 - |A-|^2 and S = |A+|^2 + |A-|^2, stationary: 2 D' S = D S', a second
-  harmonic, is a quartic in z.
+harmonics of phi, |a + b z|^2 = |a|^2 + |b|^2 + 2 Re(conj(a) b z). So is |A+|^2 - l^2 |A-|^2, zero at a reflection l;
+and N' D - N D' of two of them, zero where their ratio is stationary. The crest speed goes as D / sqrt(S) with
+D, S = |A+|^2 -+ |A-|^2, stationary where 2 D' S = D S', a quartic in z.
 """
 
 import msgspec
@@ -54,10 +50,7 @@ def squared(still: ComplexArray, turning: ComplexArray) -> FirstHarmonic:
 
 
 def stationary_speed(difference: FirstHarmonic, total: FirstHarmonic) -> Array:
-    """Phases among which D / sqrt(S) is stationary, (n, 4) rad.
-
-    2 D' S - D S' with D = d0 + Re(d1 z), D' = Re(i d1 z) is real on |z| = 1; times z^2 it is a quartic in z.
-    """
+    """Phases among which D / sqrt(S) is stationary, (n, 4) rad: roots of 2 D' S - D S' with D = d0 + Re(d1 z)."""
     d0, d1, s0, s1 = difference.mean, difference.first, total.mean, total.first
     second, first, middle = 0.25j * d1 * s1, 1j * (d1 * s0 - 0.5 * s1 * d0), 1.5 * (1j * d1 * np.conj(s1)).real
     rows = np.stack([second, first, middle, np.conj(first), np.conj(second)], axis=1)

@@ -50,8 +50,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def passive(self) -> tuple[Device, ...]:
         """The devices without their own forces."""
-        impeding = (d for d in self.devices if d.turning or d.stiffness or d.mass or d.dashpot)
-        return tuple(replace(device, amplitude=0.0) for device in impeding)
+        return tuple(replace(d, amplitude=0.0) for d in self.devices if d.turning or d.stiffness or d.mass or d.dashpot)
 
     def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
         """The field under other forces (displacements) at another frequency. Raises InputError."""
@@ -65,11 +64,10 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises NoFigureError at a frequency whose waves do not run along its parts.
         """
-        beam, theory = self.beam, self.model.theory
-        if beam.uniform:
+        if self.beam.section:
+            return wavenumber(self.beam, frequency_hz, self.model.theory)
+        if self.beam.uniform:
             self.model.check_propagates(frequency_hz)
-        if theory != "euler-bernoulli" or beam.tension or beam.foundation or beam.section:
-            return wavenumber(beam, frequency_hz, theory)
         return self.model.wavenumber(frequency_hz)
 
 

@@ -23,19 +23,13 @@ def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
     """
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
     t, values = real_array("times", times, "seconds"), real_array("values", values, "metres")
-    if t.ndim != 1 or not len(t) or values.ndim != 2 or len(values) != len(t) or not values.shape[1]:
-        raise InputError(
-            f"times have the shape {t.shape} and values {values.shape}: give (n_times,) and (n_times, n_points), "
-            "neither empty"
-        )
+    if t.ndim != 1 or values.ndim != 2 or len(values) != len(t) or not values.size:
+        raise InputError(f"times, {t.shape}, and values, {values.shape}: give (n_times,) and (n_times, n_points)")
     if not (np.isfinite(t).all() and np.isfinite(values).all() and (np.diff(t) > 0).all()):
         raise InputError("times and values have to be finite and times ascending: leave out what is not")
     step = float(t[-1] - t[0]) / max(len(t) - 1, 1)
-    if len(t) > 1 and step * frequency_hz > 0.5 * (1.0 - 1e-9):
-        raise InputError(
-            f"times have {1.0 / (step * frequency_hz):.4g} samples in each period of frequency_hz = {frequency_hz!r}: "
-            "give more than two"
-        )
+    if step * frequency_hz > 0.5 * (1.0 - 1e-9):
+        raise InputError(f"times have {1.0 / (step * frequency_hz):.4g} samples in each period: give more than two")
     # the last sample stands for a step of its own, so that n samples of a period cover it
     periods = int(np.floor((t[-1] - t[0] + step) * frequency_hz * (1.0 + 1e-9)))
     used = t > t[-1] - periods / frequency_hz + 0.5 * step * (1.0 - 1e-6)

@@ -16,8 +16,6 @@ Without losses Z_m = conj(Z_b) and |Gamma_held| = 1; with a loss factor k is com
 most power, still reflects.
 """
 
-from math import inf, sqrt
-
 import msgspec
 import numpy as np
 
@@ -52,12 +50,11 @@ def ending(
     support: str = "pinned",
     *,
     turning: bool = False,
-    position: float | None = None,
+    name: str = "",
 ) -> Ending:
     """A half-infinite beam at a device at `distance` (m) from an end on a support, against rotation with `turning`.
 
-    Raises InputError at a support without motion, naming `position` (m) where that is another number, and for a beam
-    that is not uniform.
+    Raises InputError at a support without motion, with the `name` of the position, and for a beam that is not uniform.
     """
     check_number("position", distance, "metres from the end", at_least=0)
     if not beam.uniform:
@@ -76,10 +73,8 @@ def ending(
     back = returned(-np.array([1j, 1.0]) * (-_WAYS * k if turning else 1.0))
     motion = (1.0 - 1j) * k**2 + back @ (-_WAYS * k) if turning else back.sum() - (1.0 + 1j)
     if motion == 0.0:
-        raise InputError(
-            f"position = {distance if position is None else position!r} m stands on a {support} support, where a "
-            "device does nothing: move it"
-        )
+        name = name or f"position = {distance!r} m"
+        raise InputError(f"{name} stands on a {support} support, where a device does nothing: move it")
     own = complex(unit / (1j * motion))
     back = returned(np.array([1.0, 0.0]))
     s = k * (1j - back @ _WAYS) if turning else 1.0 + back.sum()
@@ -92,25 +87,6 @@ def reflection(impedance: complex, end: Ending) -> float:
     return float(abs(end.held) * abs(impedance - end.matched) / abs(impedance + end.own))
 
 
-def best_dashpot(end: Ending) -> tuple[float, float]:
-    """(resistance, |Gamma|) of the best dashpot alone; kg/s, N m s against rotation.
-
-    Without losses |Z_b| and tan(|arg Z_b| / 2): over real R, |R - Z_m|^2 / |R + Z_b|^2 is least where
-    Re(Z_m + Z_b) R^2 + (|Z_b|^2 - |Z_m|^2) R = Re(Z_m) |Z_b|^2 + Re(Z_b) |Z_m|^2 crosses zero upwards, or at no
-    dashpot, or, with losses, at infinity: a rigid device.
-    """
-    matched, own = end.matched, end.own
-    a, b = (matched + own).real, abs(own) ** 2 - abs(matched) ** 2
-    c = matched.real * abs(own) ** 2 + own.real * abs(matched) ** 2
-    root, best = sqrt(max(b * b + 4.0 * a * c, 0.0)), 0.0
-    if b >= 0.0 and b + root > 0.0:
-        best = max(2.0 * c / (b + root), 0.0)
-    elif a > 0.0:
-        best = max((root - b) / (2.0 * a), 0.0)
-    candidates = [(one, reflection(complex(one), end)) for one in (best, 0.0)]
-    return min(*candidates, (inf, abs(end.held)), key=lambda one: one[1])
-
-
 def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning: bool = False) -> Device:
     """The device at a position (m from the left end) that absorbs the wave from the beam's longer side.
 
@@ -121,5 +97,6 @@ def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning:
     check_number("position", position, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
     right = position > 0.5 * beam.length
     distance, support = max(beam.length - position, 0.0) if right else position, beam.supports[right]
-    end = ending(beam, frequency_hz, distance, support, turning=turning, position=position)
+    name = f"position = {position!r} m"
+    end = ending(beam, frequency_hz, distance, support, turning=turning, name=name)
     return of_impedance(position, end.matched, 2.0 * np.pi * frequency_hz, turning=turning)

@@ -22,7 +22,7 @@ _ZOOM, _SHARP = 17, 1e-12
 
 
 class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):
-    """A drive of two actuators, and how sensitive its wave is."""
+    """A drive of two actuators."""
 
     frequency_hz: float
     phase_deg: float
@@ -30,11 +30,7 @@ class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):
     reflection: float
     crest_speed: float
     """m/s, under the forces of the case."""
-    per_hertz: float
-    """Mean change of the reflection over half a hertz to both sides, in size, 1/Hz."""
-    per_degree: float
-    """The same over half a degree, 1/degree."""
-    at_edge: bool = False
+    at_edge: bool
     """Whether the crest speed still grows at the edge of the search in frequency."""
 
 
@@ -67,23 +63,6 @@ class OperatingMap(msgspec.Struct, frozen=True):
         guide, omega = Waveguide(self.case.beam, self.case.model.theory), 2.0 * np.pi * waves.frequencies_hz
         return reflections(forward, backward), guide.crest_speed(omega[:, None], waves.k[:, None], forward, backward)
 
-    def point(self, frequency_hz: float, phase_deg: float, at_edge: bool = False) -> OperatingPoint:
-        """A point with its sensitivities. Raises NoFigureError where it or a neighbour has no wave."""
-        hertz, degrees, sides = min(0.5, 0.5 * frequency_hz), 0.5, np.array([0.0, 1.0, -1.0])
-        waves = self._waves(frequency_hz + hertz * sides)
-        if waves.missing:
-            raise waves.missing[0]
-        gamma, speed = self._figures(waves, np.deg2rad(phase_deg + degrees * sides))
-        return OperatingPoint(
-            frequency_hz=frequency_hz,
-            phase_deg=phase_deg,
-            reflection=float(gamma[0, 0]),
-            crest_speed=float(speed[0, 0]),
-            per_hertz=float(abs(gamma[1:, 0] - gamma[0, 0]).mean() / hertz),
-            per_degree=float(abs(gamma[0, 1:] - gamma[0, 0]).mean() / degrees),
-            at_edge=at_edge,
-        )
-
     def fastest(self, frequencies_hz: Array, sign: float, limit: float) -> OperatingPoint:
         """The largest crest speed with a reflection up to `limit`, to 1e-12 of the frequency.
 
@@ -108,9 +87,14 @@ class OperatingMap(msgspec.Struct, frozen=True):
             if high - low <= _SHARP * high:
                 break
             at = np.linspace(low, high, _ZOOM)
-        hertz = float(at[best])
-        edge = min(hertz - frequencies_hz[0], frequencies_hz[-1] - hertz) <= 0.01 * np.diff(frequencies_hz)[0]
-        return self.point(hertz, float(np.rad2deg(phases[best, chosen])), bool(edge))
+        hertz, first, last = float(at[best]), frequencies_hz[0], frequencies_hz[-1]
+        return OperatingPoint(
+            frequency_hz=hertz,
+            phase_deg=float(np.rad2deg(phases[best, chosen])),
+            reflection=float(gamma[best, chosen]),
+            crest_speed=float(speed[best, chosen]),
+            at_edge=bool(min(hertz - first, last - hertz) <= 0.01 * (frequencies_hz[1] - first)),
+        )
 
 
 def check_two(case: DrivenCase) -> None:

@@ -12,7 +12,7 @@ from verify.waves.two_waves import ROUNDING, amplitudes_of, window_rule, zero_fi
 from verify.waves.window import Window, check_span, check_waves
 
 
-class UnitWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class UnitWaves(msgspec.Struct, frozen=True, eq=False):
     """The two waves in a window per unit force (displacement) of each of n_a actuators, at n frequencies.
 
     NaN at a frequency without them: an undamped resonance, a cut-off, a window that is too short.
@@ -68,14 +68,8 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
             missing.append(error)
     waves, known = np.full((len(k), 2, len(positions)), np.nan, dtype=complex), np.isfinite(k)
     waves[known] = amplitudes_of(rule, k[known], responses[known], 0.5 * sum(window))
-    return UnitWaves(
-        case=case,
-        frequencies_hz=frequencies_hz,
-        k=k,
-        forward=waves[:, 0],
-        backward=waves[:, 1],
-        missing=tuple(missing),
-    )
+    forward, backward = waves[:, 0], waves[:, 1]
+    return UnitWaves(case, frequencies_hz, k, forward, backward, tuple(missing))
 
 
 def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[float], x: Array) -> ComplexArray:

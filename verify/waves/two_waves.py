@@ -10,7 +10,7 @@ from verify.arrays import Array, ComplexArray
 from verify.checks import check_kind
 from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response
-from verify.linear.intervals import Rule, rule_over
+from verify.linear.numerics import Rule, gauss_rule
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
 STANDING = 1e-12
@@ -78,7 +78,7 @@ def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
 def window_rule(window: Window, k: float) -> Rule:
     """Gauss points and weights of a window: the fit is then in the mean square over all of it."""
     start, end = map(float, window)
-    return rule_over((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
+    return gauss_rule((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
 
 
 def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle: float) -> ComplexArray:
@@ -119,13 +119,8 @@ def fit_waves(x: Array, deflection: ComplexArray, k: complex) -> TwoWaves:
     deflection, and a wavenumber that does not propagate or of which x spans less than half a wavelength.
     """
     at, values = np.asarray(x, dtype=float), np.asarray(deflection, dtype=complex)
-    if at.ndim != 1 or len(at) < 2 or values.shape != at.shape:
-        raise InputError(
-            f"x and deflection have the shapes {at.shape} and {values.shape}: give two or more numbers in a row, as "
-            "many of each"
-        )
-    if not (np.isfinite(at).all() and np.isfinite(values).all()):
-        raise InputError("x and deflection have to be finite: leave out what is not")
+    if at.ndim != 1 or len(at) < 2 or values.shape != at.shape or not np.isfinite([at, values]).all():
+        raise InputError(f"x, {at.shape}, and deflection, {values.shape}: give two or more finite numbers of each")
     if not values.any():
         raise zero_field()
     return _fit(at, values, check_wavenumber("k", k, (float(at.min()), float(at.max()))), np.ones(len(at)))
@@ -160,12 +155,11 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weight
 
 
 class Minimum(msgspec.Struct, frozen=True):
-    """Where a figure is least in an interval."""
+    """Where a figure is least in an interval; `at_edge` where it still falls at an end, which is then no minimum."""
 
     x: float
     value: float
     at_edge: bool
-    """Whether it still falls at an end of the interval, which is then no minimum."""
 
 
 def minimum_near(figure: Callable[[Array], Array], grid: Array, tolerance: float) -> Minimum:

@@ -35,10 +35,10 @@ def check_span(
     couples: Sequence[float] = (),
     theory: str = "euler-bernoulli",
 ) -> None:
-    """Raise for a window off the span between two neighbouring forces, or with a device, an attachment or a step in it.
+    """Raise for a window not between two neighbouring forces, or with a device, an attachment or a step in it.
 
-    `positions` of forces and `couples` of devices against rotation, m. InputError for what is no window of the beam,
-    WindowError for one that does not suit it.
+    `positions` of forces, `couples` of devices against rotation, m. InputError for no window of the beam, else
+    WindowError.
     """
     try:
         start, end = (float(end) for end in window)
@@ -77,28 +77,25 @@ def check_clear(beam: Beam, span: Window, name: str) -> None:
 
 def check_waves(beam: Beam, frequency_hz: float, window: Window, theory: str = "euler-bernoulli") -> None:
     """Raise WindowError below cut-on, where waves of two lengths run, and for too few or many half wavelengths."""
-    omega, own, (start, end) = 2.0 * np.pi * frequency_hz, beam.own, window
+    own, (start, end) = beam.own, window
     if theory == "timoshenko" and own.shear_stiffness is not None and own.rotary_inertia:
         second = float(np.sqrt(own.shear_stiffness / own.rotary_inertia) / (2.0 * np.pi))
         if frequency_hz >= second:
             raise WindowError(
                 f"frequency_hz = {frequency_hz:g}: from {second:.6g} Hz on by theory = 'timoshenko' a second pair of "
-                "waves runs along the beam: lower it"
+                "waves runs along the beam, lower it"
             )
-    if beam.foundation and beam.mass_per_length * omega**2 <= beam.foundation:
-        least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
+    least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
+    if beam.foundation and frequency_hz <= least:
         raise WindowError(
             f"frequency_hz = {frequency_hz:g}: no wave runs below {least:.6g} Hz on beam.foundation = "
             f"{beam.foundation:g} N/m^2, raise it or soften the ground"
         )
-    half = float(np.pi / wavenumber(beam, frequency_hz, theory).real)
+    half, name = float(np.pi / wavenumber(beam, frequency_hz, theory).real), f"window = {as_written(window)}"
     if end - start < half:
-        raise WindowError(f"window = {as_written(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
+        raise WindowError(f"{name} is shorter than half a wavelength ({half:.4g} m): widen it")
     if end - start > MOST_HALVES * half:
-        raise WindowError(
-            f"window = {as_written(window)} holds more than {MOST_HALVES} half wavelengths of {half:.4g} m: narrow it "
-            "or lower frequency_hz"
-        )
+        raise WindowError(f"{name} holds more than {MOST_HALVES} half wavelengths of {half:.4g} m: narrow it")
 
 
 def check_wavenumber(name: str, value: object, span: Window) -> complex:
@@ -110,13 +107,11 @@ def check_wavenumber(name: str, value: object, span: Window) -> complex:
     number = isinstance(k, int | float | complex) and not isinstance(k, bool) and np.isfinite(k)
     if not number or not 0.0 <= -k.imag <= k.real or not k.real:
         raise InputError(
-            f"{name} = {shown(value)}: give a finite k of e^{{-ikx}} in 1/m, its real part above 0, its imaginary "
-            "part at most 0 and no larger than that"
+            f"{name} = {shown(value)}: give a finite k of e^{{-ikx}} in 1/m, Re k > 0 and -Re k <= Im k <= 0"
         )
     halves = (span[1] - span[0]) * k.real / float(np.pi)
     if not 1.0 - 1e-9 <= halves <= MOST_HALVES:
         raise InputError(
-            f"{name} = {shown(value)} 1/m: {as_written(span)} m hold {halves:.3g} half waves of it, give one of which "
-            f"they hold 1 to {MOST_HALVES}"
+            f"{name} = {shown(value)} 1/m: {as_written(span)} m hold {halves:.3g} half waves, give 1 to 10000"
         )
     return complex(k)

@@ -1,0 +1,62 @@
+"""Means and extremes of a function over an interval, independent of the grid."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from verify.arrays import Array
+
+
+class Rule(NamedTuple):
+    """Points of an interval and their weights, of sum 1."""
+
+    x: Array
+    weights: Array
+
+
+def gauss_rule(interval: tuple[float, float], parts: int) -> Rule:
+    """12-point Gauss quadrature of an interval in equal parts, exact to rounding where each has at most a period."""
+    points, weights = np.polynomial.legendre.leggauss(12)
+    edges = np.linspace(*interval, parts + 1)
+    x = edges[:-1, None] + np.diff(edges)[:, None] * 0.5 * (points + 1.0)
+    return Rule(x.ravel(), np.tile(0.5 * weights / parts, parts))
+
+
+def mean_over(function: Callable[[Array], Array], interval: tuple[float, float], parts: int) -> float:
+    """The mean over an interval, to 1e-9 of the largest value if smooth over eighths of the parts."""
+    before = mean = float("nan")
+    for doubling in range(4):
+        x, weights = gauss_rule(interval, parts * 2**doubling)
+        values = function(x)
+        before, mean = mean, float(weights @ values)
+        if abs(mean - before) <= 1e-9 * float(abs(values).max()):
+            break
+    return mean
+
+
+def whole_halves(window: tuple[float, float], k: float) -> tuple[tuple[float, float], int]:
+    """(middle part of a window that is a whole number of half wavelengths, the number); all of it if shorter."""
+    number = int((window[1] - window[0]) * k / np.pi * (1.0 + 1e-12))
+    if number < 1:
+        return window, 1
+    middle, half = 0.5 * (window[0] + window[1]), 0.5 * number * np.pi / k
+    return (max(middle - half, window[0]), min(middle + half, window[1])), number
+
+
+def extremes(function: Callable[[Array], Array], x: Array) -> tuple[float, float]:
+    """(least, largest) of a smooth function over the span of x, fine enough to separate its 64 highest hills."""
+    values = function(x)
+    found = [values]
+    for sign in (1.0, -1.0):
+        padded = np.concatenate([[-np.inf], sign * values, [-np.inf]])
+        tops = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:]))
+        tops = tops[np.argsort(sign * values[tops])[-64:]]
+        low, high = x[np.maximum(tops - 1, 0)], x[np.minimum(tops + 1, len(x) - 1)]
+        for _ in range(5):  # eight times closer each
+            at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 17)
+            best, rows = (sign * function(at.ravel())).reshape(at.shape).argmax(axis=1), np.arange(len(tops))
+            low, high = at[rows, np.maximum(best - 1, 0)], at[rows, np.minimum(best + 1, 16)]
+        found.append(function(0.5 * (low + high)))
+    both = np.concatenate(found)
+    return float(both.min()), float(both.max())
