@@ -197,7 +197,7 @@ VERBS = [
     (figure("mode.frequency", model="segment", mode=3), r"count is missing"),
     (figure("mode.frequency", model="analytic"), r"mode is missing"),
     (figure("mode.frequency", model="analytic", mode=3, colour=1), r"colour is not a known key"),
-    (figure("mode.frequency", model="fem", mode=9, count=3), r"n_modes = 9: .* raise count"),
+    (figure("mode.frequency", model="fem", mode=9, count=3), r"mode = 9: .* raise count"),
     (figure("mode.order", model="fem", mode=3, counts=[10, 20]), r"counts = \[10, 20\]: .* three or more"),
     (figure("wave.deflection", x=1.0), r"x = 1\.0 lies off the beam"),
     (figure("wave.reflection", frequency_hz=-3.0), r"frequency_hz = -3\.0"),
