@@ -161,7 +161,7 @@ VERBS = [
     (lambda: HermiteModel(STRIP, 2.5).modes(3), r"n_elements = 2\.5: give a whole number of at least 1"),
     (lambda: HermiteModel(STRIP, 20, theory="raleigh").modes(3), r"theory = 'raleigh' is not known: did you mean"),
     (lambda: ExactModel(STRIP).modes(True), r"n_modes = True: give a whole number of at least 1"),
-    (lambda: ExactModel(STRIP).frequency_hz(0), r"mode = 0: modes are numbered from 1"),
+    (lambda: ExactModel(STRIP).frequency_hz(0), r"mode = 0: give a whole number of at least 1"),
     (lambda: ExactModel(STRIP).harmonic([], HERTZ), r"forces"),
     (lambda: ExactModel(STRIP).harmonic([PointForce(position=0.8)], HERTZ), r"force\.position = 0\.8"),
     (lambda: HermiteModel(STRIP, 20).harmonic(FORCE, 0.0), r"frequency_hz = 0\.0: give a finite number above 0"),
