@@ -254,13 +254,14 @@ def sag_of(request: Request, placed: Sequence[Placed]) -> float | None:
 
     None where they would push away, or turn away, a beam that nothing holds.
     """
-    beam, n = request.beam, min(request.modes or SAGGING, SAGGING)
+    beam = request.beam
     if beam.rigid_motions and any(_moves(one) for one in placed):
         return None
     if request.model == "analytic" and set(beam.added) - {"section", "mass"}:  # no exact modes of these
-        basis = basis_of(beam, "fem", 2 * SAGGING, n, "spline")
+        basis = basis_of(beam, "fem", 2 * SAGGING, None)
     else:
-        basis = basis_of(beam, request.model, request.count, n, "spline")
+        modes = None if request.modes is None else min(request.modes, SAGGING)
+        basis = basis_of(beam, request.model, request.count, modes)
     places = np.concatenate([one.start + feet_of((one,)).points[:, records.OFFSET] for one in placed])
     still = weighed(basis, placed)
     return float(np.abs(still @ basis.shapes(places, 0)).max())
