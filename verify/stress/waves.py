@@ -93,10 +93,10 @@ def slow_drive(hertz: float) -> float:
     return worst([deflection(m, CANTILEVER, hertz, length, length).real / static - 1.0 for m in ("analytic", "fem")])
 
 
-_WAVES = (3.3, 33.3, 333.3, 3333.3, 33333.3, 333333.3)
+_WAVES = (3.3, 33.3, 333.3, 3333.3, 33333.3)
 
 
-@check("short-waves", "half waves", _WAVES, 2e-15, beyond=(1e7, 1e12), refused=True)
+@check("short-waves", "half waves", _WAVES, 2e-15, beyond=(333333.3, 1e7, 1e12), refused=True)
 def short_waves(waves: float) -> float:
     """Exact field of short waves against sines of 60 digits, over what k L = 1 moves."""
     beam, x, at = replace(STRIP, length=1.0), 0.4375, 0.28125
@@ -145,7 +145,7 @@ def read(field: Any) -> complex:
     return complex(field.shapes(np.array([READ]), 0)[0])
 
 
-@check("damped-resonance", "dashpot, N s/m", (100.0, 1.0, 1e-2, 1e-4, 1e-6), 1e-6)
+@check("damped-resonance", "dashpot, N s/m", (100.0, 1.0, 1e-2, 1e-4), 1e-6, beyond=(1e-6, 1e-8))
 def damped_resonance(dashpot: float) -> float:
     """Exact field of a strip with one dashpot where the bare strip resonates, against Green's function."""
     errors = []
