@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.exact.modes import exact_frequency_hz
+from verify.analytic_modes import ExactModel
 
 from verify.bench import Method, Question, Row, measure, result, time_at
 from verify.bench.methods import BEAM, Problem, questions
@@ -107,7 +107,7 @@ def test_walls_are_methods_on_a_clamped_beam():
     assert 1.95 < orders["segments, welded wall"] < 2.05
     assert 2.9 < orders["segments, third-order wall"] < 3.1
     assert 3.9 < orders["elements"] < 4.1
-    assert exact_frequency_hz(beam, 2) == pytest.approx(20.47, rel=0.01)
+    assert ExactModel(beam).frequency_hz(2) == pytest.approx(20.47, rel=0.01)
 
 
 @pytest.mark.parametrize(

@@ -179,12 +179,11 @@ class StructuralSystem:
             ) from None
         strains, vectors = solve(self.mass @ vectors)
         strains = self.strain(vectors) if self.n < LONG else strains
-        energies = strains.T @ (self.stiffness[:, None] * strains)
-        if (
-            slow := np.flatnonzero(energies.diagonal() < 1e-3 * bending * _sums(vectors * (self.mass @ vectors)))
-        ).size > 1:
+        energies, masses = strains.T @ (self.stiffness[:, None] * strains), vectors.T @ (self.mass @ vectors)
+        slow = np.flatnonzero(energies.diagonal() < 1e-3 * bending * masses.diagonal())
+        if slow.size > 1:
             # two motions on soft supports, which the shift makes one eigenvalue: Rayleigh-Ritz in their plane
-            plane = eigh(energies[np.ix_(slow, slow)], vectors[:, slow].T @ (self.mass @ vectors[:, slow]))[1]
+            plane = eigh(energies[np.ix_(slow, slow)], masses[np.ix_(slow, slow)])[1]
             strains[:, slow], vectors[:, slow] = strains[:, slow] @ plane, vectors[:, slow] @ plane
         return strains, vectors
 

@@ -123,7 +123,7 @@ def free_at(stage: Stage, z: Array, t: float) -> Array:
 
 def basis_of(beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline") -> TimeBasis:
     """The free modes of a model by name. Raises InputError."""
-    return MODELS.named(model).build(beam, count).time_basis(modes=None if count else modes, line=line)
+    return MODELS.named(model).build(beam, count).time_basis(modes=modes, line=line)
 
 
 def check_line(model: str, start: str, line: str) -> None:
