@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from verify.analytic_modes import ExactModel
 
+from verify.analytic_modes import ExactModel
 from verify.bench import Method, Question, Row, measure, result, time_at
 from verify.bench.methods import BEAM, Problem, questions
 from verify.cli import status_of
