@@ -4,9 +4,9 @@ scikit-fem makes the mesh and the degrees of freedom and assembles stiffness and
 eigenvalues to rounding like N^4; so the stiffness d of every element strain (mean curvature, its gradient, two shear
 strains) is read off its entries, and K = B^T diag(d) B stays factored, B being differences of differences.
 
-Elements end at the steps of the beam and at masses and springs: a mass makes the shear force jump and a rotary inertia
-the moment, and a cubic bends linearly. With the jump inside an element frequencies are of order 3 and 1, with a node
-there of order 4. Lengths are in mean element lengths L/N: nodes of equal elements are whole numbers, exact at any N.
+Elements end at the steps of the beam and at masses and springs: a mass makes the shear force jump, a rotary inertia the
+moment, and a cubic, whose curvature is linear, cannot represent a jump inside the element. There frequencies are of
+order 3 (mass) and 1 (rotary inertia), with a node there of order 4. Lengths are in mean element lengths L/N: nodes of equal elements are whole numbers, exact at any N.
 """
 
 from collections.abc import Callable
@@ -28,7 +28,7 @@ from verify.problem.beam import Beam
 from verify.problem.supports import HOLDS
 
 RIGID = 1e14
-"""Times the stiffness of an element: what is stiffer moves no frequency by 1e-13, and its strain is rounding."""
+"""Cap on stiffness, relative to that of an element: above it frequencies change by less than 1e-13."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class HermiteModel(DiscreteModel):
 
     `grading` is the length of a stretch's last element over its first. Theories `euler-bernoulli`, `rayleigh` (rotary
     inertia) and `timoshenko` (shear as well). Raises InputError for a size that the beam cannot be divided into, or
-    that exceeds the memory, and for what a theory lacks.
+    that exceeds the memory, and for section properties that the theory needs and the beam lacks.
     """
 
     beam: Beam
@@ -88,7 +88,7 @@ class HermiteModel(DiscreteModel):
         return divide(self.beam, self.n_elements, self.grading, pieces if len(pieces) > len(self.beam.pieces) else ())
 
     def of_elements(self, field: str, scale: float) -> Array:
-        """A figure of each element's piece of the beam over `scale`, (N,)."""
+        """A property of each element's section over `scale`, (N,)."""
         ends = np.cumsum([piece.length for piece in self.beam.pieces])[:-1] / self.unit
         figures = np.array([getattr(piece, field) for piece in self.beam.pieces]) / scale
         return np.asarray(figures[ends.searchsorted(self.mesh.nodes[:-1] + 0.5 * self.mesh.lengths)])
@@ -139,7 +139,7 @@ class HermiteModel(DiscreteModel):
         places, values = zip(*(entry for strain in strains for entry in strain), strict=True)
         at = np.concatenate([i * n + e for i, strain in enumerate(strains) for _ in strain])
         rows = [csr_array((np.concatenate(values), (at, np.concatenate(places))), shape=(len(strains) * n, n + size))]
-        for row, value in self._ground_strains():
+        for row, value in self._foundation_and_spring_strains():
             rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + size)))
             stiffness.append(value)
         return StructuralSystem(
@@ -170,7 +170,7 @@ class HermiteModel(DiscreteModel):
             own += [inside[::2], inside[1::2]]
         return np.concatenate(own)
 
-    def _ground_strains(self) -> list[tuple[Any, Array]]:
+    def _foundation_and_spring_strains(self) -> list[tuple[Any, Array]]:
         """(rows over all values, stiffness of each) of foundation and springs.
 
         A foundation is read at four points of Gauss in each element, which integrate the square of a cubic.
@@ -221,7 +221,7 @@ class HermiteModel(DiscreteModel):
         return shapes[self.free]
 
     def _lower_bound(self) -> float:
-        """Of all eigenvalues, by the foundation; 0 where masses or compression may lower them again."""
+        """Lower bound k_f / (rho A) of omega^2 by the foundation; 0 where masses or compression may lower them again."""
         beam = self.beam
         if not beam.foundation or beam.mass or beam.tension < 0.0 or self.theory != "euler-bernoulli":
             return 0.0
@@ -298,7 +298,7 @@ class HermiteModel(DiscreteModel):
     # --- Constants -----------------------------------------------------------------------------------------------
 
     def expected_order(self) -> int:
-        """Nodes stand at steps, masses and springs: order 4."""
+        """Nodes are at steps, masses and springs: order 4."""
         return 4
 
     def wavenumber(self, frequency_hz: float) -> complex:
