@@ -22,8 +22,6 @@ DENSE = 150
 """Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
 MOST_MODES = 2000
 """Unknowns of which all modes are computed: these take ten seconds, and the time grows with the cube."""
-LONG = 100_000
-"""Unknowns from which strains read off a vector are worse than those that a factorisation solves for, 1e-13."""
 RESONANCE = 1e-9
 """Relative distance in frequency to an undamped resonance below which a response is rounding."""
 FEW = 4
@@ -155,7 +153,7 @@ class StructuralSystem:
     def _by_lanczos(self, k: int) -> tuple[Array, Array]:
         """Shift and invert, from below all eigenvalues.
 
-        The last digit of a vector is a strain, 1e-4 of it at 1e6 parts; beyond `LONG` those of the solution are better.
+        The last digit of a vector is a strain, 1e-4 of it at 1e6 parts: strains are those of a refined solution.
         """
         from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
@@ -170,26 +168,34 @@ class StructuralSystem:
             raise InputError(
                 f"the lowest {k} of {self.n} modes do not converge: hold the beam or lower count"
             ) from None
-        strains, vectors = solve(self.mass @ vectors)
-        return (self.strain(vectors) if self.n < LONG else strains), vectors
+        return solve(self.mass @ vectors, refined=True)
 
-    def _inverse(self, shift: float) -> Callable[[Array], tuple[Array, Array]]:
-        """Strains (m, k) and response (n, k) of K - shift M to loads (n, k).
+    def _inverse(self, shift: float) -> Callable[..., tuple[Array, Array]]:
+        """Strains (m, k) and response (n, k) of K - shift M to loads (n, k), also with one step of refinement.
 
         Without a shift rigid-body motions are held, and projected out of loads and response.
         """
         from scipy.sparse.linalg import splu
 
         m, free = len(self.stiffness), np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
-        matrix, compliance = self.augmented(-shift), (self._pattern[3] / self.stiffness)[:, None]
+        matrix, scales = self.augmented(-shift), self._pattern[3][:, None]
+        compliance = scales / self.stiffness[:, None]
         kept = np.concatenate([np.arange(m), m + free])
         factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
 
-        def solve(loads: Array) -> tuple[Array, Array]:
+        def solve(loads: Array, *, refined: bool = False) -> tuple[Array, Array]:
             right, response = np.zeros((m + len(free), loads.shape[1])), np.zeros(loads.shape)
             right[m:] = (self._without_rigid(loads, load=True) if len(free) < self.n else loads)[free]
             solution = factor.solve(right)
             response[free] = solution[m:]
+            if refined:  # residuals by successive differences are exact where those of the matrix are rounding
+                forces = scales * solution[:m]
+                for part in reversed(self.strain_factors):
+                    forces = part.T @ forces
+                right[:m] = scales * (compliance * solution[:m] - self.strain(response))
+                right[m:] += (shift * (self.mass @ response) - forces)[free]
+                solution += factor.solve(right)
+                response[free] = solution[m:]
             return compliance * solution[:m], self._without_rigid(response)
 
         return solve
