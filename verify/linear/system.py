@@ -9,7 +9,7 @@ Unknowns, stiffnesses and masses are dimensionless, of order one; models scale t
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -58,8 +58,10 @@ class StructuralSystem:
     rigid: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """(n, r), motions without strain, whose zero eigenvalues are left out."""
     lower_bound: float = 0.0
-    """Lower bound of all eigenvalues. A hard foundation raises them to where they lie close together; the shift of
-    Lanczos follows it."""
+    """Lower bound of all eigenvalues without `bodies`. A hard foundation raises them to where they lie close together;
+    the shift of Lanczos follows it."""
+    bodies: Any = None
+    """Sparse rows (r, n) whose squares are the part of M of attached bodies, which may lower r eigenvalues further."""
 
     @property
     def n(self) -> int:
@@ -102,7 +104,7 @@ class StructuralSystem:
         values = _sums(self.stiffness[:, None] * strains**2) / masses
         if values.min(initial=1.0) <= 0.0:
             raise InputError("beam.tension: the compression buckles this model, compress less or hold the beam better")
-        order = np.argsort(values, kind="stable")
+        order = np.argsort(values, kind="stable")[:k]
         return values[order], (vectors / np.sqrt(masses))[:, order]
 
     def method(self, k: int) -> str:
@@ -151,7 +153,7 @@ class StructuralSystem:
         return self.strain(vectors), vectors
 
     def _by_lanczos(self, k: int) -> tuple[Array, Array]:
-        """Shift and invert, from below all eigenvalues.
+        """Shift and invert, from below all eigenvalues but those that bodies lower.
 
         The last digit of a vector is a strain, 1e-4 of it at 1e6 parts: strains are those of a refined solution.
         """
@@ -162,13 +164,28 @@ class StructuralSystem:
         inverse = LinearOperator((self.n, self.n), matvec=lambda b: solve(b.reshape(-1, 1))[1][:, 0], dtype=float)
         start = self._without_rigid(np.random.default_rng(0).standard_normal(self.n))
         sought = {"M": self.mass, "sigma": shift, "OPinv": inverse, "v0": start, "ncv": min(k + 30, self.n)}
+        below = self._count_below(shift)
+        # 1 / (omega^2 - shift) is negative below the shift
+        sides = [(below, "SA"), (k - below, "LA")] if below else [(k, "LM")]
         try:
-            vectors = eigsh(inverse, k, **sought)[1]
+            vectors = np.hstack([eigsh(inverse, one, which=end, **sought)[1] for one, end in sides if one > 0])
         except ArpackNoConvergence:
             raise InputError(
                 f"the lowest {k} of {self.n} modes do not converge: hold the beam or lower count"
             ) from None
         return solve(self.mass @ vectors, refined=True)
+
+    def _count_below(self, shift: float) -> int:
+        """Number of eigenvalues that bodies lower below a shift, itself below all others.
+
+        K - s M = (K - s M_0) - s R^T R with a positive first part has as many negative eigenvalues as
+        1 - s R (K - s M_0)^-1 R^T.
+        """
+        if not shift or self.bodies is None:
+            return 0
+        bare = replace(self, mass=(self.mass - self.bodies.T @ self.bodies).tocsc(), bodies=None)
+        compliance = self.bodies @ bare._inverse(shift)(self.bodies.T.toarray())[1]
+        return int((np.linalg.eigvalsh(shift * compliance) > 1.0).sum())
 
     def _inverse(self, shift: float) -> Callable[..., tuple[Array, Array]]:
         """Strains (m, k) and response (n, k) of K - shift M to loads (n, k), also with one step of refinement.
