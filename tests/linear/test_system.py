@@ -17,14 +17,15 @@ from verify.segment_model import SegmentModel
 N, HERTZ = 13, 613.0
 X = np.array([0.11, 0.29, 0.47, 0.68])
 DEVICES = (
-    Device(position=0.31, stiffness=2.1e3, dashpot=1.7, mass=2.9e-3),
+    Device(position=0.31, stiffness=2.1e3, dashpot=1.7, mass=2.9e-3, amplitude=0.7, phase_deg=23.0),
     Device(position=0.62, rotational=0.9, rotational_dashpot=3e-4),
 )
 
 
-def reference(beam: Beam) -> Elements:
-    """Dense matrices on the same nodes."""
-    model = HermiteModel(beam, N)
+def reference(beam: Beam, devices=()) -> Elements:
+    """Dense matrices on the same nodes, which include those devices that act against rotation."""
+    nodes = tuple(PointSpring(position=one.position, stiffness=1.0) for one in devices if one.turning)
+    model = HermiteModel(replace(beam, spring=(*beam.spring, *nodes)), N)
     return Elements(beam, model.mesh.nodes * model.unit)
 
 
@@ -50,10 +51,11 @@ def test_all_modes_are_those_of_the_dense_matrices(name):
 @pytest.mark.parametrize("name", ["clamped-free", "free-free", "masses-springs-steps", "compression", "losses"])
 @pytest.mark.parametrize("devices", [(), DEVICES], ids=["alone", "with devices"])
 def test_a_harmonic_response_with_devices_is_the_dense_one(name, devices):
-    dense = reference(BEAMS[name])
+    dense = reference(BEAMS[name], devices)
     found = HermiteModel(BEAMS[name], N).harmonic(FORCES, HERTZ, devices=devices)
     omega = 2.0 * np.pi * HERTZ
-    solution = dense.harmonic(dense.load(FORCES), HERTZ, more=with_devices(dense, devices, HERTZ) / (1j * omega))
+    forces = [*FORCES, *(one.own_force for one in devices)]
+    solution = dense.harmonic(dense.load(forces), HERTZ, more=with_devices(dense, devices, HERTZ) / (1j * omega))
     for values, derivative in ((found.deflection(X), 0), (found.slope(X), 1)):
         expected = dense.values_at(solution, X, derivative)
         assert values == pytest.approx(expected, rel=1e-9, abs=1e-9 * abs(expected).max())
@@ -76,12 +78,13 @@ def test_a_sweep_is_every_frequency_by_itself_rigid_body_share_included(name):
 @pytest.mark.parametrize("devices", [(), DEVICES], ids=["alone", "with devices"])
 def test_an_imposed_displacement_is_met_by_the_forces_that_impose_it(devices):
     drives = [PointForce(position=0.23, amplitude=3e-6, phase_deg=31.0), PointForce(position=0.59, amplitude=1e-6)]
-    model, dense = HermiteModel(ARM, N), reference(ARM)
+    model, dense = HermiteModel(ARM, N), reference(ARM, devices)
     field = model.imposed(drives, HERTZ, devices=devices)
     given = [one.amplitude * np.exp(1j * np.deg2rad(one.phase_deg)) for one in drives]
     assert field.deflection([one.position for one in drives]) == pytest.approx(given, rel=1e-10)
+    own = [one.own_force for one in devices]
     again = dense.harmonic(
-        dense.load(field.forces[:2]), HERTZ, more=with_devices(dense, devices, HERTZ) / (2j * np.pi * HERTZ)
+        dense.load([*field.forces[:2], *own]), HERTZ, more=with_devices(dense, devices, HERTZ) / (2j * np.pi * HERTZ)
     )
     assert field.deflection(X) == pytest.approx(dense.values_at(again, X, 0), rel=1e-8)
 
@@ -133,7 +136,7 @@ def test_bodies_on_a_hard_foundation_lower_modes_of_their_own(model, mass):
     beam = replace(STRIP, supports=("clamped", "free"), foundation=1e11, mass=bodies)
     few, every = (model(beam, 300).modes(n).frequencies_hz for n in (4, 299))
     assert few == pytest.approx(every[:4], rel=1e-12)
-    assert few == pytest.approx(ExactModel(beam).modes(4).frequencies_hz, rel=1e-3)
+    assert few == pytest.approx(ExactModel(beam).modes(4).frequencies_hz, rel=4e-3)
 
 
 @pytest.mark.parametrize("count", [13, 100, 300])
@@ -146,7 +149,7 @@ def test_all_modes_under_compression_keep_their_digits(count):
 
 
 def test_sizes_beyond_the_memory_are_refused_before_anything_is_built():
-    for work in (lambda: HermiteModel(STRIP, 10**12), lambda: HermiteModel(STRIP, 10**5).modes(10**5)):
+    for work in (lambda: HermiteModel(STRIP, 10**9), lambda: HermiteModel(STRIP, 10**5).modes(10**5)):
         with pytest.raises(InputError, match="exceed the largest system of 10 GB"):
             work()
     with pytest.raises(InputError, match="more than 2000"):

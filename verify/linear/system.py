@@ -351,12 +351,13 @@ class StructuralSystem:
     def prescribed(
         self,
         rows: Any,
-        displacements: ComplexArray,
+        displacements: Any,
+        loads: Any,
         omega2: float,
         stiffness: Any = None,
         devices: Sequence[tuple[Any, complex]] = (),
     ) -> tuple[ComplexArray, ComplexArray]:
-        """The steady response (n,) where rows (p, n) of it are given, and the forces (p,) that hold them there.
+        """The steady response (n, k) to loads (n, k) where rows (p, n) of it are (p, k), and the forces (p, k) there.
 
         Raises LinAlgError within `RESONANCE` of a resonance of the system so held where nothing is damped.
         """
@@ -369,7 +370,8 @@ class StructuralSystem:
 
         if not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices):
             self._check_resonance(solve, solve(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
-        solution = factor.solve(np.concatenate([np.zeros(m + self.n), displacements]).astype(complex))
+        right = np.concatenate([np.zeros((m, loads.shape[1])), loads, displacements])
+        solution = factor.solve(right.astype(complex))
         return solution[m : m + self.n], -solution[m + self.n :]
 
     # --- Buckling ------------------------------------------------------------------------------------------------

@@ -89,7 +89,7 @@ class Attached:
         return weights @ motions.positions + own
 
     def energies(self, deflections: Any, rotations: Any, motions: Motions, gives: Array) -> tuple[list[Any], Any]:
-        """Strains over (rotations of the links, unknowns) with their stiffnesses, and rows whose squares are the masses.
+        """Strains over (rotations of the links, unknowns) their stiffnesses, and rows whose squares are the masses.
 
         A spring without a mass is in series with its slip, and at an end with the joint: no unknown is without mass.
         """
