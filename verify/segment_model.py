@@ -349,6 +349,13 @@ class SegmentModel(DiscreteModel):
         ]
         return vstack(each, format="csr")
 
+    def device_rows(self, positions: Array) -> Any:
+        """By the weights of an attached body: those of a force lack its compliance to itself and are of order 3."""
+        from scipy.sparse import vstack
+
+        weights = [attachment_weights(self.chain, [at], self.attachment)[0] for at in positions.tolist()]
+        return vstack(weights, format="csr") @ self.motions.positions
+
     def _joints(self, unknowns: Any) -> Any:
         """Positions of joints 0..N of unknowns (n, k), (k, N + 1)."""
         return (self.motions.positions @ unknowns).T

@@ -120,10 +120,12 @@ def test_a_resonance_of_beam_and_device_is_refused_and_the_beams_own_is_not():
 
 @pytest.mark.parametrize(("count", "n_modes"), [(13, 20), (49, 8), (300, 5), (3000, 4)])
 @pytest.mark.parametrize("foundation", [3.7e3, 1e11])
-def test_on_a_foundation_however_hard_every_mode_is_a_sum_of_two_stiffnesses(count, n_modes, foundation):
-    """A foundation adds k_f / rho A to the square of every frequency of a uniform beam, of elements too."""
-    bare = HermiteModel(STRIP, count).modes(n_modes).frequencies_hz
-    found = HermiteModel(replace(STRIP, foundation=foundation), count).modes(n_modes).frequencies_hz
+@pytest.mark.parametrize("model", [SegmentModel, HermiteModel])
+def test_on_a_foundation_however_hard_every_mode_is_a_sum_of_two_stiffnesses(count, n_modes, foundation, model):
+    """A foundation adds k_f / rho A to the square of every frequency of a uniform beam, of its parts too."""
+    n_modes = min(n_modes, count - 1)
+    bare = model(STRIP, count).modes(n_modes).frequencies_hz
+    found = model(replace(STRIP, foundation=foundation), count).modes(n_modes).frequencies_hz
     lifted = np.hypot(bare, np.sqrt(foundation / STRIP.mass_per_length) / (2.0 * np.pi))
     assert found == pytest.approx(lifted, rel=2e-13)
 
@@ -149,9 +151,13 @@ def test_all_modes_under_compression_keep_their_digits(count):
 
 
 def test_sizes_beyond_the_memory_are_refused_before_anything_is_built():
-    for work in (lambda: HermiteModel(STRIP, 10**9), lambda: HermiteModel(STRIP, 10**5).modes(10**5)):
+    elements = HermiteModel(STRIP, 10**5)
+    for work in (lambda: HermiteModel(STRIP, 10**9), lambda: SegmentModel(STRIP, 10**9), lambda: elements.modes(10**5)):
         with pytest.raises(InputError, match="exceed the largest system of 10 GB"):
             work()
+    for count, message in ((1, "at least 2"), (2.5, "whole number")):
+        with pytest.raises(InputError, match=message):
+            SegmentModel(STRIP, count)
     with pytest.raises(InputError, match="more than 2000"):
         HermiteModel(STRIP, 1100).time_basis()
     assert HermiteModel(replace(STRIP, supports=("free", "free")), 10**6).n_elastic == 2 * 10**6

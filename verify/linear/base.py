@@ -234,8 +234,12 @@ class DiscreteModel(BeamModel):
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
         """Weights of the unknowns for a unit force (or couple) at each position (m), sparse (n_positions, n).
 
-        A device reads its displacement (rotation) by the same row.
+        A device reads its rotation by the same row.
         """
+
+    def device_rows(self, positions: Array) -> Any:
+        """The same of devices, which also read their deflection by them."""
+        return self.load_rows(positions)
 
     @abstractmethod
     def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
@@ -397,7 +401,7 @@ class DiscreteModel(BeamModel):
         for device in devices:
             at = np.array([device.position])
             if (across := device.dynamic_stiffness(omega)) != 0.0:
-                rows.append((self.load_rows(at), across * (self.unit**3 / stiffness)))
+                rows.append((self.device_rows(at), across * (self.unit**3 / stiffness)))
             if (turning := device.rotational_dynamic_stiffness(omega)) != 0.0:
                 rows.append((self.load_rows(at, rotation=True), turning * (self.unit / stiffness)))
         return rows
@@ -406,7 +410,7 @@ class DiscreteModel(BeamModel):
         """Forces that devices exert on the beam, N."""
         across = [device for device in devices if device.dynamic_stiffness(omega) != 0.0]
         places = np.array([device.position for device in across])
-        read = self.load_rows(places) @ unknowns if across else np.zeros(0)
+        read = self.device_rows(places) @ unknowns if across else np.zeros(0)
         return [
             point_force(device.position, -device.dynamic_stiffness(omega) * complex(w))
             for device, w in zip(across, read, strict=True)
