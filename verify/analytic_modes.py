@@ -211,7 +211,7 @@ class ExactModel(BeamModel):
             count=None,
             beam=beam,
             frequency_hz=float(frequencies[0]) if one else frequencies,
-            forces=(*forces, *holding, *reactions),
+            forces=(*holding, *forces, *reactions),
             shapes=read,
             theory=self.theory,
             rotation_shapes=(lambda x, d: read(x, d, ROTATION)) if self.theory == "timoshenko" else None,

@@ -142,12 +142,14 @@ class HermiteModel(DiscreteModel):
         for row, value in self._foundation_and_spring_strains():
             rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + size)))
             stiffness.append(value)
+        mass, bodies = self._mass(), self._bodies()
         return StructuralSystem(
             [first[:, self.free], vstack(rows, format="csr") if len(rows) > 1 else rows[0]],
             np.concatenate(stiffness),
-            self._mass()[self.free][:, self.free].tocsc(),
+            (mass if bodies is None else mass + bodies.T @ bodies).tocsr()[self.free][:, self.free].tocsc(),
             self._rigid(),
             self._lower_bound(),
+            None if bodies is None else bodies[:, self.free],
         )
 
     @property
@@ -196,20 +198,27 @@ class HermiteModel(DiscreteModel):
         return found
 
     def _mass(self) -> Any:
-        """M over all degrees of freedom by scikit-fem, with rotary inertia and attached bodies."""
+        """M of the elements over all degrees of freedom by scikit-fem, with rotary inertia."""
         from verify.elements import element as el
 
-        beam, unit = self.beam, self.unit
         mass = el.assemble(self.basis, el.inertia, self.mesh.masses_per_length)
         if self.theory != "euler-bernoulli":
-            rotary = self.of_elements("rotary_inertia", beam.mass_per_length * unit**2)
+            rotary = self.of_elements("rotary_inertia", self.beam.mass_per_length * self.unit**2)
             mass = mass + el.assemble(self.basis, el.rotary_inertia, rotary)
-        for body in beam.mass:
-            at = np.array([body.position / unit])
-            for value, rotation in ((body.mass / unit, False), (body.rotary_inertia / unit**3, True)):
-                row = self._rows(at, rotation=rotation)
-                mass = mass + (value / beam.mass_per_length) * (row.T @ row)
-        return mass.tocsr()
+        return mass
+
+    def _bodies(self) -> Any:
+        """Rows (r, all degrees of freedom) whose squares are the masses and rotary inertias of attached bodies."""
+        from scipy.sparse import vstack
+
+        beam, unit = self.beam, self.unit
+        rows = [
+            sqrt(value / beam.mass_per_length) * self._rows(np.array([body.position / unit]), rotation=rotation)
+            for body in beam.mass
+            for value, rotation in ((body.mass / unit, False), (body.rotary_inertia / unit**3, True))
+            if value
+        ]
+        return vstack(rows, format="csr") if rows else None
 
     def _rigid(self) -> Array:
         """Rigid motions over the free degrees of freedom, (n, 0 to 2)."""
@@ -221,9 +230,9 @@ class HermiteModel(DiscreteModel):
         return shapes[self.free]
 
     def _lower_bound(self) -> float:
-        """Lower bound k_f / (rho A) of omega^2 by the foundation; 0 where masses or compression may lower them again."""
+        """Lower bound k_f / (rho A) of omega^2 by the foundation, without attached bodies; 0 under compression."""
         beam = self.beam
-        if not beam.foundation or beam.mass or beam.tension < 0.0 or self.theory != "euler-bernoulli":
+        if not beam.foundation or beam.tension < 0.0 or self.theory != "euler-bernoulli":
             return 0.0
         return beam.foundation * self.unit**4 / beam.bending_stiffness / float(self.mesh.masses_per_length.max())
 

@@ -278,11 +278,11 @@ class SegmentModel(DiscreteModel):
         if beam.foundation:
             ground = self._foundation * lengths
             strains += [(motions.middles @ own, ground), (links, ground * lengths**2 / 12.0)]
-            if beam.tension >= 0.0 and not beam.mass:
+            if beam.tension >= 0.0:
                 bound = np.minimum(ground / chain.masses, ground * lengths**2 / (12.0 * chain.inertias)).min()
         if beam.tension:
             strains.append((links, self._tension * lengths))
-        mass, across = link_mass(motions), None
+        mass, across, bodies = link_mass(motions), None, None
         if self.joints == "tensioned" and self.theory != "euler-bernoulli":
             inertias = shear.joint_inertias(self._thick, self._wall_factors, self._own_share, self.wall)
             mass = mass - squares(motions.angles_of @ motions.both, inertias)
@@ -291,11 +291,12 @@ class SegmentModel(DiscreteModel):
         if self.attached.bodies:
             gives = self._slips[1]
             across = self.attached.deflections(self._weights[0], motions, gives)
-            attached, masses = self.attached.energies(across, self._rotations, motions, gives)
-            strains, mass = strains + attached, mass + masses
+            attached, bodies = self.attached.energies(across, self._rotations, motions, gives)
+            strains, mass = strains + attached, mass + bodies.T @ bodies
         rows, stiffnesses = zip(*strains, strict=True)
         factors = [*motions.factors, vstack(rows, format="csr")]
-        return StructuralSystem(factors, np.concatenate(stiffnesses), csc_array(mass), self._rigid(across), bound)
+        stiffness, rigid = np.concatenate(stiffnesses), self._rigid(across)
+        return StructuralSystem(factors, stiffness, csc_array(mass), rigid, bound, bodies)
 
     @cached_property
     def _springs(self) -> Any:
@@ -347,6 +348,13 @@ class SegmentModel(DiscreteModel):
             for position in positions
         ]
         return vstack(each, format="csr")
+
+    def device_rows(self, positions: Array) -> Any:
+        """By the weights of an attached body: those of a force lack its compliance to itself and are of order 3."""
+        from scipy.sparse import vstack
+
+        weights = [attachment_weights(self.chain, [at], self.attachment)[0] for at in positions.tolist()]
+        return vstack(weights, format="csr") @ self.motions.positions
 
     def _joints(self, unknowns: Any) -> Any:
         """Positions of joints 0..N of unknowns (n, k), (k, N + 1)."""

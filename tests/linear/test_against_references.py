@@ -208,7 +208,23 @@ def test_forces_of_imposed_displacements_impose_them(name, loss_factor):
     drives = [PointForce(position=0.17, amplitude=2e-6), PointForce(position=0.53, amplitude=3e-6, phase_deg=71.0)]
     field = model.imposed(drives, HERTZ, devices=DEVICE)
     by_forces = model.harmonic(field.forces[:2], HERTZ, devices=DEVICE)
-    assert by_forces.deflection([0.17, 0.53]) == pytest.approx([2e-6, 3e-6 * np.exp(1j * np.deg2rad(71.0))], rel=1e-8)
+    for one in (field, by_forces):
+        assert one.deflection([0.17, 0.53]) == pytest.approx([2e-6, 3e-6 * np.exp(1j * np.deg2rad(71.0))], rel=1e-8)
+
+
+@every(MODELS)
+def test_forces_of_devices_act_with_imposed_displacements(name):
+    """The exact field, with a rotational device as well; all three models agree."""
+    device, beam = replace(DEVICE, amplitude=0.13, phase_deg=-19.0), LADEN["stepped"]
+    drives = [PointForce(position=0.17, amplitude=2e-6, phase_deg=13.0)]
+    model = {"exact": ExactModel(beam), "segment": SegmentModel(beam, 400), "fem": HermiteModel(beam, 60)}[name]
+    field, exact = (one.imposed(drives, HERTZ, devices=device) for one in (model, ExactModel(beam)))
+    without = model.imposed(drives, HERTZ, devices=DEVICE).deflection(X[1])
+    assert field.deflection(0.17) == pytest.approx(2e-6 * np.exp(1j * np.deg2rad(13.0)), rel=1e-9)
+    assert field.deflection(X[1]) == pytest.approx(exact.deflection(X[1]), rel=3e-3)
+    assert abs(field.deflection(X[1]) / without - 1.0) > 0.1
+    assert [one.position for one in field.forces] == [0.17, 0.21, 0.21]
+    assert field.forces[1].amplitude == 0.13
 
 
 @every(["clamped-pinned", "masses", "tension-masses"])

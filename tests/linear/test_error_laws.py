@@ -40,12 +40,12 @@ def terms(supports, mode, count):
 @cache
 def residual(mu):
     """Gregory's sum of M^2 less its integral, both under a window that lets it end: smooth, one at the wall."""
-    length = 4000.0 / mu
+    length = 1000.0 / mu
     k = np.arange(int(length) + 1.0)
     window, z = np.cos(0.5 * pi * k / length) ** 8, mu * k
     squares = (np.cos(z) - np.sin(z) + np.exp(-z)) ** 2 * window
     ends = sum(a * (cos(j * mu) - sin(j * mu) + exp(-j * mu)) ** 2 for j, a in enumerate((-5 / 8, 1 / 6, -1 / 24)))
-    fine = np.linspace(0.0, length, 2_000_001)
+    fine = np.linspace(0.0, length, 100_001)
     z = mu * fine
     step, dense = fine[1], (np.cos(z) - np.sin(z) + np.exp(-z)) ** 2 * np.cos(0.5 * pi * fine / length) ** 8
     slope = -2.0 * mu * 4.0  # of M^2 at the wall, 2 M M'

@@ -11,6 +11,7 @@ from verify.analytic_modes import ExactModel
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
+from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass, PointSpring
 from verify.segment_model import SegmentModel
 
@@ -406,3 +407,15 @@ def test_bodies_that_come_together_are_one_body():
         for off in (1e-7, 0.0)
     ]
     assert apart[0].frequencies_hz == pytest.approx(apart[1].frequencies_hz, rel=1e-3)
+
+
+@pytest.mark.parametrize("device", [{"mass": 0.03}, {"stiffness": 3e3, "rotational": 0.9}, {"dashpot": 2.0}])
+def test_a_device_keeps_order_four(device):
+    """Root mean squares over sizes, as the position wanders over the links."""
+    beam, x = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0), [0.09, 0.27, 0.42]
+    force, device = PointForce(position=0.017), Device(position=0.31, **device)
+    exact, errors = ExactModel(beam).harmonic(force, 133.0, devices=device).deflection(x), []
+    for counts in (range(80, 112, 6), range(160, 224, 12)):
+        fields = [SegmentModel(beam, n).harmonic(force, 133.0, devices=device).deflection(x) for n in counts]
+        errors.append(np.sqrt(np.mean([abs(one / exact - 1.0).max() ** 2 for one in fields])))
+    assert 3.9 < np.log2(errors[0] / errors[1]) < 4.8

@@ -146,11 +146,3 @@ def test_a_pinned_chain_resonates_at_half_waves_of_its_own_wavenumber(titanium_s
         assert model.wavenumber(float(frequency)) * beam.length == pytest.approx(mode * np.pi, rel=1e-9)
     with pytest.raises(NoFigureError, match="give count = 24 or more"):
         model.check_propagates(48**0.5 * beam.wave_constant * (23.5 / beam.length) ** 2 / (2 * np.pi))
-
-
-@pytest.mark.parametrize(
-    ("count", "message"), [(10**9, "lower the number of segments"), (1, "at least 2"), (2.5, "whole number")]
-)
-def test_a_size_that_no_machine_can_solve_is_refused_at_once(titanium_strip, count, message):
-    with pytest.raises(InputError, match=message):
-        SegmentModel(titanium_strip, count)

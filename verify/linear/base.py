@@ -125,7 +125,7 @@ class BeamModel(ABC):
     def imposed(
         self, displacements: Forces, frequency_hz: float, *, devices: Device | Sequence[Device] = ()
     ) -> HarmonicField:
-        """The steady field under imposed harmonic displacements: amplitudes in metres; its forces impose them.
+        """The steady field under imposed harmonic displacements: amplitudes in metres; its first forces impose them.
 
         Raises InputError for two at one position or one at a support without deflection, and ResonanceError.
         """
@@ -234,8 +234,12 @@ class DiscreteModel(BeamModel):
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
         """Weights of the unknowns for a unit force (or couple) at each position (m), sparse (n_positions, n).
 
-        A device reads its displacement (rotation) by the same row.
+        A device reads its rotation by the same row.
         """
+
+    def device_rows(self, positions: Array) -> Any:
+        """The same of devices, which also read their deflection by them."""
+        return self.load_rows(positions)
 
     @abstractmethod
     def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
@@ -323,13 +327,17 @@ class DiscreteModel(BeamModel):
         if stationed and np.ndim(frequency_hz):
             raise InputError("frequency_hz has several values: with devices give one at a time")
         acting = (*acting, *(device.own_force for device in stationed if device.amplitude))
-        weights = self.load_rows(np.array([force.position for force in acting])).T
-        phasors = np.array([phasor(force) for force in acting])
-        loads = (weights @ phasors * (self.unit**3 / self.beam.bending_stiffness))[:, None]
+        loads = self._loads(acting)
         rows = self._device_rows(stationed, 2.0 * pi * float(frequencies[0]))
         unknowns = self._responses(loads, frequencies, modal_damping, rows)[:, :, 0]
         reactions = self._reactions(stationed, unknowns[0], 2.0 * pi * float(frequencies[0]))
         return self._field(unknowns, frequency_hz, (*acting, *reactions), stationed)
+
+    def _loads(self, forces: Sequence[PointForce]) -> ComplexArray:
+        """Dimensionless loads of forces, (n, 1)."""
+        weights = self.load_rows(np.array([force.position for force in forces])).T
+        phasors = np.array([[phasor(force)] for force in forces])
+        return np.asarray(weights @ phasors * (self.unit**3 / self.beam.bending_stiffness))
 
     def _cut_at(self, devices: Sequence[Device]) -> "DiscreteModel | None":
         """The model with negligible bodies at devices against rotation, None where it has bodies there.
@@ -393,7 +401,7 @@ class DiscreteModel(BeamModel):
         for device in devices:
             at = np.array([device.position])
             if (across := device.dynamic_stiffness(omega)) != 0.0:
-                rows.append((self.load_rows(at), across * (self.unit**3 / stiffness)))
+                rows.append((self.device_rows(at), across * (self.unit**3 / stiffness)))
             if (turning := device.rotational_dynamic_stiffness(omega)) != 0.0:
                 rows.append((self.load_rows(at, rotation=True), turning * (self.unit / stiffness)))
         return rows
@@ -402,7 +410,7 @@ class DiscreteModel(BeamModel):
         """Forces that devices exert on the beam, N."""
         across = [device for device in devices if device.dynamic_stiffness(omega) != 0.0]
         places = np.array([device.position for device in across])
-        read = self.load_rows(places) @ unknowns if across else np.zeros(0)
+        read = self.device_rows(places) @ unknowns if across else np.zeros(0)
         return [
             point_force(device.position, -device.dynamic_stiffness(omega) * complex(w))
             for device, w in zip(across, read, strict=True)
@@ -432,32 +440,39 @@ class DiscreteModel(BeamModel):
     def imposed(
         self, displacements: Forces, frequency_hz: float, *, devices: Device | Sequence[Device] = ()
     ) -> HarmonicField:
-        """The steady field under imposed harmonic displacements: constraint rows of the system; see `BeamModel`."""
+        """The steady field under imposed harmonic displacements: constraint rows of the system; see `BeamModel`.
+
+        Chains read deflections by other weights than those of a force: the constraints are scaled to what is read.
+        """
         drives, stationed = self.check_stationed(displacements, devices)
         if (cut := self._cut_at(stationed)) is not None:
             return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
         omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
-        rows = self.load_rows(np.array([drive.position for drive in drives]))
+        places, own = np.array([drive.position for drive in drives]), [d.own_force for d in stationed if d.amplitude]
+        rows, p = self.load_rows(places), len(drives)
         if np.linalg.matrix_rank(rows.toarray()) < len(drives):
             raise InputError(
                 "drive.force.position: displacements are imposed at one place twice, or at a support without "
                 "deflection: move one, or leave it out"
             )
-        amplitudes = np.array([phasor(drive) for drive in drives])
+        loads = self._loads(own) if own else np.zeros((self.n_unknowns, 1))
         try:
-            unknowns, forces = self.stable_system.prescribed(
+            responses, forces = self.stable_system.prescribed(
                 rows,
-                amplitudes,
+                np.eye(p, p + 1),
+                np.hstack([np.zeros((self.n_unknowns, p)), loads]),
                 (omega / self._omega_unit) ** 2,
                 self.lossy_stiffness(omega),
                 self._device_rows(stationed, omega),
             )
         except np.linalg.LinAlgError:
             raise self._at_resonance(frequency_hz) from None
-        scale = self.beam.bending_stiffness / self.unit**3
-        holding = [point_force(drive.position, force * scale) for drive, force in zip(drives, forces, strict=True)]
+        read, scale = self.line(responses)(places, 0), self.beam.bending_stiffness / self.unit**3
+        shares = np.linalg.solve(read[:p].T, np.array([phasor(drive) for drive in drives]) - read[p])
+        unknowns, forces = (each @ np.append(shares, 1.0) for each in (responses, forces))
+        holding = [point_force(at, force * scale) for at, force in zip(places.tolist(), forces, strict=True)]
         reactions = self._reactions(stationed, unknowns, omega)
-        return self._field(unknowns[None], float(frequency_hz), (*holding, *reactions), stationed)
+        return self._field(unknowns[None], float(frequency_hz), (*holding, *own, *reactions), stationed)
 
     def receptance(self, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> ComplexArray:
         """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)), m/N."""

@@ -9,7 +9,7 @@ Unknowns, stiffnesses and masses are dimensionless, of order one; models scale t
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -22,8 +22,6 @@ DENSE = 150
 """Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
 MOST_MODES = 2000
 """Unknowns of which all modes are computed: these take ten seconds, and the time grows with the cube."""
-LONG = 100_000
-"""Unknowns from which strains read off a vector are worse than those that a factorisation solves for, 1e-13."""
 RESONANCE = 1e-9
 """Relative distance in frequency to an undamped resonance below which a response is rounding."""
 HARD = 100.0
@@ -64,8 +62,10 @@ class StructuralSystem:
     rigid: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """(n, r), motions without strain, whose zero eigenvalues are left out."""
     lower_bound: float = 0.0
-    """Lower bound of all eigenvalues. A hard foundation raises them to where they lie close together; the shift of
-    Lanczos follows it."""
+    """Lower bound of all eigenvalues without `bodies`. A hard foundation raises them to where they lie close together;
+    the shift of Lanczos follows it."""
+    bodies: Any = None
+    """Sparse rows (r, n) whose squares are the part of M of attached bodies, which may lower r eigenvalues further."""
 
     @property
     def n(self) -> int:
@@ -108,7 +108,7 @@ class StructuralSystem:
         values = _sums(self.stiffness[:, None] * strains**2) / masses
         if values.min(initial=1.0) <= 0.0:
             raise InputError("beam.tension: the compression buckles this model, compress less or hold the beam better")
-        order = np.argsort(values, kind="stable")
+        order = np.argsort(values, kind="stable")[:k]
         return values[order], (vectors / np.sqrt(masses))[:, order]
 
     def method(self, k: int) -> str:
@@ -157,9 +157,9 @@ class StructuralSystem:
         return self.strain(vectors), vectors
 
     def _by_lanczos(self, k: int) -> tuple[Array, Array]:
-        """Shift and invert, from below all eigenvalues.
+        """Shift and invert, from below all eigenvalues but those that bodies lower.
 
-        The last digit of a vector is a strain, 1e-4 of it at 1e6 parts; beyond `LONG` those of the solution are better.
+        The last digit of a vector is a strain, 1e-4 of it at 1e6 parts: strains are those of a refined solution.
         """
         from scipy.linalg import eigh
         from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
@@ -171,14 +171,16 @@ class StructuralSystem:
         inverse = LinearOperator((self.n, self.n), matvec=lambda b: solve(b.reshape(-1, 1))[1][:, 0], dtype=float)
         start = self._without_rigid(np.random.default_rng(0).standard_normal(self.n))
         sought = {"M": self.mass, "sigma": shift, "OPinv": inverse, "v0": start, "ncv": min(k + 30, self.n)}
+        below = self._count_below(shift)
+        # 1 / (omega^2 - shift) is negative below the shift
+        sides = [(below, "SA"), (k - below, "LA")] if below else [(k, "LM")]
         try:
-            vectors = eigsh(inverse, k, **sought)[1]
+            vectors = np.hstack([eigsh(inverse, one, which=end, **sought)[1] for one, end in sides if one > 0])
         except ArpackNoConvergence:
             raise InputError(
                 f"the lowest {k} of {self.n} modes do not converge: hold the beam or lower count"
             ) from None
-        strains, vectors = solve(self.mass @ vectors)
-        strains = self.strain(vectors) if self.n < LONG else strains
+        strains, vectors = solve(self.mass @ vectors, refined=True)
         energies, masses = strains.T @ (self.stiffness[:, None] * strains), vectors.T @ (self.mass @ vectors)
         slow = np.flatnonzero(energies.diagonal() < 1e-3 * bending * masses.diagonal())
         if slow.size > 1:
@@ -187,23 +189,44 @@ class StructuralSystem:
             strains[:, slow], vectors[:, slow] = strains[:, slow] @ plane, vectors[:, slow] @ plane
         return strains, vectors
 
-    def _inverse(self, shift: float) -> Callable[[Array], tuple[Array, Array]]:
-        """Strains (m, k) and response (n, k) of K - shift M to loads (n, k).
+    def _count_below(self, shift: float) -> int:
+        """Number of eigenvalues that bodies lower below a shift, itself below all others.
+
+        K - s M = (K - s M_0) - s R^T R with a positive first part has as many negative eigenvalues as
+        1 - s R (K - s M_0)^-1 R^T.
+        """
+        if not shift or self.bodies is None:
+            return 0
+        bare = replace(self, mass=(self.mass - self.bodies.T @ self.bodies).tocsc(), bodies=None)
+        compliance = self.bodies @ bare._inverse(shift)(self.bodies.T.toarray())[1]
+        return int((np.linalg.eigvalsh(shift * compliance) > 1.0).sum())
+
+    def _inverse(self, shift: float) -> Callable[..., tuple[Array, Array]]:
+        """Strains (m, k) and response (n, k) of K - shift M to loads (n, k), also with one step of refinement.
 
         Without a shift rigid-body motions are held, and projected out of loads and response.
         """
         from scipy.sparse.linalg import splu
 
         m, free = len(self.stiffness), np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
-        matrix, compliance = self.augmented(-shift), (self._pattern[3] / self.stiffness)[:, None]
+        matrix, scales = self.augmented(-shift), self._pattern[3][:, None]
+        compliance = scales / self.stiffness[:, None]
         kept = np.concatenate([np.arange(m), m + free])
         factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
 
-        def solve(loads: Array) -> tuple[Array, Array]:
+        def solve(loads: Array, *, refined: bool = False) -> tuple[Array, Array]:
             right, response = np.zeros((m + len(free), loads.shape[1])), np.zeros(loads.shape)
             right[m:] = (self._without_rigid(loads, load=True) if len(free) < self.n else loads)[free]
             solution = factor.solve(right)
             response[free] = solution[m:]
+            if refined:  # residuals by successive differences are exact where those of the matrix are rounding
+                forces = scales * solution[:m]
+                for part in reversed(self.strain_factors):
+                    forces = part.T @ forces
+                right[:m] = scales * (compliance * solution[:m] - self.strain(response))
+                right[m:] += (shift * (self.mass @ response) - forces)[free]
+                solution += factor.solve(right)
+                response[free] = solution[m:]
             return compliance * solution[:m], self._without_rigid(response)
 
         return solve
@@ -355,12 +378,13 @@ class StructuralSystem:
     def prescribed(
         self,
         rows: Any,
-        displacements: ComplexArray,
+        displacements: Any,
+        loads: Any,
         omega2: float,
         stiffness: Any = None,
         devices: Sequence[tuple[Any, complex]] = (),
     ) -> tuple[ComplexArray, ComplexArray]:
-        """The steady response (n,) where rows (p, n) of it are given, and the forces (p,) that hold them there.
+        """The steady response (n, k) to loads (n, k) where rows (p, n) of it are (p, k), and the forces (p, k) there.
 
         Raises LinAlgError within `RESONANCE` of a resonance of the system so held where nothing is damped.
         """
@@ -373,7 +397,8 @@ class StructuralSystem:
 
         if not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices):
             self._check_resonance(solve, solve(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
-        solution = factor.solve(np.concatenate([np.zeros(m + self.n), displacements]).astype(complex))
+        right = np.concatenate([np.zeros((m, loads.shape[1])), loads, displacements])
+        solution = factor.solve(right.astype(complex))
         return solution[m : m + self.n], -solution[m + self.n :]
 
     # --- Buckling ------------------------------------------------------------------------------------------------

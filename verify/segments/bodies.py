@@ -9,7 +9,7 @@ import numpy as np
 from verify.arrays import Array, BoolArray
 from verify.problem.beam import Beam
 from verify.segments.attachments import attachment_weights
-from verify.segments.chain import Chain, Motions, selection, squares
+from verify.segments.chain import Chain, Motions, selection
 
 
 class Body(NamedTuple):
@@ -89,11 +89,11 @@ class Attached:
         return weights @ motions.positions + own
 
     def energies(self, deflections: Any, rotations: Any, motions: Motions, gives: Array) -> tuple[list[Any], Any]:
-        """Strains over (rotations of the links, unknowns) with their stiffnesses, and the mass matrix of the bodies.
+        """Strains over (rotations of the links, unknowns) their stiffnesses, and rows whose squares are the masses.
 
         A spring without a mass is in series with its slip, and at an end with the joint: no unknown is without mass.
         """
-        from scipy.sparse import hstack
+        from scipy.sparse import diags_array, hstack, vstack
 
         masses, rotary, lateral, rotational = np.array([body[2:] for body in self.bodies]).T
         lateral = lateral / (1.0 + lateral * np.where(self.massive, 0.0, gives))
@@ -101,4 +101,5 @@ class Attached:
         across = hstack([selection([], [], (len(masses), motions.chain.n_segments)), deflections], format="csr")
         strains = [(across[lateral > 0.0], lateral[lateral > 0.0])]
         strains.append((rotations[rotational > 0.0], rotational[rotational > 0.0]))
-        return strains, squares(deflections, masses) + squares(rotations @ motions.both, rotary)
+        rows = [diags_array(np.sqrt(masses)) @ deflections, diags_array(np.sqrt(rotary)) @ rotations @ motions.both]
+        return strains, vstack(rows, format="csr")
