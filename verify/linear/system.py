@@ -195,7 +195,7 @@ class StructuralSystem:
         K - s M = (K - s M_0) - s R^T R with a positive first part has as many negative eigenvalues as
         1 - s R (K - s M_0)^-1 R^T.
         """
-        if not shift or self.bodies is None:
+        if shift <= 0.0 or self.bodies is None:
             return 0
         bare = replace(self, mass=(self.mass - self.bodies.T @ self.bodies).tocsc(), bodies=None)
         compliance = self.bodies @ bare._inverse(shift)(self.bodies.T.toarray())[1]
