@@ -74,6 +74,8 @@ def order(beam, mode, counts, theory="euler-bernoulli", **settings):
 def test_an_attachment_keeps_order_four(what, supports, at, counts):
     """On a joint, and a third of a link off one; a lateral spring with a term of order 5 beside it."""
     beam = replace(STRIP, supports=ENDS[supports], **what(at))
+    if what is a_rotary_inertia and at == 1 / 3:
+        counts = (50, 200)  # of 400 links its error, 3e-13, is that of rounded weights
     assert 3.8 < order(beam, 1, counts) < (4.7 if what is a_spring else 4.2)
 
 

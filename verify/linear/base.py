@@ -238,7 +238,7 @@ class DiscreteModel(BeamModel):
         """
 
     def device_rows(self, positions: Array) -> Any:
-        """The same of devices, which also read their deflection by them."""
+        """The same of devices, which read their deflection, and exert a force of their own, by them."""
         return self.load_rows(positions)
 
     @abstractmethod
@@ -326,18 +326,21 @@ class DiscreteModel(BeamModel):
         frequencies = frequencies_on(self.beam, frequency_hz)
         if stationed and np.ndim(frequency_hz):
             raise InputError("frequency_hz has several values: with devices give one at a time")
-        acting = (*acting, *(device.own_force for device in stationed if device.amplitude))
-        loads = self._loads(acting)
+        own = [device.own_force for device in stationed if device.amplitude]
+        loads = self._loads(acting, own)
         rows = self._device_rows(stationed, 2.0 * pi * float(frequencies[0]))
         unknowns = self._responses(loads, frequencies, modal_damping, rows)[:, :, 0]
         reactions = self._reactions(stationed, unknowns[0], 2.0 * pi * float(frequencies[0]))
-        return self._field(unknowns, frequency_hz, (*acting, *reactions), stationed)
+        return self._field(unknowns, frequency_hz, (*acting, *own, *reactions), stationed)
 
-    def _loads(self, forces: Sequence[PointForce]) -> ComplexArray:
-        """Dimensionless loads of forces, (n, 1)."""
-        weights = self.load_rows(np.array([force.position for force in forces])).T
-        phasors = np.array([[phasor(force)] for force in forces])
-        return np.asarray(weights @ phasors * (self.unit**3 / self.beam.bending_stiffness))
+    def _loads(self, forces: Sequence[PointForce], own: Sequence[PointForce]) -> ComplexArray:
+        """Dimensionless loads of forces and of devices' own forces, (n, 1)."""
+        loads = np.zeros((self.n_unknowns, 1), dtype=complex)
+        for rows, acting in ((self.load_rows, forces), (self.device_rows, own)):
+            if acting:
+                weights = rows(np.array([force.position for force in acting])).T
+                loads += weights @ np.array([[phasor(force)] for force in acting])
+        return np.asarray(loads * (self.unit**3 / self.beam.bending_stiffness))
 
     def _cut_at(self, devices: Sequence[Device]) -> "DiscreteModel | None":
         """The model with negligible bodies at devices against rotation, None where it has bodies there.
@@ -455,7 +458,7 @@ class DiscreteModel(BeamModel):
                 "drive.force.position: displacements are imposed at one place twice, or at a support without "
                 "deflection: move one, or leave it out"
             )
-        loads = self._loads(own) if own else np.zeros((self.n_unknowns, 1))
+        loads = self._loads((), own)
         try:
             responses, forces = self.stable_system.prescribed(
                 rows,
