@@ -143,7 +143,7 @@ class BeamModel(ABC):
         raise self._has_no("time_basis")
 
     def buckling_load(self) -> float:
-        """The compression at which it buckles first, N, whatever the beam's own axial force. Raises InputError."""
+        """The compression at which it buckles first by Euler-Bernoulli theory, N, whatever the beam's own axial force."""
         raise self._has_no("buckling_load")
 
     def expected_order(self) -> int | None:
@@ -502,11 +502,12 @@ class DiscreteModel(BeamModel):
         return found
 
     def buckling_load(self) -> float:
-        """The compression at which it buckles first, N; 0 where nothing keeps the beam from tilting."""
+        """The compression at which it buckles first, N, without shear; 0 where nothing keeps the beam from tilting."""
         if self._tilts:
             return 0.0
         load = float(self.beam.bending_stiffness / self.beam.length**2)
-        compressed: DiscreteModel = replace(self, beam=structs.replace(self.beam, tension=-load))  # type: ignore[type-var]
+        beam = structs.replace(self.beam, tension=-load)
+        compressed: DiscreteModel = replace(self, beam=beam, theory="euler-bernoulli")  # type: ignore[type-var]
         return load * compressed.system.buckling_factor()
 
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
