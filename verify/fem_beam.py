@@ -6,7 +6,8 @@ strains) is read off its entries, and K = B^T diag(d) B stays factored, B being 
 
 Elements end at the steps of the beam and at masses and springs: a mass makes the shear force jump, a rotary inertia the
 moment, and a cubic, whose curvature is linear, cannot represent a jump inside the element. There frequencies are of
-order 3 (mass) and 1 (rotary inertia), with a node there of order 4. Lengths are in mean element lengths L/N: nodes of equal elements are whole numbers, exact at any N.
+order 3 (mass) and 1 (rotary inertia), with a node there of order 4. Lengths are in mean element lengths L/N: nodes of
+equal elements are whole numbers, exact at any N.
 """
 
 from collections.abc import Callable

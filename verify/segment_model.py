@@ -5,12 +5,17 @@ their relative angle, two half links in series:
 
     k_ij = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i),    k = EI / l between identical ones.    (1), (2)
 
-At a clamped end the wall has joints too (`segments.walls`). Each link has its mass m at its middle and its own inertia
-m l^2/12. In small motion about the straight chain the unknowns are the transverse positions y of the joints that the
-supports leave free; the links' rotations are their differences.
+The paper has no clamped end; there the compliances of the first three joints are l/EI times 3/8, 7/6, 23/24 (Gregory's
+end correction, `segments.walls`). Each link has its mass m at its middle and its own inertia m l^2/12. In small motion
+about the straight chain the unknowns are the transverse positions y of the joints that the supports leave free; the
+links' rotations are their differences.
 
-The angle of a joint is l times the mean curvature around it: the beam's deflection at the joint is y + l^2 y''/12,
-order 4 (`segments.reading`). Between the joints the paper's C2 spline of Section II.B goes through it.
+A joint's angle is l times the mean curvature of the beam around it, and the second difference of a deflection w is
+l^2 w'' + l^4 w''''/12: the beam's deflection at the joint is w = y + l^2 y''/12, order 4 (`segments.reading`). As in
+Section II.B a spline makes the contact line smooth; here it is C2, through the corrected joints on the neutral line, and
+the surface moves by u_x = -(h/2) w'. The paper interpolates uncorrected upper corners and the joints' velocities.
+
+Quantities over the unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses in rho A unit.
 """
 
 from collections.abc import Callable
@@ -51,9 +56,9 @@ from verify.segments.walls import reading_factors, tension_excess, wall_factors
 
 _WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
 _FEWEST_CORRECTED = 6
-"""Links of which tensioned joints that slip leave a positive mass, whatever is at the ends."""
+"""Smallest N for which the mass with tensioned Timoshenko joints is positive definite, whatever is at the ends."""
 _PASSES, _CONVERGED = 60, 1e-13
-"""Of the buckling load of joints that depend on it."""
+"""Iteration limit and relative tolerance of the buckling load of tensioned joints, which depend on it."""
 
 
 @dataclass(frozen=True)
@@ -73,9 +78,9 @@ class SegmentModel(DiscreteModel):
     n_segments: int
     _: KW_ONLY
     wall: Wall = "gregory"
-    """Joints beside a clamped end, by their weights."""
+    """Compliances of the joints at a clamped end, in l/EI: "gregory" 3/8, 7/6, 23/24; "half" 1/2, the literature's."""
     joints: Joints = "series"
-    """Eq. (1) with its indices put right ("series") or as "printed"; "tensioned" has order 4 under axial force too."""
+    """Eq. (1) corrected ("series") or as "printed"; "tensioned" has order 4 under axial force too."""
     grading: float = 1.0
     """Last link of a section over its first, in geometric progression."""
     theory: Theory = "euler-bernoulli"
@@ -134,7 +139,7 @@ class SegmentModel(DiscreteModel):
         compliances[[0, -1]] += self.attached.end_springs
         inertias = link_inertia(masses, lengths)
         if self.theory != "euler-bernoulli":
-            inertias = inertias + self._thick
+            inertias = inertias + self._rotary_inertias
         return Chain(
             supports=self.beam.supports,
             unit=self.unit,
@@ -156,7 +161,7 @@ class SegmentModel(DiscreteModel):
         inner = halves[:-1] + halves[1:]
         if self.joints == "printed":
             # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) has the right unit and the wrong pairing: order 1
-            # where both E I and E / l differ
+            # where both I and E / l differ; of EI given without E, E is one and "printed" is "series"
             e, i = self.links.moduli, self.links.second_moments
             inner = 0.5 * lengths[1:] / (e[1:] * i[:-1]) + 0.5 * lengths[:-1] / (e[:-1] * i[1:])
         return np.concatenate([2.0 * halves[:1], inner, 2.0 * halves[-1:]]) * self._wall_factors
@@ -167,12 +172,12 @@ class SegmentModel(DiscreteModel):
 
     @cached_property
     def _beam_compliances(self) -> Array:
-        """1/k of the joints by the beam's own stiffness, (N + 1,)."""
+        """1/k of the joints by the beam's bending stiffness, (N + 1,)."""
         return self._joint_compliances(self.links.stiffnesses)
 
     @cached_property
     def _own_compliances(self) -> Array:
-        """The same, of tensioned joints EI - T l^2/12 in place of EI, of a wall's first a little less (`walls`)."""
+        """Compliances with EI - T l^2/12 where joints are tensioned; reduced further at a clamped wall (`tension_excess`)."""
         if self.joints != "tensioned" or not self.beam.tension:
             return self._beam_compliances
         tension, lengths, factors = self._tension, self.links.lengths, self._wall_factors
@@ -204,7 +209,7 @@ class SegmentModel(DiscreteModel):
         return np.repeat([float(getattr(piece, figure)) for piece in self.beam.pieces], counts)
 
     @cached_property
-    def _thick(self) -> Array:
+    def _rotary_inertias(self) -> Array:
         """Rotary inertia rho I l of the links, (N,)."""
         return self.links.lengths * self._of_links("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
 
@@ -241,7 +246,7 @@ class SegmentModel(DiscreteModel):
         return self._of_links("shear_stiffness") * self.unit**2 / self.beam.bending_stiffness
 
     @cached_property
-    def _softness(self) -> Array:
+    def _shear_compliances(self) -> Array:
         """Compliances of joints 0..N against slip by Eq. (1), without walls, (N + 1,)."""
         return at_joints(self.links.lengths / self._shears)
 
@@ -251,7 +256,9 @@ class SegmentModel(DiscreteModel):
         if self.theory != "timoshenko":
             return np.zeros(0), np.zeros(len(self.attached.bodies))
         bodies = self.attached.bodies if self.attachment == "reciprocal" else ()
-        return shear.slip_compliances(self.chain, self._softness, bodies, self._weights[0].toarray(), self.wall)
+        return shear.slip_compliances(
+            self.chain, self._shear_compliances, bodies, self._weights[0].toarray(), self.wall
+        )
 
     @cached_property
     def motions(self) -> Motions:
@@ -284,7 +291,7 @@ class SegmentModel(DiscreteModel):
             strains.append((links, self._tension * lengths))
         mass, across, bodies = link_mass(motions), None, None
         if self.joints == "tensioned" and self.theory != "euler-bernoulli":
-            inertias = shear.joint_inertias(self._thick, self._wall_factors, self._own_share, self.wall)
+            inertias = shear.joint_inertias(self._rotary_inertias, self._wall_factors, self._own_share, self.wall)
             mass = mass - squares(motions.angles_of @ motions.both, inertias)
             if motions.n_slips:
                 mass = mass - squares(motions.joint_slips, shear.slip_masses(chain, motions.slips))
@@ -310,13 +317,15 @@ class SegmentModel(DiscreteModel):
         return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
 
     def _rigid(self, across: Any) -> Array:
-        """Motions that nothing resists, (n, 0 to 2)."""
+        """Rigid-body modes, (n, 0 to 2)."""
         x, motions = self.chain.nodes / self.unit, self.motions
         found = np.zeros((motions.n, self.beam.rigid_motions))
         for column, (start, tilt) in enumerate(self.beam.rigid_lines):
             found[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
         springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
-        if springs and found.size:  # about the one spring, which unequal links read a little off its position
+        if (
+            springs and found.size
+        ):  # without strain of a single spring, whose interpolated position errs on unequal links
             found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
         return found
 
@@ -364,7 +373,7 @@ class SegmentModel(DiscreteModel):
         """The beam's deflection there, (k, N + 1)."""
         if self.theory != "timoshenko":
             return corrected_reading(self.chain, self._joints(unknowns))
-        change = shear.shear_change(self.motions, self._softness, unknowns)
+        change = shear.shear_change(self.motions, self._shear_compliances, unknowns)
         return corrected_reading(self.chain, self._joints(unknowns), (self.motions.rotations @ unknowns).T, change)
 
     def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
@@ -413,6 +422,11 @@ class SegmentModel(DiscreteModel):
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
+        if self.reading != "corrected":
+            raise InputError(
+                f"reading = {self.reading!r} is for harmonic fields: in time give line = 'spline' (corrected joints) or "
+                "'raw' (rigid links)"
+            )
         if self.joint_dashpot:
             raise InputError(
                 f"joint_dashpot = {self.joint_dashpot!r} is for harmonic motion: leave it out in time, or give the "

@@ -143,7 +143,7 @@ class BeamModel(ABC):
         raise self._has_no("time_basis")
 
     def buckling_load(self) -> float:
-        """The compression at which it buckles first by Euler-Bernoulli theory, N, whatever the beam's own axial force."""
+        """Least compression at which it buckles, by Euler-Bernoulli theory, N, whatever the beam's own axial force."""
         raise self._has_no("buckling_load")
 
     def expected_order(self) -> int | None:
