@@ -2,7 +2,7 @@
 
 scikit-fem makes the mesh and the degrees of freedom and assembles stiffness and mass. Its K alone would lose the low
 eigenvalues to rounding like N^4; so the stiffness d of every element strain (mean curvature, its gradient, two shear
-strains) is read off its entries, and K = B^T diag(d) B stays factored, B being differences of differences.
+strains) is extracted from its entries, and K = B^T diag(d) B stays factored, B a product of two difference operators.
 
 Elements end at the steps of the beam and at masses and springs: a mass makes the shear force jump, a rotary inertia the
 moment, and a cubic, whose curvature is linear, cannot represent a jump inside the element. There frequencies are of

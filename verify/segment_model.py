@@ -10,10 +10,10 @@ end correction, `segments.walls`). Each link has its mass m at its middle and it
 about the straight chain the unknowns are the transverse positions y of the joints that the supports leave free; the
 links' rotations are their differences.
 
-A joint's angle is l times the mean curvature of the beam around it, and the second difference of a deflection w is
-l^2 w'' + l^4 w''''/12: the beam's deflection at the joint is w = y + l^2 y''/12, order 4 (`segments.reading`). As in
-Section II.B a spline makes the contact line smooth; here it is C2, through the corrected joints on the neutral line, and
-the surface moves by u_x = -(h/2) w'. The paper interpolates uncorrected upper corners and the joints' velocities.
+A joint's angle is l times the mean curvature of the beam around it, and the second difference of a deflection w is l^2
+w'' + l^4 w''''/12: the beam's deflection at the joint is w = y + l^2 y''/12, order 4 (`segments.reading`). As in
+Section II.B a spline makes the contact line smooth; here it is C2, through the corrected joints on the neutral line,
+and the surface moves by u_x = -(h/2) w'. The paper interpolates uncorrected upper corners and the joints' velocities.
 
 Quantities over the unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses in rho A unit.
 """
@@ -177,7 +177,7 @@ class SegmentModel(DiscreteModel):
 
     @cached_property
     def _own_compliances(self) -> Array:
-        """Compliances with EI - T l^2/12 where joints are tensioned; reduced further at a clamped wall (`tension_excess`)."""
+        """Compliances with EI - T l^2/12 in tensioned joints, reduced further at a clamped wall (`tension_excess`)."""
         if self.joints != "tensioned" or not self.beam.tension:
             return self._beam_compliances
         tension, lengths, factors = self._tension, self.links.lengths, self._wall_factors
