@@ -424,8 +424,8 @@ class SegmentModel(DiscreteModel):
         """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
         if self.reading != "corrected":
             raise InputError(
-                f"reading = {self.reading!r} is for harmonic fields: in time give line = 'spline' (corrected joints) or "
-                "'raw' (rigid links)"
+                f"reading = {self.reading!r} is for harmonic fields: in time give line = 'spline' (corrected joints) "
+                "or 'raw' (rigid links)"
             )
         if self.joint_dashpot:
             raise InputError(

@@ -182,7 +182,7 @@ def stout(name, size, turns, steps, before=None):
 def energy(name, state):
     """(of all, of the beam), joules."""
     foot, q, (height, climb, pitch, turn) = FEET[name], state.q, state.feet[0]
-    basis = basis_of(STOUT, "fem", 4, 80, "spline")
+    basis = basis_of(STOUT, "fem", 4, None, "spline")
     face, places = -1.0 if foot.face == "lower" else 1.0, by.cells(foot.length, foot.points)
     at = PLACE + places + face * 0.5 * STOUT.thickness * (q @ basis.shapes(PLACE + places, 1))
     deep = face * (q @ basis.shapes(at, 0) - height - places * pitch)
