@@ -177,7 +177,7 @@ def mean_is_nearest(supports, mode, count):
     if "clamped" in supports:
         return False
     return (
-        closed_forms.wavenumber_length(supports, mode) + np.pi * supports.count("free") < error_laws.MEAN_LIMIT * count
+        closed_forms.wavenumber_length(supports, mode) + np.pi * supports.count("free") < 0.69635 * pi * count
     )
 
 
