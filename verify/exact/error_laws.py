@@ -93,6 +93,7 @@ def wall_residual(mu: float) -> float:
     M^2 = (cos z - sin z + e^-z)^2 at z = k mu, of mean 1, is the bending moment there. Half of the residual over N
     lowers the frequency. -mu^4/6 for small mu but for rounding of 1e-16/mu, zero at 0.42, at most 0.12 mu^4 to 2.5.
     """
+
     def beyond(a: complex) -> complex:
         """The sum of e^(-a k) less the integral."""
         return 0.5 + 0.5 / tanh(0.5 * a) - 1.0 / a
