@@ -98,17 +98,10 @@ def test_timoshenkos_frequency_solves_the_equations_of_motion(titanium_strip):
     assert closed_forms.frequency_hz(beam, mode, "timoshenko") == pytest.approx(expected, rel=1e-13)
 
 
-def test_the_drive_rule_and_the_quarter_wave_give_the_papers_figures(paper_beam):
-    assert closed_forms.rule_frequency_hz(paper_beam, 21, 22) == pytest.approx(4275.99, abs=0.005)
-    assert closed_forms.quarter_wavelength(paper_beam, 4276.0) == pytest.approx(0.011618, abs=5e-7)
-
-
 def test_what_has_no_closed_form_is_refused(titanium_strip):
     clamped = replace(titanium_strip, supports=("clamped", "pinned"))
     with pytest.raises(InputError, match="use euler-bernoulli"):
         closed_forms.frequency_hz(clamped, 3, "rayleigh")
-    with pytest.raises(InputError, match="did you mean 'timoshenko'"):
-        closed_forms.frequency_hz(titanium_strip, 3, "timoshenk")
     with pytest.raises(InputError, match="mode = 0"):
         closed_forms.frequency_hz(titanium_strip, 0)
     with pytest.raises(InputError, match="n_modes = 0"):

@@ -6,9 +6,8 @@ pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model fo
 
 from math import atan, exp, pi, sqrt
 
-from verify.checks import check_whole, check_word
+from verify.checks import check_whole
 from verify.errors import InputError
-from verify.options import THEORIES
 from verify.problem.beam import Beam
 
 HIGHEST = 10**9
@@ -30,21 +29,16 @@ _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
 
 
 def check_mode(mode: int) -> None:
-    """Raise InputError unless `mode` counts from 1, and not beyond what formulas hold."""
+    """Raise InputError unless `mode` counts from 1 to `HIGHEST`."""
     check_whole("mode", mode, 1, HIGHEST)
 
 
 def check_uniform(beam: Beam) -> None:
     """Raise InputError where the beam is stepped or something stands on it, naming the models that can."""
-    if beam.stepped:
+    if not beam.uniform:
         raise InputError(
-            f"beam.section: a beam of {len(beam.pieces)} sections has no closed form here, use the analytic, fem or "
-            "segment model"
-        )
-    if beam.added:
-        raise InputError(
-            f"beam.{beam.added[0]}: a beam with it has no closed form here, use the analytic, fem or "
-            "segment model, or none of it"
+            f"beam.{beam.added[0]}: a beam with it has no closed form here, use the analytic, fem or segment model, or "
+            "none of it"
         )
 
 
@@ -63,55 +57,20 @@ def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
 
 
 def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:
-    """The exact frequency of one mode, Hz, by a beam theory.
+    """The exact frequency of one mode of a uniform beam, Hz, by a beam theory that it has the properties for.
 
-    `euler-bernoulli` for all supports; `rayleigh` adds the rotary inertia of the section, `timoshenko` also
-    its shear flexibility (Timoshenko, Phil. Mag. 41, 1921), both for pinned-pinned beams. Raises InputError.
+    `euler-bernoulli` for all supports; `rayleigh` and `timoshenko` (Timoshenko, Phil. Mag. 41, 1921) between pinned
+    ends: with a = beta^2 I/A and s = beta^2 EI / (kappa G A) the flexural frequency is the lower root of
+    a s Lambda^2 - (1 + a + s) Lambda + 1 = 0, Lambda = omega^2 / omega_EB^2. Raises InputError.
     """
-    check_word("theory", theory, THEORIES)
     check_uniform(beam)
-    beta = wavenumber_length(beam.supports, mode) / beam.length
+    beta, own = wavenumber_length(beam.supports, mode) / beam.length, beam.own
     omega = beta * beta * beam.wave_constant
     if theory != "euler-bernoulli":
         if beam.supports != ("pinned", "pinned"):
-            raise InputError(
-                f"theory = {theory!r} has a closed form here for pinned-pinned beams only, "
-                f"not {'-'.join(beam.supports)}: use euler-bernoulli, or the analytic model"
-            )
-        omega *= sqrt(_thickness_factor(beam, beta, theory))
+            raise InputError(f"theory = {theory!r} has a closed form for pinned-pinned beams only: use euler-bernoulli")
+        a = beta * beta * (own.rotary_inertia or 0.0) / own.mass_per_length
+        shear = own.shear_stiffness if theory == "timoshenko" else None
+        s = beta * beta * own.bending_stiffness / shear if shear else 0.0
+        omega *= sqrt(2.0 / (1.0 + a + s + sqrt((1.0 + a + s) ** 2 - 4.0 * a * s)))
     return omega / (2.0 * pi)
-
-
-def _thickness_factor(beam: Beam, beta: float, theory: str) -> float:
-    """omega^2 over Euler-Bernoulli's, for a sine of wavenumber beta (1/m) on a beam of finite thickness.
-
-    With r^2 = I/A and g = E / (kappa G), Lambda = omega^2 / omega_EB^2 solves
-    b^4 g Lambda^2 - (1 + b^2 (1 + g)) Lambda + 1 = 0 for b = beta r; the flexural root is the lower one.
-    """
-    own = beam.own
-    if own.rotary_inertia is None:
-        raise InputError(f"beam.rotary_inertia is missing: theory = {theory!r} takes rho I of a section given plainly")
-    r2 = own.rotary_inertia / own.mass_per_length
-    b2 = beta * beta * r2
-    if theory == "rayleigh":
-        return 1.0 / (1.0 + b2)
-    if own.shear_stiffness is None:
-        raise InputError(
-            f"beam.shear_stiffness is missing: theory = {theory!r} takes kappa G A of a section given plainly"
-        )
-    g = own.bending_stiffness / (own.shear_stiffness * r2)
-    half = 1.0 + b2 * (1.0 + g)
-    return 2.0 / (half + sqrt(half * half - 4.0 * b2 * b2 * g))
-
-
-def rule_frequency_hz(beam: Beam, lower: int, upper: int) -> float:
-    """Root mean square of two exact frequencies, Hz: where both undamped modes answer a force equally."""
-    return sqrt((frequency_hz(beam, lower) ** 2 + frequency_hz(beam, upper) ** 2) / 2.0)
-
-
-def quarter_wavelength(beam: Beam, frequency: float) -> float:
-    """A quarter of the bending wavelength of a uniform beam at `frequency` (Hz), metres. Raises InputError."""
-    check_uniform(beam)
-    if not frequency > 0:
-        raise InputError(f"frequency_hz = {frequency!r}: give a positive frequency in hertz")
-    return pi / 2.0 / sqrt(2.0 * pi * frequency / beam.wave_constant)

@@ -1,5 +1,6 @@
 """Quantities of modes: frequencies, shapes, errors, orders, bounds, required N; the paper's drive rule; buckling."""
 
+from math import pi, sqrt
 from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
@@ -159,13 +160,14 @@ def rule_frequency(
     scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
 ) -> float:
     """Root mean square of two neighbouring natural frequencies, where both respond equally."""
-    return closed_forms.rule_frequency_hz(scene.beam, mode - 1, mode)
+    return sqrt(sum(closed_forms.frequency_hz(scene.beam, n) ** 2 for n in (mode - 1, mode)) / 2.0)
 
 
 @quantity("drive.quarter_wavelength", unit="m", reads=("beam", "drive"))
 def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
     """A quarter of the bending wavelength: the distance of a force from its end of the beam."""
-    return closed_forms.quarter_wavelength(scene.beam, opt.drive_frequency(scene, frequency_hz))
+    closed_forms.check_uniform(scene.beam)
+    return sqrt(0.125 * pi * scene.beam.wave_constant / opt.drive_frequency(scene, frequency_hz))
 
 
 @quantity("beam.buckling_load", unit="N", reads=BEAM)
