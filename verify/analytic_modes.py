@@ -17,7 +17,6 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number, check_whole
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.exact.characteristic import buckling_load, check_stable, count_at, wavenumber_length
@@ -30,6 +29,7 @@ from verify.linear.positions import Forces, Numbers, frequencies_on, positions_o
 from verify.linear.time_basis import TimeBasis, check_held
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
+from verify.validation import check_number, check_whole
 
 EXACT_MODES = 400
 """Modes of a time basis unless another number is requested; the rest responds without delay."""

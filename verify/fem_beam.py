@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.checks import MOST_PARTS, check_whole
 from verify.errors import NoFigureError
 from verify.linear.base import DiscreteModel
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
@@ -27,6 +26,7 @@ from verify.linear.system import StructuralSystem
 from verify.options import Theory
 from verify.problem.beam import Beam
 from verify.problem.supports import HOLDS
+from verify.validation import MOST_PARTS, check_whole
 
 RIGID = 1e14
 """Cap on stiffness, relative to that of an element: above it frequencies change by less than 1e-13."""

@@ -28,7 +28,6 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.checks import MOST_PARTS, check_number, check_whole, check_word, plain
 from verify.errors import InputError, NoFigureError
 from verify.linear.base import DiscreteModel
 from verify.linear.mesh import Parts, check_division, divide, part_counts
@@ -53,6 +52,7 @@ from verify.segments.chain import (
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
+from verify.validation import MOST_PARTS, check_number, check_whole, check_word, plain
 
 _WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
 _FEWEST_CORRECTED = 6

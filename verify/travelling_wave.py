@@ -21,13 +21,13 @@ from functools import cached_property
 import numpy as np
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_kind
 from verify.errors import InputError
 from verify.linear.field import HarmonicField, phasor
 from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
 from verify.linear.positions import Numbers
 from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
+from verify.validation import check_kind
 from verify.waves.best_drive import BestDrive, best_drive
 from verify.waves.best_frequency import best_frequency
 from verify.waves.driven_case import DrivenCase

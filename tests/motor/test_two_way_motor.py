@@ -247,7 +247,7 @@ def test_running_feet_work_on_the_beam_what_the_beam_gains(face):
     slider = replace(SPRUNG, foot=(replace(SPRUNG.foot[0], face=face),), gravity=0.0)
     before = crossing(slider, duration=4e-4, step=6e-7, samples=2)
     found = crossing(slider, duration=2.9e-3, step=6e-7, samples=2, continue_from=before)
-    omegas = basis_of(CANTILEVER, "fem", 10, 80, "spline").omegas
+    omegas = basis_of(CANTILEVER, "fem", 10, None, "spline").omegas
     first, last = (
         0.5 * float(one.rates @ one.rates + (omegas * one.q) @ (omegas * one.q)) for one in (before.state, found.state)
     )

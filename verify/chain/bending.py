@@ -12,11 +12,11 @@ from msgspec import Struct, structs
 from verify.arrays import Array
 from verify.chain.statics import MAX_TURN, SETTLED, TOLERANCE, Forces, forces_at, solve_static
 from verify.chain.system import ChainSystem, LinkLoad, build_system
-from verify.checks import check_number, check_whole, check_word
 from verify.errors import InputError, shown
 from verify.linear.positions import Numbers, as_vector
 from verify.options import JOINTS, Joints, Wall
 from verify.problem.beam import Beam
+from verify.validation import check_number, check_whole, check_word
 
 SAFE = 0.9
 """Of the buckling load: how far a load is raised at once."""

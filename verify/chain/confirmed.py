@@ -16,9 +16,9 @@ from verify.chain.result import ChainMotion
 from verify.chain.stepping import simulate
 from verify.chain.stretching import ElasticMotion, simulate_elastic
 from verify.chain.system import ChainSystem
-from verify.checks import check_word
 from verify.errors import InputError
 from verify.options import LINKS, Links
+from verify.validation import check_word
 
 Moved = TypeVar("Moved", ChainMotion, ElasticMotion)
 FAR = 0.3

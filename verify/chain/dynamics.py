@@ -16,8 +16,8 @@ from verify.chain import kinematics, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular
-from verify.checks import check_unmasked
 from verify.errors import InputError
+from verify.validation import check_unmasked
 
 PIVOT_LOSS = 0.1
 """A dependent angle is kept until its lever arm falls below this share of the longest."""

@@ -12,11 +12,11 @@ from verify.chain.result import ChainMotion
 from verify.chain.statics import solve_static
 from verify.chain.stepping import Method, simulate
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
-from verify.checks import check_whole
 from verify.errors import InputError
 from verify.options import Tip, Wall
 from verify.problem.beam import Beam, PointForce
 from verify.segments.chain import link_inertia
+from verify.validation import check_whole
 
 Progress = Callable[[float], None]
 """Called with the fraction of a motion done, 0 to 1."""

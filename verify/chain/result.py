@@ -9,9 +9,9 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.kinematics import energies, hub
 from verify.chain.system import ChainState, ChainSystem, link_at
-from verify.checks import check_number
 from verify.errors import InputError
 from verify.motion.result import Statistics
+from verify.validation import check_number
 
 
 class ChainStatistics(Statistics, frozen=True, kw_only=True):

@@ -17,7 +17,6 @@ from verify.chain.confirmed import from_rest
 from verify.chain.result import ChainMotion
 from verify.chain.stretching import ElasticMotion
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
-from verify.checks import check_number, check_whole
 from verify.errors import InputError, written
 from verify.linear.surface import section_at
 from verify.motion.contact import Coupling, couple, coupling_of, law_of, surface_speed, turned_by
@@ -30,6 +29,7 @@ from verify.options import Links
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 from verify.segments.reading import contact_line, contact_piece
+from verify.validation import check_number, check_whole
 
 if TYPE_CHECKING:
     from verify.linear.field import HarmonicField

@@ -13,9 +13,9 @@ from verify.chain.dynamics import PIVOT_LOSS, accelerated, flatten, held_rows, k
 from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
-from verify.checks import check_number, check_unmasked
 from verify.errors import InputError, near_name
 from verify.motion.result import END
+from verify.validation import check_number, check_unmasked
 
 Method = Literal["rk4", "adaptive"]
 METHODS: tuple[str, ...] = get_args(Method)

@@ -17,10 +17,10 @@ from verify.arrays import Array
 from verify.chain import records
 from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
-from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
 from verify.motion.result import END, Statistics
 from verify.segments.chain import joint_masses
+from verify.validation import check_number, check_unmasked
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,7 +11,6 @@ from math import pi, radians, sin
 import numpy as np
 
 from verify.arrays import Array
-from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
 from verify.linear.mesh import divide
 from verify.options import TIPS, Joints, Load, Tip, Wall
@@ -19,6 +18,7 @@ from verify.problem.beam import Beam, PointForce
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
+from verify.validation import check_number, check_unmasked
 
 MAX_ACTUATORS = 4
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from verify.analysis.comparison import LEAST_MAC, LOW_MAC, mac, node_weights, pair_modes
 from verify.arrays import Array, Indices
-from verify.checks import check_whole
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.fit import TOLERANCE, Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
@@ -17,6 +16,7 @@ from verify.errors import InputError
 from verify.options import Support
 from verify.problem.beam import Beam
 from verify.report.result import Result
+from verify.validation import check_whole
 
 RIGID = 3e-3
 """Of the next frequency: smaller leading ones are rigid motions, unless the beam has such a gap."""

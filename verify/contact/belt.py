@@ -5,8 +5,8 @@ Source: J. P. Den Hartog, Mechanical Vibrations, 4th ed. (1956), section 7.8; st
 
 from math import atan2, pi, sqrt
 
-from verify.checks import check_number
 from verify.errors import InputError
+from verify.validation import check_number
 
 
 def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: float, speed: float) -> tuple[float, float]:

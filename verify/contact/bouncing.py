@@ -8,9 +8,9 @@ from cmath import sqrt as complex_sqrt
 from math import acos, asin, cos, pi, sin, sqrt
 from typing import NamedTuple
 
-from verify.checks import check_number, check_whole
 from verify.contact.layer import root
 from verify.errors import InputError
+from verify.validation import check_number, check_whole
 
 
 class Bounce(NamedTuple):

@@ -8,8 +8,8 @@ are over V, the crests', forces over mu N, friction is Coulomb's. Own derivation
 
 from math import acos, cos, pi, sin
 
-from verify.checks import check_number
 from verify.contact.layer import force, pressed, root
+from verify.validation import check_number
 
 
 def contact_half_angle(load: float) -> float:

@@ -9,9 +9,9 @@ whose three branches are this one function.
 
 from math import asinh, atan2, exp, inf, sqrt
 
-from verify.checks import check_number
 from verify.contact.layer import root
 from verify.errors import InputError
+from verify.validation import check_number
 
 
 def contact_time(damping_ratio: float) -> float:

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 from math import acos, asin, atan, cos, pi, sin, sqrt
 
-from verify.checks import check_number
 from verify.errors import InputError
+from verify.validation import check_number
 
 NARROWEST = 1e-3
 """Half angle of a contact, radians, below which sines and cosines leave fewer than nine digits of what is pressed."""

@@ -9,11 +9,11 @@ from typing import Protocol
 import numpy as np
 
 from verify.arrays import Array
-from verify.checks import check_whole
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.slider import Slider
 from verify.registry import Registry
+from verify.validation import check_whole
 
 SAMPLES = 200
 """Kept of a run, or every step of a shorter one."""

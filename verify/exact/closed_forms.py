@@ -6,9 +6,9 @@ pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model fo
 
 from math import atan, exp, pi, sqrt
 
-from verify.checks import check_whole
 from verify.errors import InputError
 from verify.problem.beam import Beam
+from verify.validation import check_whole
 
 HIGHEST = 10**9
 """Mode of which there is a frequency."""

@@ -15,7 +15,6 @@ import numpy as np
 from msgspec import structs
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_kind, check_number, check_whole, check_word, several
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
@@ -26,6 +25,7 @@ from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
+from verify.validation import check_kind, check_number, check_whole, check_word, several
 
 _NEEDS = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "shear_stiffness")}
 

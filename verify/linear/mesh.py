@@ -5,10 +5,10 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array
-from verify.checks import check_kind, check_number
 from verify.errors import InputError
 from verify.problem.beam import SHORTEST_SECTION, Beam
 from verify.problem.cross_section import Piece
+from verify.validation import check_kind, check_number
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):

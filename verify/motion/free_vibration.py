@@ -9,7 +9,6 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array
-from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown
 from verify.linear.numerics import extremes
 from verify.linear.positions import Numbers, real_array, vector_on
@@ -18,6 +17,7 @@ from verify.motion.forcing import check_free_phases, free_part, modal, state_of
 from verify.motion.result import EndState
 from verify.motion.surface import basis_of
 from verify.problem.beam import Beam
+from verify.validation import check_number, check_whole
 
 Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
 """A mode's number, a function of x (metres), or places and values with straight lines between them."""

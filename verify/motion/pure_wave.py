@@ -5,7 +5,6 @@ from math import isfinite
 import numpy as np
 
 from verify.arrays import Array
-from verify.checks import check_number
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
 from verify.motion.contact import law_of
@@ -15,6 +14,7 @@ from verify.motion.stepping import Sliding, fresh_motion, run_stages
 from verify.motion.surface import ANALYTIC_DEGREE, NO_MODES, Stage
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
+from verify.validation import check_number
 
 STEPS = 1024
 """Of one period."""

@@ -9,7 +9,6 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array
-from verify.checks import check_kind, check_number, check_unmasked, check_whole
 from verify.errors import InputError, shown, written
 from verify.linear.mesh import part_counts
 from verify.linear.positions import Numbers, forces_on, vector_on
@@ -20,6 +19,7 @@ from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.slider import Slider
+from verify.validation import check_kind, check_number, check_unmasked, check_whole
 
 if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration

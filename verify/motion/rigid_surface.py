@@ -5,10 +5,10 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.arrays import Array
-from verify.checks import check_number
 from verify.errors import InputError
 from verify.motion.records import SLIPS, STICKS, Law
 from verify.problem.slider import GRAVITY
+from verify.validation import check_number
 
 STEPS = 4096
 STEPS_PER_PERIOD = 4000

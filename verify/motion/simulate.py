@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.checks import check_kind
 from verify.linear.positions import Forces, Numbers, forces_on
 from verify.linear.registry import MODELS
 from verify.linear.surface import contact_range
@@ -21,6 +20,7 @@ from verify.motion.validity import margins_of
 from verify.options import Start
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
+from verify.validation import check_kind
 
 if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration

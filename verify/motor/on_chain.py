@@ -12,7 +12,6 @@ from verify.chain.result import ChainMotion
 from verify.chain.ride import joint_steps, line_rows, piece_at
 from verify.chain.stretching import ElasticMotion
 from verify.chain.system import axial_stiffness, build_system
-from verify.checks import check_whole
 from verify.errors import InputError
 from verify.linear.positions import SLACK
 from verify.linear.surface import LEFT_BEAM
@@ -28,6 +27,7 @@ from verify.motor.result import MotorRun
 from verify.motor.setup import Setup, begin, lay_out
 from verify.motor.stepping import Riding, fresh_line, in_chunks, span_of
 from verify.options import Links
+from verify.validation import check_whole
 
 BESIDE = 2
 """Links beside those under the feet on which the slider may run."""

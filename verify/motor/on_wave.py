@@ -9,7 +9,6 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array
-from verify.checks import check_number, check_whole
 from verify.motion.pure_wave import wave_stage
 from verify.motion.surface import cut
 from verify.motor import records
@@ -18,6 +17,7 @@ from verify.motor.figures import AtSpeed
 from verify.motor.stepping import Riding, run_stages
 from verify.problem.beam import Beam
 from verify.problem.slider import Contact, Foot, Slider
+from verify.validation import check_number, check_whole
 
 WARM = 2
 """Periods before the one that counts: what gives way along the surface forgets how it began."""

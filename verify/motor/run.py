@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from verify.checks import check_kind, check_number, check_word, plain, several
 from verify.errors import InputError, written
 from verify.linear.positions import Forces, Numbers, forces_on
 from verify.motion.request import Request, check_same_beam, requested
@@ -17,6 +16,7 @@ from verify.motor.setup import carry_out, lay_out
 from verify.options import LINKS, Links, Start
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
+from verify.validation import check_kind, check_number, check_word, plain, several
 
 MODES = 80
 """Of the exact beam, unless given."""

@@ -7,12 +7,12 @@ from typing import Annotated, Any
 import msgspec
 from msgspec.structs import asdict, replace
 
-from verify.checks import Relative, check_number, check_position, unit, validate
 from verify.errors import InputError, written
 from verify.options import Support
 from verify.problem.cross_section import CrossSection, Piece, Section, given, merged, piece_of
 from verify.problem.point_attachments import PointMass, PointSpring
 from verify.problem.supports import HOLDS, check_moves
+from verify.validation import Relative, check_number, check_position, unit, validate
 
 SHORTEST_SECTION = 1e-6
 """Relative to the beam's length; rounding of the lengths may leave a shorter one."""

@@ -6,9 +6,9 @@ from typing import Annotated, Any
 import msgspec
 from msgspec.structs import asdict
 
-from verify.checks import check_number, unit, validate
 from verify.errors import InputError
 from verify.options import Shape
+from verify.validation import check_number, unit, validate
 
 SIZES = {
     "rectangle": ("width", "thickness"),

@@ -5,10 +5,10 @@ from typing import Annotated
 
 import msgspec
 
-from verify.checks import check_position, unit, validate
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
 from verify.problem.supports import check_moves
+from verify.validation import check_position, unit, validate
 
 ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
 TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")

@@ -4,8 +4,8 @@ from typing import Annotated
 
 import msgspec
 
-from verify.checks import unit, validate
 from verify.errors import InputError
+from verify.validation import unit, validate
 
 
 class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -5,10 +5,10 @@ from typing import Annotated, Any
 import msgspec
 from msgspec.structs import replace
 
-from verify.checks import check_number, check_position, unit, validate
 from verify.errors import InputError
 from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 from verify.problem.beam import Beam
+from verify.validation import check_number, check_position, unit, validate
 
 GRAVITY = 9.81
 STEEPNESS = 1e4

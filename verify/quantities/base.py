@@ -20,10 +20,10 @@ import msgspec
 from msgspec import Meta
 
 from verify.analysis.solution_cache import Bracket
-from verify.checks import plain
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
 from verify.registry import Registry
+from verify.validation import plain
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache

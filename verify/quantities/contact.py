@@ -6,12 +6,12 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from verify.checks import check_sizes
 from verify.contact import bouncing, landing, layer
 from verify.errors import InputError
 from verify.problem.slider import GRAVITY
 from verify.quantities.base import Scene, quantity
 from verify.quantities.options import Mass, Mu, Sizes, Slope, drive_frequency
+from verify.validation import check_sizes
 
 HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
 SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]

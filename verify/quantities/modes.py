@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated
 from msgspec import Meta
 
 from verify.analysis.solution_cache import Bracket
-from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.linear.registry import MEAN, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
+from verify.validation import Relative, check_sizes
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache

@@ -8,12 +8,12 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options
-from verify.checks import Relative
 from verify.errors import InputError, near_name
 from verify.linear import registry
 from verify.linear.registry import MEAN, MODELS
 from verify.problem.beam import PointForce, check_frequency
 from verify.quantities.base import MODEL_NAME, Place, Scene
+from verify.validation import Relative
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import Settings

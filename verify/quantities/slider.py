@@ -8,12 +8,12 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options
-from verify.checks import check_sizes
 from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
+from verify.validation import check_sizes
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache

@@ -8,11 +8,11 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options
-from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
+from verify.validation import Relative, check_sizes
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache

@@ -7,12 +7,12 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
-from verify.checks import check_number
 from verify.errors import InputError, raise_all
 from verify.options import DriveKind, Reference
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.device import Device, check_moved
 from verify.problem.slider import Slider
+from verify.validation import check_number
 
 
 class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

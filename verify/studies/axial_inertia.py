@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from verify.checks import check_number
 from verify.errors import InputError
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si
+from verify.validation import check_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

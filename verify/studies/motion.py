@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.checks import Relative, check_number
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title
+from verify.validation import Relative, check_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable

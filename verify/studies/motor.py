@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.checks import Relative
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title
+from verify.validation import Relative
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache

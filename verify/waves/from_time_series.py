@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number
 from verify.errors import InputError, NoFigureError
 from verify.linear.field import wavenumber
 from verify.linear.positions import positions_on, real_array
 from verify.problem.beam import Beam
+from verify.validation import check_number
 from verify.waves.two_waves import ROUNDING, TwoWaves, fit_waves, fitted_wavenumber
 from verify.waves.window import check_clear, check_wavenumber
 

@@ -20,11 +20,11 @@ import msgspec
 import numpy as np
 
 from verify.arrays import ComplexArray
-from verify.checks import check_kind, check_number
 from verify.errors import InputError
 from verify.linear.field import wavenumber
 from verify.problem.beam import Beam, check_frequency
 from verify.problem.device import Device, of_impedance
+from verify.validation import check_kind, check_number
 
 _ENDS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Derivatives of the deflection that a support sets to zero."""

@@ -16,10 +16,10 @@ import numpy as np
 
 from verify.analytic_modes import ExactModel
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number, check_whole
 from verify.errors import InputError
 from verify.linear.positions import Numbers, vector_on
 from verify.problem.beam import Beam
+from verify.validation import check_number, check_whole
 from verify.waves.two_waves import reflections, standing_wave_ratios
 
 

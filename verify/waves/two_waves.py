@@ -7,10 +7,10 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_kind
 from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response
 from verify.linear.numerics import Rule, gauss_rule
+from verify.validation import check_kind
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
 STANDING = 1e-12

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from verify.checks import check_kind, plain
 from verify.errors import InputError, WindowError, shown
 from verify.formatting import as_written
 from verify.linear.field import wavenumber
 from verify.problem.beam import Beam
+from verify.validation import check_kind, plain
 
 Window = tuple[float, float]
 MOST_HALVES = 10_000
