@@ -384,7 +384,7 @@ def check_in_time(beam: Beam, instead: str = "give model = 'fem' or 'segment'") 
     check_held(beam)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=256)  # a basis of 400 modes has some twenty blocks
 def _modal_motion(model: ExactModel, modes: range) -> Motion:
     """The motions of some modes, in a row."""
     betas = [model._beta_length(mode) if mode else 0.0 for mode in range(modes[0] - 1, modes[-1] + 2)]
