@@ -17,7 +17,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.checks import check_number, check_whole
+from verify.checks import check_whole
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.exact.characteristic import buckling_load, check_stable, count_at, wavenumber_length
@@ -82,16 +82,11 @@ class ExactModel(BeamModel):
         Modes rank by frequency: above sqrt(kappa G A / rho I) a Timoshenko beam has a second family among them.
         """
         closed_forms.check_mode(mode)
-        return self._beta_length(mode) ** 2 * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
-
-    def _beta_length(self, mode: int) -> float:
-        """Wavenumber beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
-        return wavenumber_length(self.layout, mode + self.beam.rigid_motions)
-
-    def n_below(self, frequency_hz: float) -> int:
-        """Number of frequencies, rigid motions included, below one in Hz. Raises InputError."""
-        check_number("frequency_hz", frequency_hz, "hertz", at_least=0)
-        return count_at(self.layout, self._omega2(frequency_hz)).below
+        return (
+            wavenumber_length(self.layout, mode + self.beam.rigid_motions) ** 2
+            * self.beam.wave_constant
+            / (2.0 * pi * self.beam.length**2)
+        )
 
     def _omega2(self, frequency_hz: Any) -> Any:
         """Dimensionless omega^2, over EI / (rho A L^4)."""
@@ -283,13 +278,6 @@ class ExactModel(BeamModel):
         if self.beam.loss_factor:
             return [0] * len(frequencies)
         low, high = self._omega2(frequencies * (1.0 - RESONANCE)), self._omega2(frequencies * (1.0 + RESONANCE))
-        below, up_to = count_at(layout, float(low.min())).below, count_at(layout, float(high.max())).below
-        if up_to - below < len(frequencies):  # compare with every resonance in the range
-            roots = [(number, wavenumber_length(layout, number) ** 4) for number in range(below + 1, up_to + 1)]
-            numbers = np.zeros(len(frequencies), dtype=int)
-            for number, omega2 in roots:
-                numbers[(low < omega2) & (omega2 <= high)] = number
-            return [int(number) for number in numbers]
         counts = [[count_at(layout, omega2).below for omega2 in side.tolist()] for side in (low, high)]
         return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
@@ -387,5 +375,6 @@ def check_in_time(beam: Beam, instead: str = "give model = 'fem' or 'segment'") 
 @lru_cache(maxsize=16)
 def _modal_motion(model: ExactModel, modes: range) -> Motion:
     """The motions of some modes, in a row."""
-    betas = [model._beta_length(mode) if mode else 0.0 for mode in range(modes[0] - 1, modes[-1] + 2)]
+    numbers, rigid = range(modes[0] - 1, modes[-1] + 2), model.beam.rigid_motions
+    betas = [wavenumber_length(model.layout, mode + rigid) if mode else 0.0 for mode in numbers]
     return modal_motion(model.layout, np.array(betas), np.array(modes))

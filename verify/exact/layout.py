@@ -84,7 +84,10 @@ def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ..
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
     spans, start = list[UniformSpan](), 0.0
     for piece in beam.pieces:
-        ends = [0.0, *_inside([cut - start for cut in cuts], piece.length, SAME_PLACE * length), piece.length]
+        ends, room = [0.0], SAME_PLACE * length  # a cut closer to its neighbour, or to an end, is the same station
+        for cut in sorted(cut - start for cut in cuts):
+            if ends[-1] + room < cut < piece.length - room:
+                ends.append(cut)
         compliance = 1.0 / piece.shear_stiffness if theory == "timoshenko" and piece.shear_stiffness else 0.0
         rotary = (piece.rotary_inertia or 0.0) if theory != "euler-bernoulli" else 0.0
         properties = (
@@ -93,7 +96,7 @@ def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ..
             compliance * stiffness / length**2,
             rotary / mass / length**2,
         )
-        spans += [UniformSpan((end - begin) / length, *properties) for begin, end in pairwise(ends)]
+        spans += [UniformSpan((end - begin) / length, *properties) for begin, end in pairwise([*ends, piece.length])]
         start += piece.length
     layout = BeamLayout(
         supports=beam.supports,
@@ -111,15 +114,6 @@ def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ..
         for body in beam.mass
     ]
     return with_stations(layout, [(position / length, station) for position, station in added])
-
-
-def _inside(cuts: Sequence[float], length: float, room: float) -> list[float]:
-    """Ascending cuts inside a piece, each further than `room` from its neighbours."""
-    kept = [0.0]
-    for cut in sorted(cut for cut in cuts if room < cut < length - room):
-        if cut - kept[-1] > room:
-            kept.append(cut)
-    return kept[1:]
 
 
 def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) -> BeamLayout:
