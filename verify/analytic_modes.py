@@ -71,8 +71,7 @@ class ExactModel(BeamModel):
     @cached_property
     def layout(self) -> BeamLayout:
         """Spans and stations. Raises InputError for a compression beyond buckling."""
-        check_stable(self.beam)
-        return layout_of(self.beam, self.theory)
+        return self._stationed()
 
     # --- Modes ---
 
@@ -220,7 +219,7 @@ class ExactModel(BeamModel):
         """
         at, frequencies = vector_on("positions", positions, self.beam.length), frequencies_on(self.beam, frequencies_hz)
         xi = vector_on("x", x, self.beam.length) / self.beam.length
-        layout = self._stationed(tuple(at.tolist()), ())
+        layout = self._stationed(tuple(at.tolist()))
         steady = np.flatnonzero(np.array(self._resonances(self.layout, frequencies)) == 0)
         loads = list(zip(at.tolist(), np.eye(len(at)), strict=True))
         responses = np.full((len(frequencies), len(at), len(xi)), np.nan, dtype=complex)
@@ -228,26 +227,10 @@ class ExactModel(BeamModel):
             responses[block] = self._solve(layout, frequencies[block], loads)[0].read(xi, 0)
         return responses
 
-    def _stationed(self, positions: tuple[float, ...], devices: Sequence[Device]) -> BeamLayout:
-        """The layout with stations at positions (m), and at devices with their impedances."""
-        beam = self.beam
-        check_stable(beam)
-        across, mass = beam.length**3 / beam.bending_stiffness, beam.mass_per_length * beam.length
-        around, rate = beam.length / beam.bending_stiffness, beam.wave_constant / beam.length**2
-        layout = layout_of(beam, self.theory, (*positions, *(device.position for device in devices)))
-        stations = [
-            Station(
-                stiffness=one.stiffness * across,
-                rotational=one.rotational * around,
-                mass=one.mass / mass,
-                inertia=one.rotary_inertia / (mass * beam.length**2),
-                dashpot=one.dashpot * across * rate,
-                rotational_dashpot=one.rotational_dashpot * around * rate,
-            )
-            for one in devices
-        ]
-        places = [one.position / beam.length for one in devices]
-        return with_stations(layout, list(zip(places, stations, strict=True))) if devices else layout
+    def _stationed(self, positions: tuple[float, ...] = (), devices: Sequence[Device] = ()) -> BeamLayout:
+        """The layout with further stations at positions (m), and with devices."""
+        check_stable(self.beam)
+        return layout_of(self.beam, self.theory, positions, tuple(devices))
 
     def _solve(
         self,

@@ -18,6 +18,8 @@ from typing import NamedTuple
 import msgspec
 
 from verify.problem.beam import Beam
+from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass, PointSpring
 
 SAME_PLACE = 1e-12
 """Distance, relative to the beam's length, below which two positions are one station."""
@@ -78,9 +80,12 @@ class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
 
 
 @lru_cache(maxsize=256)
-def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = ()) -> BeamLayout:
-    """The layout of a beam by a theory that it has the properties for; `also` are further stations, m."""
-    cuts = [*(body.position for body in beam.mass), *(spring.position for spring in beam.spring), *also]
+def layout_of(
+    beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = (), devices: tuple[Device, ...] = ()
+) -> BeamLayout:
+    """The layout of a beam with devices by a theory that it has the properties for; `also`: further stations, m."""
+    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.mass, *beam.spring, *devices)
+    cuts = [*(one.position for one in attached), *also]
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
     spans, start = list[UniformSpan](), 0.0
     for piece in beam.pieces:
@@ -105,15 +110,17 @@ def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ..
         tension=beam.tension * length**2 / stiffness,
         foundation=beam.foundation * length**4 / stiffness,
     )
-    added = [
-        (spring.position, Station(spring.stiffness * length**3 / stiffness, spring.rotational * length / stiffness))
-        for spring in beam.spring
-    ]
-    added += [
-        (body.position, Station(mass=body.mass / (mass * length), inertia=body.rotary_inertia / (mass * length**3)))
-        for body in beam.mass
-    ]
-    return with_stations(layout, [(position / length, station) for position, station in added])
+    across, around, rate = length**3 / stiffness, length / stiffness, beam.wave_constant / length**2
+    scales = (
+        ("stiffness", across),
+        ("rotational", around),
+        ("mass", 1.0 / (mass * length)),
+        ("rotary_inertia", 1.0 / (mass * length**3)),
+        ("dashpot", across * rate),
+        ("rotational_dashpot", around * rate),
+    )
+    stations = [Station._make((*(getattr(one, n, 0.0) * scale for n, scale in scales), "free")) for one in attached]
+    return with_stations(layout, [(one.position / length, at) for one, at in zip(attached, stations, strict=True)])
 
 
 def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) -> BeamLayout:
