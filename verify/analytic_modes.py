@@ -29,7 +29,7 @@ from verify.linear.positions import Forces, Numbers, frequencies_on, positions_o
 from verify.linear.time_basis import TimeBasis, check_held
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
-from verify.validation import check_number, check_whole
+from verify.validation import check_whole
 
 EXACT_MODES = 400
 """Modes of a time basis unless another number is requested; the rest responds without delay."""
@@ -71,8 +71,7 @@ class ExactModel(BeamModel):
     @cached_property
     def layout(self) -> BeamLayout:
         """Spans and stations. Raises InputError for a compression beyond buckling."""
-        check_stable(self.beam)
-        return layout_of(self.beam, self.theory)
+        return self._stationed()
 
     # --- Modes ---
 
@@ -82,16 +81,11 @@ class ExactModel(BeamModel):
         Modes rank by frequency: above sqrt(kappa G A / rho I) a Timoshenko beam has a second family among them.
         """
         closed_forms.check_mode(mode)
-        return self._beta_length(mode) ** 2 * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
-
-    def _beta_length(self, mode: int) -> float:
-        """Wavenumber beta L of an elastic mode, omega = beta^2 sqrt(EI / rho A)."""
-        return wavenumber_length(self.layout, mode + self.beam.rigid_motions)
-
-    def n_below(self, frequency_hz: float) -> int:
-        """Number of frequencies, rigid motions included, below one in Hz. Raises InputError."""
-        check_number("frequency_hz", frequency_hz, "hertz", at_least=0)
-        return count_at(self.layout, self._omega2(frequency_hz)).below
+        return (
+            wavenumber_length(self.layout, mode + self.beam.rigid_motions) ** 2
+            * self.beam.wave_constant
+            / (2.0 * pi * self.beam.length**2)
+        )
 
     def _omega2(self, frequency_hz: Any) -> Any:
         """Dimensionless omega^2, over EI / (rho A L^4)."""
@@ -225,7 +219,7 @@ class ExactModel(BeamModel):
         """
         at, frequencies = vector_on("positions", positions, self.beam.length), frequencies_on(self.beam, frequencies_hz)
         xi = vector_on("x", x, self.beam.length) / self.beam.length
-        layout = self._stationed(tuple(at.tolist()), ())
+        layout = self._stationed(tuple(at.tolist()))
         steady = np.flatnonzero(np.array(self._resonances(self.layout, frequencies)) == 0)
         loads = list(zip(at.tolist(), np.eye(len(at)), strict=True))
         responses = np.full((len(frequencies), len(at), len(xi)), np.nan, dtype=complex)
@@ -233,26 +227,10 @@ class ExactModel(BeamModel):
             responses[block] = self._solve(layout, frequencies[block], loads)[0].read(xi, 0)
         return responses
 
-    def _stationed(self, positions: tuple[float, ...], devices: Sequence[Device]) -> BeamLayout:
-        """The layout with stations at positions (m), and at devices with their impedances."""
-        beam = self.beam
-        check_stable(beam)
-        across, mass = beam.length**3 / beam.bending_stiffness, beam.mass_per_length * beam.length
-        around, rate = beam.length / beam.bending_stiffness, beam.wave_constant / beam.length**2
-        layout = layout_of(beam, self.theory, (*positions, *(device.position for device in devices)))
-        stations = [
-            Station(
-                stiffness=one.stiffness * across,
-                rotational=one.rotational * around,
-                mass=one.mass / mass,
-                inertia=one.rotary_inertia / (mass * beam.length**2),
-                dashpot=one.dashpot * across * rate,
-                rotational_dashpot=one.rotational_dashpot * around * rate,
-            )
-            for one in devices
-        ]
-        places = [one.position / beam.length for one in devices]
-        return with_stations(layout, list(zip(places, stations, strict=True))) if devices else layout
+    def _stationed(self, positions: tuple[float, ...] = (), devices: Sequence[Device] = ()) -> BeamLayout:
+        """The layout with further stations at positions (m), and with devices."""
+        check_stable(self.beam)
+        return layout_of(self.beam, self.theory, positions, tuple(devices))
 
     def _solve(
         self,
@@ -283,13 +261,6 @@ class ExactModel(BeamModel):
         if self.beam.loss_factor:
             return [0] * len(frequencies)
         low, high = self._omega2(frequencies * (1.0 - RESONANCE)), self._omega2(frequencies * (1.0 + RESONANCE))
-        below, up_to = count_at(layout, float(low.min())).below, count_at(layout, float(high.max())).below
-        if up_to - below < len(frequencies):  # compare with every resonance in the range
-            roots = [(number, wavenumber_length(layout, number) ** 4) for number in range(below + 1, up_to + 1)]
-            numbers = np.zeros(len(frequencies), dtype=int)
-            for number, omega2 in roots:
-                numbers[(low < omega2) & (omega2 <= high)] = number
-            return [int(number) for number in numbers]
         counts = [[count_at(layout, omega2).below for omega2 in side.tolist()] for side in (low, high)]
         return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
@@ -387,5 +358,6 @@ def check_in_time(beam: Beam, instead: str = "give model = 'fem' or 'segment'") 
 @lru_cache(maxsize=256)  # a basis of 400 modes has some twenty blocks
 def _modal_motion(model: ExactModel, modes: range) -> Motion:
     """The motions of some modes, in a row."""
-    betas = [model._beta_length(mode) if mode else 0.0 for mode in range(modes[0] - 1, modes[-1] + 2)]
+    numbers, rigid = range(modes[0] - 1, modes[-1] + 2), model.beam.rigid_motions
+    betas = [wavenumber_length(model.layout, mode + rigid) if mode else 0.0 for mode in numbers]
     return modal_motion(model.layout, np.array(betas), np.array(modes))

@@ -21,22 +21,22 @@ from functools import cached_property
 import numpy as np
 
 from verify.arrays import Array, ComplexArray
-from verify.errors import InputError
-from verify.linear.field import HarmonicField, phasor
+from verify.errors import InputError, NoFigureError
+from verify.linear.field import HarmonicField, phasor, wavenumber
 from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
-from verify.linear.positions import Numbers
+from verify.linear.positions import Numbers, positions_on
 from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
-from verify.validation import check_kind
+from verify.validation import check_number
 from verify.waves.best_drive import BestDrive, best_drive
 from verify.waves.best_frequency import best_frequency
 from verify.waves.driven_case import DrivenCase
-from verify.waves.from_time_series import field_of_series, phasors
+from verify.waves.from_time_series import phasors
 from verify.waves.impedance_matching import matched_device
 from verify.waves.operating_point import OperatingMap, OperatingPoint, maximum_crest_speed
-from verify.waves.two_waves import TwoWaves, fit_waves, two_waves
+from verify.waves.two_waves import ROUNDING, TwoWaves, fit_waves, fitted_wavenumber, two_waves
 from verify.waves.waveguide import Waveguide
-from verify.waves.window import Window, middle_half
+from verify.waves.window import Window, check_clear, middle_half
 
 __all__ = [
     "BestDrive", "DrivenCase", "OperatingMap", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
@@ -181,20 +181,32 @@ def measure_series(
     Forces and devices between them are not known here: a large `waves.residual` indicates them. Raises InputError for
     series or spans that are too short and positions off the beam, WindowError for an attachment between them.
     """
-    deflection, waves = field_of_series(beam, x, times, values, frequency_hz, k)
-    at = np.asarray(x, dtype=float)
-    middle = 0.5 * float(at[0] + at[-1])
+    from scipy.interpolate import CubicSpline
+
+    check_number("frequency_hz", frequency_hz, "hertz", above=0)
+    at = positions_on("x", x, beam.length)
+    if not (at.ndim == 1 and (np.diff(at) > 0).all() and np.shape(values)[1:] == at.shape):
+        raise InputError("x has to be ascending and as long as values are wide")
+    own = wavenumber(beam, frequency_hz)
+    if len(at) < 4 or (at[-1] - at[0]) * own.real < np.pi:
+        raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
+    start, end = float(at[0]), float(at[-1])
+    check_clear(beam, (start, end), f"x from {start:.6g} to {end:.6g} m")
+    measured = phasors(times, values, frequency_hz)
+    if not abs(measured).max() > ROUNDING * abs(np.asarray(values)).max():
+        raise NoFigureError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
+    waves = fit_waves(at, measured, fitted_wavenumber(at, measured, own) if k is None else k)
 
     def slope(x: Array) -> ComplexArray:
-        phase = np.exp(1j * waves.wavenumber * (x - middle))
+        phase = np.exp(1j * waves.wavenumber * (x - 0.5 * (start + end)))
         return np.asarray(1j * waves.wavenumber * (waves.backward * phase - waves.forward / phase))
 
     return WaveMeasures(
         guide=Waveguide(beam),
         omega=2.0 * np.pi * frequency_hz,
-        window=(float(at[0]), float(at[-1])),
+        window=(start, end),
         waves=waves,
-        deflection=deflection,
+        deflection=CubicSpline(at, measured),
         section_rotation=slope,
         x=at,
         fine=at,
@@ -204,11 +216,8 @@ def measure_series(
 def surface_motion(beam: Beam, rotation: ComplexArray, x: Numbers) -> ComplexArray:
     """u_x of the upper surface at x (m): -(h/2) times the rotation of the section there (rad), of one shape.
 
-    Where two sections meet, h is that of the right one. Raises InputError off the beam and for other shapes.
+    Where two sections meet, h is that of the right one. Raises InputError off the beam.
     """
-    check_kind("beam", beam, Beam)
-    if np.atleast_1d(x).shape != np.shape(rotation):
-        raise InputError(f"x has the shape {np.shape(x)} and rotation {np.shape(rotation)}: give a position for each")
     return np.asarray(-surface_distance_at(beam, x) * np.asarray(rotation, dtype=complex))
 
 
@@ -216,11 +225,9 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
     """(signed axis ratio tan chi, tilt in degrees, signed area S3) of the paths of surface points, of their shape each.
 
     Stokes parameters of u_x = `across` and u_y = `up`: S0, S1 = |u_x|^2 +- |u_y|^2, S2 + i S3 = 2 conj(u_x) u_y,
-    sin 2 chi = S3/S0. Raises InputError for shapes that differ.
+    sin 2 chi = S3/S0.
     """
     across, up = np.asarray(across, dtype=complex), np.asarray(up, dtype=complex)
-    if across.shape != up.shape:
-        raise InputError(f"across has the shape {across.shape} and up {up.shape}: give as many of both")
     total, difference = abs(across) ** 2 + abs(up) ** 2, abs(across) ** 2 - abs(up) ** 2
     product = 2.0 * np.conj(across) * up
     sine = np.where(total > 0, product.imag / np.where(total > 0, total, 1.0), 0.0)
@@ -232,9 +239,13 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     """(power of the forces left of the window - losses up to its middle - flux through it) over that flux.
 
     The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError where the wave
-    stands, and InputError for a beam with sections.
+    stands, and InputError for a beam with sections and for devices against rotation, whose couples a field does not hold.
     """
     beam, middle = field.beam, 0.5 * sum(measures.window)
+    if field.couples:
+        raise InputError(
+            f"device.position = {field.couples[0]!r}: a power balance takes no device against rotation, leave it out"
+        )
     beam.check_added("a power balance", ("mass", "spring", "tension", "foundation"))
     measures.waves.check_travelling()
     left = [force for force in field.forces if force.position <= measures.window[0]]

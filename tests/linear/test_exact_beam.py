@@ -387,4 +387,3 @@ def test_a_dashpot_on_a_node_leaves_a_resonance_undamped(titanium_strip):
     with pytest.raises(ResonanceError, match="of mode 2"):
         model.harmonic(force, resonance, devices=Device(position=middle, dashpot=3.0))
     model.harmonic(force, resonance, devices=Device(position=0.9 * middle, dashpot=3.0))
-    assert [model.n_below(resonance * (1 + side * 1e-12)) for side in (-1, 1)] == [1, 2]

@@ -18,7 +18,7 @@ from verify.scene.load import scene_from
 from verify.segment_model import SegmentModel
 from verify.travelling_wave import DrivenCase, OperatingMap, best_drive, measure, middle_half
 from verify.waves.best_phase import fastest_candidates
-from verify.waves.two_modes import TwoModes
+from verify.waves.two_modes import lumped_swr
 
 # --- Operating point ---
 
@@ -243,7 +243,7 @@ TWO = [PointForce(position=0.0116), PointForce(position=0.5 - 0.0116, phase_deg=
 
 @given(lower=st.integers(1, 60), part=st.floats(0.01, 0.99))
 def test_neighbours_of_a_pinned_beam_have_the_ratio_of_a_tangent(lower, part):
-    found = TwoModes(beam=STRIP, modes=(lower, lower + 1)).local_swr(part * STRIP.length)[0]
+    found = lumped_swr(STRIP, part * STRIP.length, (lower, lower + 1))[0]
     half = 0.5 * np.pi * part
     assert found == pytest.approx(max(np.tan(half), 1.0 / np.tan(half)), rel=1e-7)
 
@@ -253,12 +253,12 @@ def test_it_is_right_at_mid_span_of_the_papers_beam_and_wrong_at_a_quarter():
     field = ExactModel(PAPER).harmonic(TWO, 4276.0)
     for window in ((0.15, 0.25), (0.27, 0.36)):
         assert measure(field, window, field.wavenumber).standing_wave_ratio == pytest.approx(1.0563563, abs=1e-5)
-    lumped = TwoModes(beam=PAPER).local_swr([0.25, 0.125, 0.375])
+    lumped = lumped_swr(PAPER, [0.25, 0.125, 0.375])
     assert lumped == pytest.approx([1.0, 1.0 + np.sqrt(2.0), 1.0 + np.sqrt(2.0)], rel=1e-9)
 
 
 def test_one_mode_with_itself_is_no_wave():
     with pytest.raises(InputError, match=r"modes = \[4, 4\]: one mode with itself stands"):
-        TwoModes(beam=STRIP, modes=(4, 4))
+        lumped_swr(STRIP, 0.1, (4, 4))
     with pytest.raises(InputError, match=r"beam\.mass: two modes are one wave on"):
-        TwoModes(beam=brass())
+        lumped_swr(brass(), 0.1)

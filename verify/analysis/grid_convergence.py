@@ -30,13 +30,6 @@ class GridConvergence(msgspec.Struct, frozen=True, kw_only=True):
     """Richardson's value at vanishing part length; `value` without an observed order."""
     index: float
     """GCI: half width of the uncertainty band about `value`, relative to it; infinite without an order."""
-    asymptotic_ratio: float | None
-    """Index of the coarser pair over r^p times that of the finer pair, both with the theoretical order p: 1 in its
-    asymptotic range. None without a theoretical order. (With the observed order it is 1 by construction.)"""
-
-    def covers(self, exact: float) -> bool:
-        """Whether the band about `value` contains the exact value."""
-        return abs(self.value - exact) <= self.index * abs(self.value)
 
 
 def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: int | None = None) -> GridConvergence:
@@ -55,22 +48,12 @@ def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: i
     r21, r32, e21, e32 = n1 / n2, n2 / n3, f2 - f1, f3 - f2
     if min(abs(e21), abs(e32)) <= ROUNDING * abs(f1):
         raise InputError(f"counts = {list(counts)}: the values differ by rounding alone, use coarser sizes")
-    ratio = None
-    if expected is not None:
-        finer, coarser = abs(e21 / f1) / (r21**expected - 1.0), abs(e32 / f2) / (r32**expected - 1.0)
-        ratio = coarser / (r21**expected * finer)
     order = _order(r21, r32, e32 / e21)
     if order is None:
-        return GridConvergence(value=f1, order=None, extrapolated=f1, index=inf, asymptotic_ratio=ratio)
+        return GridConvergence(value=f1, order=None, extrapolated=f1, index=inf)
     used = order if expected is None else min(order, expected)
     correction = -e21 / (r21**used - 1.0)
-    return GridConvergence(
-        value=f1,
-        order=order,
-        extrapolated=f1 + correction,
-        index=SAFETY * abs(correction / f1),
-        asymptotic_ratio=ratio,
-    )
+    return GridConvergence(value=f1, order=order, extrapolated=f1 + correction, index=SAFETY * abs(correction / f1))
 
 
 def _order(r21: float, r32: float, ratio: float) -> float | None:

@@ -191,13 +191,12 @@ def _over(u: Minors, station: Station, omega2: float) -> Minors:
     return (u0, u1, u2, u3, u4)
 
 
-def count_at(layout: BeamLayout, omega2: float, tension: float | None = None) -> Count:
-    """The count at a trial omega^2 over EI / (rho A L^4), or at a trial T L^2 / EI in place of the beam's own.
+@lru_cache(maxsize=20_000)
+def count_at(layout: BeamLayout, omega2: float) -> Count:
+    """The count at a trial omega^2 over EI / (rho A L^4): frequencies below it, rigid motions at 0 included.
 
-    Frequencies below it are counted, rigid motions at 0 included; at a trial tension and omega = 0 the buckled shapes.
-    Dashpots do not count.
+    At omega = 0 the shapes that have buckled under the layout's tension. Dashpots do not count.
     """
-    force = layout.tension if tension is None else tension
     start = [0.0] * 5
     start[4 - _END[layout.supports[0]]] = 1.0
     u = _over((start[0], start[1], start[2], start[3], start[4]), layout.stations[0], omega2)
@@ -205,7 +204,7 @@ def count_at(layout: BeamLayout, omega2: float, tension: float | None = None) ->
     for span, station in zip(layout.spans, layout.stations[1:], strict=True):
         length, stiffness = span.length, span.stiffness
         c = span.compliance * stiffness / length**2
-        p = (force - span.rotary * omega2) * length**2 / stiffness
+        p = (layout.tension - span.rotary * omega2) * length**2 / stiffness
         q = (span.mass * omega2 - layout.foundation) * length**4 / stiffness
         by = carry(c, p, q)
         # minors of a span of length and stiffness 1, and back, with the largest about 1
@@ -285,11 +284,6 @@ def _negatives(a: float, b: float, d: float, determinant: float) -> int:
 
 
 @lru_cache(maxsize=20_000)
-def _count_at_beta(layout: BeamLayout, beta: float) -> Count:
-    return count_at(layout, beta**4)
-
-
-@lru_cache(maxsize=20_000)
 def wavenumber_length(layout: BeamLayout, number: int) -> float:
     """Wavenumber beta L of a frequency by its number, 1 the lowest, rigid motions included: omega = beta^2 at L = 1.
 
@@ -300,7 +294,7 @@ def wavenumber_length(layout: BeamLayout, number: int) -> float:
         deflections, rotations = (sum(s in (held, "clamped") for s in layout.supports) for held in ("pinned", "guided"))
         rigid = max(2 - deflections - min(rotations, 1), 0)
         return closed_forms.wavenumber_length(layout.supports, number - rigid) if number > rigid else 0.0
-    return nth_root(lambda beta: _count_at_beta(layout, beta), number)
+    return nth_root(lambda beta: count_at(layout, beta**4), number)
 
 
 def nth_root(count: Callable[[float], Count], number: int) -> float:
@@ -337,7 +331,7 @@ def buckling_load(beam: Beam) -> float:
     if bare.rigid_lines:  # a translation changes no energy: its left end is held
         left = {"free": "pinned", "guided": "clamped"}[layout.supports[0]]
         layout = replace(layout, supports=(left, layout.supports[1]))
-    root = nth_root(lru_cache(maxsize=None)(lambda root: count_at(layout, 0.0, -root * root)), 1)
+    root = nth_root(lambda root: count_at(replace(layout, tension=-root * root), 0.0), 1)
     return root * root * beam.bending_stiffness / beam.length**2
 
 

@@ -18,6 +18,8 @@ from typing import NamedTuple
 import msgspec
 
 from verify.problem.beam import Beam
+from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass, PointSpring
 
 SAME_PLACE = 1e-12
 """Distance, relative to the beam's length, below which two positions are one station."""
@@ -78,13 +80,19 @@ class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
 
 
 @lru_cache(maxsize=256)
-def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = ()) -> BeamLayout:
-    """The layout of a beam by a theory that it has the properties for; `also` are further stations, m."""
-    cuts = [*(body.position for body in beam.mass), *(spring.position for spring in beam.spring), *also]
+def layout_of(
+    beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = (), devices: tuple[Device, ...] = ()
+) -> BeamLayout:
+    """The layout of a beam with devices by a theory that it has the properties for; `also`: further stations, m."""
+    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.mass, *beam.spring, *devices)
+    cuts = [*(one.position for one in attached), *also]
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
     spans, start = list[UniformSpan](), 0.0
     for piece in beam.pieces:
-        ends = [0.0, *_inside([cut - start for cut in cuts], piece.length, SAME_PLACE * length), piece.length]
+        ends, room = [0.0], SAME_PLACE * length  # a cut closer to its neighbour, or to an end, is the same station
+        for cut in sorted(cut - start for cut in cuts):
+            if ends[-1] + room < cut < piece.length - room:
+                ends.append(cut)
         compliance = 1.0 / piece.shear_stiffness if theory == "timoshenko" and piece.shear_stiffness else 0.0
         rotary = (piece.rotary_inertia or 0.0) if theory != "euler-bernoulli" else 0.0
         properties = (
@@ -93,7 +101,7 @@ def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ..
             compliance * stiffness / length**2,
             rotary / mass / length**2,
         )
-        spans += [UniformSpan((end - begin) / length, *properties) for begin, end in pairwise(ends)]
+        spans += [UniformSpan((end - begin) / length, *properties) for begin, end in pairwise([*ends, piece.length])]
         start += piece.length
     layout = BeamLayout(
         supports=beam.supports,
@@ -102,24 +110,17 @@ def layout_of(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ..
         tension=beam.tension * length**2 / stiffness,
         foundation=beam.foundation * length**4 / stiffness,
     )
-    added = [
-        (spring.position, Station(spring.stiffness * length**3 / stiffness, spring.rotational * length / stiffness))
-        for spring in beam.spring
-    ]
-    added += [
-        (body.position, Station(mass=body.mass / (mass * length), inertia=body.rotary_inertia / (mass * length**3)))
-        for body in beam.mass
-    ]
-    return with_stations(layout, [(position / length, station) for position, station in added])
-
-
-def _inside(cuts: Sequence[float], length: float, room: float) -> list[float]:
-    """Ascending cuts inside a piece, each further than `room` from its neighbours."""
-    kept = [0.0]
-    for cut in sorted(cut for cut in cuts if room < cut < length - room):
-        if cut - kept[-1] > room:
-            kept.append(cut)
-    return kept[1:]
+    across, around, rate = length**3 / stiffness, length / stiffness, beam.wave_constant / length**2
+    scales = (
+        ("stiffness", across),
+        ("rotational", around),
+        ("mass", 1.0 / (mass * length)),
+        ("rotary_inertia", 1.0 / (mass * length**3)),
+        ("dashpot", across * rate),
+        ("rotational_dashpot", around * rate),
+    )
+    stations = [Station._make((*(getattr(one, n, 0.0) * scale for n, scale in scales), "free")) for one in attached]
+    return with_stations(layout, [(one.position / length, at) for one, at in zip(attached, stations, strict=True)])
 
 
 def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) -> BeamLayout:

@@ -96,6 +96,7 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     no other can have that (Bessel). Raises InputError where there is none, as in strips about as wide as long.
     """
     import numpy as np
+    from numpy.polynomial import legendre
     from scipy import sparse
     from scipy.sparse.linalg import eigsh
 
@@ -109,7 +110,11 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
             f"mode = {mode}: its plate solution on a strip of length / width = {aspect:.3g} takes "
             f"{terms_along * terms_across} unknowns, more than {MOST_UNKNOWNS}, choose a lower mode"
         )
-    along, across = _along(supports, terms_along), _across(terms_across)
+    along = _along(supports, terms_along)
+    # across, even Legendre polynomials and two derivatives in orthonormal ones, (2 terms, terms)
+    norm = np.sqrt(np.arange(2 * terms_across) + 0.5)
+    derived = [legendre.legder(np.diag(norm)[:, ::2], order) for order in range(3)]
+    across = [sparse.csc_array(np.pad(own, ((0, len(norm) - len(own)), (0, 0))) / norm[:, None]) for own in derived]
     w, w_xx, w_yy, w_xy = (
         aspect**j * sparse.kron(along[i], across[j], "csc") for i, j in ((0, 0), (2, 0), (0, 2), (1, 1))
     )
@@ -165,15 +170,3 @@ def _along(supports: tuple[str, str], n: int) -> "list[Any]":
         columns = sparse.hstack([sparse.csc_array(padded), integrated[order]])
         series.append(sparse.csc_array(sparse.diags_array(1.0 / norm.diagonal()) @ columns))
     return series
-
-
-def _across(m: int) -> "list[Any]":
-    """Sparse coefficients, (2 m, m), of the even Legendre polynomials across and of two derivatives, orthonormal."""
-    import numpy as np
-    from numpy.polynomial import legendre
-    from scipy import sparse
-
-    norm = np.sqrt(np.arange(2 * m) + 0.5)
-    even = np.diag(norm)[:, ::2]
-    derived = [legendre.legder(even, order) for order in range(3)]
-    return [sparse.csc_array(np.pad(own, ((0, 2 * m - len(own)), (0, 0))) / norm[:, None]) for own in derived]

@@ -250,7 +250,12 @@ def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
         columns = np.arange(n_columns)
         phases = index * (1.0 + 0.37 * (numbers[case][:, None, None] - columns // _TRIES) + 0.11 * (columns % _TRIES))
         try:
-            states = _largest(solve(division, np.cos(phases))[0], starts, case)
+            largest = []  # of the responses to the excitations of each mode, its largest entry 1
+            for some in np.split(solve(division, np.cos(phases))[0], n_columns // _TRIES, axis=2):
+                peaks = np.maximum.reduceat(abs(some).max(axis=1), starts, axis=0)
+                best = some[np.arange(len(case)), :, peaks.argmax(axis=1)[case]]
+                largest.append(best / peaks.max(axis=1)[case, None])
+            states = np.stack(largest, axis=2)
             jumps = np.zeros_like(states)
             jumps[:, 3], jumps[:, 2] = states[:, 0], -states[:, 1]
             states = np.where(alone[case, None, None], solve(division, jumps)[0], states)
@@ -269,15 +274,6 @@ def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
         deflections = np.append(value, one)
         signs[i] = np.sign(deflections[abs(deflections) > 1e-9 * abs(deflections).max()][0])
     return Motion(division, states * signs[case, None, None])
-
-
-def _largest(responses: Array, starts: Indices, case: Indices) -> Array:
-    """The largest of every `_TRIES` responses (n_ends, 4, k) in each case, its largest entry 1."""
-    found = []
-    for some in np.split(responses, responses.shape[2] // _TRIES, axis=2):
-        sizes = np.maximum.reduceat(abs(some).max(axis=1), starts, axis=0)
-        found.append(some[np.arange(len(case)), :, sizes.argmax(axis=1)[case]] / sizes.max(axis=1)[case, None])
-    return np.stack(found, axis=2)
 
 
 def _modal_mass(division: Division, one: Any, other: Any) -> Array:

@@ -219,9 +219,9 @@ def lumped_swr(
     modes: Annotated[tuple[opt.Mode, opt.Mode], Meta(description="mode numbers of the two")] = (21, 22),
 ) -> float:
     """Local standing-wave ratio of two equal modes in quadrature, the lumped-parameter model of the wave."""
-    from verify.waves.two_modes import TwoModes
+    from verify.waves.two_modes import lumped_swr
 
-    return float(TwoModes(beam=scene.beam, modes=modes).local_swr(x)[0])
+    return float(lumped_swr(scene.beam, x, modes)[0])
 
 
 @quantity("wave.fastest_crests", unit="m/s", reads=DRIVEN)

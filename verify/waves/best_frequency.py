@@ -4,8 +4,9 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError, NoFigureError
+from verify.linear.field import phasor
 from verify.waves.driven_case import DrivenCase
-from verify.waves.superposition import amplitudes, unit_waves
+from verify.waves.superposition import unit_waves
 from verify.waves.two_waves import Minimum, minimum_near, reflections
 from verify.waves.window import Window, middle_half
 
@@ -18,10 +19,11 @@ def minimum_reflection(case: DrivenCase, span: float = SEARCH_SPAN, window: Wind
 
     Its `at_edge` says that the reflection still falls there. Raises InputError where the wave stands at all of them.
     """
+    drives = np.array([[phasor(force)] for force in case.acting])
 
     def reflection(at: Array) -> Array:
         try:
-            waves = unit_waves(case, at, window or middle_half(case.beam)).superposed(amplitudes(case))
+            waves = unit_waves(case, at, window or middle_half(case.beam)).superposed(drives)
         except NoFigureError:
             if len(at) > 1:
                 raise

@@ -1,17 +1,11 @@
-"""Phasors of time series at the drive's frequency, and the field between the points at which they were measured."""
-
-from collections.abc import Callable
+"""Phasors of time series at the drive's frequency."""
 
 import numpy as np
 
 from verify.arrays import Array, ComplexArray
-from verify.errors import InputError, NoFigureError
-from verify.linear.field import wavenumber
-from verify.linear.positions import positions_on, real_array
-from verify.problem.beam import Beam
+from verify.errors import InputError
+from verify.linear.positions import real_array
 from verify.validation import check_number
-from verify.waves.two_waves import ROUNDING, TwoWaves, fit_waves, fitted_wavenumber
-from verify.waves.window import check_clear, check_wavenumber
 
 
 def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
@@ -42,25 +36,3 @@ def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
     basis = np.column_stack([np.ones_like(trend), trend, np.cos(angle), -np.sin(angle)])
     fitted = np.linalg.lstsq(basis, values[used], rcond=None)[0]
     return np.asarray(fitted[2] + 1j * fitted[3])
-
-
-def field_of_series(
-    beam: Beam, x: Array, times: Array, values: Array, frequency_hz: float, k: complex | None
-) -> tuple[Callable[[Array], ComplexArray], TwoWaves]:
-    """(deflection at any x, m, by a cubic spline through the phasors; the two waves) of series at positions x."""
-    from scipy.interpolate import CubicSpline
-
-    check_number("frequency_hz", frequency_hz, "hertz", above=0)
-    x = positions_on("x", x, beam.length)
-    if not (x.ndim == 1 and np.isfinite(x).all() and (np.diff(x) > 0).all() and np.shape(values)[1:] == x.shape):
-        raise InputError("x has to be finite, ascending and as long as values are wide")
-    own = wavenumber(beam, frequency_hz)
-    if len(x) < 4 or (x[-1] - x[0]) * own.real < np.pi:
-        raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
-    span = (float(x[0]), float(x[-1]))
-    check_clear(beam, span, f"x from {span[0]:.6g} to {span[1]:.6g} m")
-    deflection = phasors(times, values, frequency_hz)
-    if not abs(deflection).max() > ROUNDING * abs(np.asarray(values)).max():
-        raise NoFigureError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
-    k = fitted_wavenumber(x, deflection, own) if k is None else check_wavenumber("k", k, span)
-    return CubicSpline(x, deflection), fit_waves(x, deflection, k)

@@ -21,13 +21,12 @@ import numpy as np
 
 from verify.arrays import ComplexArray
 from verify.errors import InputError
+from verify.exact.layout import HELD
 from verify.linear.field import wavenumber
 from verify.problem.beam import Beam, check_frequency
 from verify.problem.device import Device, of_impedance
 from verify.validation import check_kind, check_number
 
-_ENDS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
-"""Derivatives of the deflection that a support sets to zero."""
 _WAYS = np.array([1j, 1.0])
 """q of e^{-q k x} away from a source: a wave, and a near field."""
 
@@ -64,8 +63,8 @@ def ending(
 
     def returned(arriving: ComplexArray) -> ComplexArray:
         """Wave and near field at the device, (2,), that the end sends back of those that leave it, (2,)."""
-        rows, decay = np.array([(-_WAYS) ** order for order in _ENDS[support]]), np.exp(-_WAYS * k * distance)
-        right = np.array([_WAYS**order @ (arriving * decay) for order in _ENDS[support]])
+        rows, decay = np.array([(-_WAYS) ** order for order in HELD[support]]), np.exp(-_WAYS * k * distance)
+        right = np.array([_WAYS**order @ (arriving * decay) for order in HELD[support]])
         return np.asarray(np.linalg.solve(rows, -right) * decay)
 
     # motion under a unit force or couple, in 1/(4 EI k^3): that of an endless beam, whose response at the distance r is

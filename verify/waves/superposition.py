@@ -5,7 +5,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import NoFigureError, ResonanceError
-from verify.linear.field import phasor, unit_response, wavenumber
+from verify.linear.field import unit_response, wavenumber
 from verify.problem.beam import PointForce
 from verify.waves.driven_case import DrivenCase
 from verify.waves.two_waves import ROUNDING, amplitudes_of, window_rule, zero_field
@@ -85,8 +85,3 @@ def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[flo
             except NoFigureError:
                 break
     return responses
-
-
-def amplitudes(case: DrivenCase) -> ComplexArray:
-    """Complex amplitudes of its actuators, (n_a, 1), N or m."""
-    return np.array([[phasor(force)] for force in case.acting])

@@ -11,50 +11,30 @@ C. Vloebergh, J.-F. Collard, B. Dehez, F. Labrique, *Study of a travelling wave 
 finite-element and lumped parameter models*, Electrimacs 2008.
 """
 
-import msgspec
 import numpy as np
 
 from verify.analytic_modes import ExactModel
-from verify.arrays import Array, ComplexArray
+from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.positions import Numbers, vector_on
 from verify.problem.beam import Beam
-from verify.validation import check_number, check_whole
 from verify.waves.two_waves import reflections, standing_wave_ratios
 
 
-class TwoModes(msgspec.Struct, frozen=True, kw_only=True):
-    """Two mass-normalised modes of a uniform beam as one wave: phi_a + ratio e^{i phase} phi_b. Raises InputError."""
+def lumped_swr(beam: Beam, x: Numbers, modes: tuple[int, int] = (21, 22)) -> Array:
+    """Local standing-wave ratio (|A+| + |A-|) / ||A+| - |A-|| at x (m), (n,), of phi_a + i phi_b, mass-normalised.
 
-    beam: Beam
-    modes: tuple[int, int] = (21, 22)
-    ratio: float = 1.0
-    """Amplitude of the second over that of the first."""
-    phase_deg: float = 90.0
-    """Lead of the second, degrees."""
-
-    def __post_init__(self) -> None:
-        if not self.beam.uniform:
-            raise InputError(f"beam.{self.beam.added[0]}: two modes are one wave on a uniform beam alone, leave it out")
-        for mode in self.modes:
-            check_whole("modes", mode, 1)
-        if self.modes[0] == self.modes[1]:
-            raise InputError(f"modes = {list(self.modes)}: one mode with itself stands, give two that differ")
-        check_number("ratio", self.ratio, "of two amplitudes", above=0)
-        check_number("phase_deg", self.phase_deg, "degrees")
-
-    def local_waves(self, x: Numbers) -> tuple[ComplexArray, ComplexArray]:
-        """(A+, A-) at x (m), (n,) each, in the modes' own units. Raises InputError off the beam."""
-        at, model = vector_on("x", x, self.beam.length), ExactModel(self.beam)
-        forward = backward = np.zeros(len(at), dtype=complex)
-        factors = (1.0, self.ratio * np.exp(1j * np.deg2rad(self.phase_deg)))
-        for mode, factor in zip(self.modes, factors, strict=True):
-            k = np.sqrt(2.0 * np.pi * model.frequency_hz(mode) / self.beam.wave_constant)
-            w = [model.mode_shape(mode, at, order) for order in range(4)]
-            even, odd = factor * (w[0] - w[2] / k**2) / 4.0, 1j * factor * (w[1] - w[3] / k**2) / (4.0 * k)
-            forward, backward = forward + even + odd, backward + even - odd
-        return forward, backward
-
-    def local_swr(self, x: Numbers) -> Array:
-        """Local standing-wave ratio (|A+| + |A-|) / ||A+| - |A-|| at x (m), (n,), infinite where the wave stands."""
-        return standing_wave_ratios(reflections(*self.local_waves(x)))
+    Infinite where the wave stands. Raises InputError off the beam, for one mode twice and a beam that is not uniform.
+    """
+    if not beam.uniform:
+        raise InputError(f"beam.{beam.added[0]}: two modes are one wave on a uniform beam alone, leave it out")
+    if modes[0] == modes[1]:
+        raise InputError(f"modes = {list(modes)}: one mode with itself stands, give two that differ")
+    at, model = vector_on("x", x, beam.length), ExactModel(beam)
+    forward = backward = np.zeros(len(at), dtype=complex)
+    for mode, factor in zip(modes, (1.0, 1j), strict=True):
+        k = np.sqrt(2.0 * np.pi * model.frequency_hz(mode) / beam.wave_constant)
+        w = [model.mode_shape(mode, at, order) for order in range(4)]
+        even, odd = factor * (w[0] - w[2] / k**2) / 4.0, 1j * factor * (w[1] - w[3] / k**2) / (4.0 * k)
+        forward, backward = forward + even + odd, backward + even - odd
+    return standing_wave_ratios(reflections(forward, backward))
