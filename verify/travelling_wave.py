@@ -239,7 +239,7 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     """(power of the forces left of the window - losses up to its middle - flux through it) over that flux.
 
     The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError where the wave
-    stands, and InputError for a beam with sections and for devices against rotation, whose couples a field does not hold.
+    stands, and InputError for a beam with sections and for devices against rotation.
     """
     beam, middle = field.beam, 0.5 * sum(measures.window)
     if field.couples:
