@@ -166,7 +166,7 @@ _BELT = (2.0 * pi / 4000) ** 2 / 12.0
 @check("stick-slip", "belt speed, m/s", (0.3, 0.03, 3e-3, 3e-4), _BELT, beyond=(1e-7, 1e-12), refused=True)
 def stick_slip(speed: float) -> float:
     """Stick and slip times of Coulomb friction on a belt, integrated and in closed form."""
-    from verify.contact import belt
+    from verify.exact.contact import belt
     from verify.motion import rigid_surface
 
     mass, stiffness, static, kinetic = 1.3, 170.0, 5.1, 3.7
