@@ -184,7 +184,7 @@ LINKS, SHORT, RATE = 100, 12, 17.3
 @check("chain-roll-up", "turns", (1, 5, 20), 1e-12, beyond=(40,))
 def chain_roll_up(turns: float) -> float:
     """Gap of a cantilever of 100 links rolled into closed circles by an end moment, over its length."""
-    from verify.chain.problems import rollup_gap
+    from verify.chain.benchmarks import rollup_gap
 
     return rollup_gap(LINKS, "half", turns)
 
@@ -213,7 +213,7 @@ def elastica(load: float) -> tuple[float, float]:
 @check("chain-dead-load", "P L^2 / EI", (0.1, 1.0, 4.0, 10.0, 100.0), 1.0, beyond=(1000.0, 1e4))
 def chain_dead_load(load: float) -> float:
     """Tip of 100 links under a dead load against the elastica, error over its bound load / (12 N^2)."""
-    from verify.chain.problems import cantilever_tip
+    from verify.chain.benchmarks import cantilever_tip
 
     found, (w, u) = cantilever_tip(load, LINKS), elastica(load)
     return worst(found.deflection - w, found.shortening - u) / (load / (12.0 * LINKS**2))
