@@ -16,9 +16,9 @@ from verify.arrays import Array
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system
 from verify.errors import InputError, shown
 from verify.linear.positions import Numbers, as_vector
-from verify.options import JOINTS, Joints, Wall
+from verify.options import Joints, Wall
 from verify.problem.beam import Beam
-from verify.validation import check_number, check_whole, check_word
+from verify.validation import check_number, check_whole
 
 RESIDUAL = 1e-9
 """Tolerance of the residual moment, relative to the largest moment in the chain."""
@@ -230,15 +230,6 @@ class Bent(Struct, frozen=True, eq=False, kw_only=True):
         return self.beam.length - float(self.joints[-1, 0])
 
 
-def buckling_load(system: ChainSystem) -> float:
-    """Least compressive dead force at the tip of a straight clamped chain at which it is unstable, N."""
-    from scipy.linalg import eigh_tridiagonal
-
-    k, root = system.stiffness, np.sqrt(system.lengths)
-    diagonal, off_diagonal = (k + np.append(k[1:], 0.0)) / system.lengths, -k[1:] / (root[1:] * root[:-1])
-    return float(eigh_tridiagonal(diagonal, off_diagonal, eigvals_only=True, select="i", select_range=(0, 0))[0])
-
-
 def bend(
     beam: Beam,
     count: int,
@@ -260,11 +251,6 @@ def bend(
     """
     if beam.supports != ("clamped", "free"):
         raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
-    if beam.tension:
-        raise InputError(f"beam.tension = {beam.tension!r} N: bend takes it as load = (along, across), leave it out")
-    check_word("joints", joints, JOINTS)
-    if joints == "tensioned":
-        raise InputError("joints = 'tensioned' belongs to beam.tension, bend has none: give 'series' or 'printed'")
     check_whole("count", count, 2)
     force = as_vector("load", load, "newton")
     if force.shape not in ((1,), (2,)):
@@ -294,7 +280,11 @@ def bend(
 
 def _stable_equilibrium(system: ChainSystem, along: float, across: float, moment: float) -> Array:
     """Relative angles, (N,), of a cantilever on the stable path from zero load."""
-    size, critical = float(np.hypot(along, across)), buckling_load(system)
+    from scipy.linalg import eigh_tridiagonal
+
+    k, root, size = system.stiffness, np.sqrt(system.lengths), float(np.hypot(along, across))
+    diagonal, off_diagonal = (k + np.append(k[1:], 0.0)) / system.lengths, -k[1:] / (root[1:] * root[:-1])
+    critical = float(eigh_tridiagonal(diagonal, off_diagonal, eigvals_only=True, select="i", select_range=(0, 0))[0])
     if along < 0.0 and not across and not moment and -along >= critical:
         raise InputError(
             f"load = {shown((along, across))} N exceeds the buckling load of {critical:.6g} N of the straight "

@@ -3,7 +3,7 @@
 All runs start from rest and are undamped; all forces have one amplitude. See `verify.chain.benchmarks`.
 """
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Annotated, ClassVar, TypeAlias
 
 from msgspec import Meta
 from msgspec.structs import replace
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from verify.scene.model import Scene
 
 Forces: TypeAlias = tuple[Annotated[float, Meta(gt=0)], ...]
-SUPPORTS = (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free"))
 NAMES: "dict[Inertia, str]" = {
     "full": "rigid links",
     "transverse": "without axial inertia",
@@ -40,7 +39,7 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
     name: ClassVar[str] = "axial_inertia"
     title: ClassVar[str] = "Nonlinearity of the chain of rigid links"
 
-    forces: Annotated[Forces, Meta(min_length=1, description="Amplitudes of all forces in turn, N.")] = (1.0, 10.0, 30.0)
+    forces: Annotated[Forces, Meta(min_length=1, description="Amplitudes of all forces, N.")] = (1.0, 10.0, 30.0)
     count: Annotated[int, Meta(ge=2, le=250, description="Links.")] = 49
     duration: Annotated[float, Meta(gt=0, description="Duration from rest, s.")] = 1e-3
     x: Annotated[float | None, Meta(description="Position of the deflection, m; mid-span unless set.")] = None
@@ -51,18 +50,11 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError unless the beam is a chain with a free or sliding tip, undamped and driven by forces."""
+        from verify.chain.system import build_system
+
         if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
             raise InputError("axial_inertia: the chain is driven by forces, add a [drive] of kind force")
-        scene.beam.check_added("axial_inertia")
-        if scene.beam.supports not in SUPPORTS:
-            raise InputError(
-                f"axial_inertia with beam.supports = {list(scene.beam.supports)!r}: give pinned-pinned, clamped-pinned "
-                "or clamped-free"
-            )
-        if scene.beam.loss_factor:
-            raise InputError(
-                f"axial_inertia with beam.loss_factor = {scene.beam.loss_factor!r}: give 0, it is undamped"
-            )
+        build_system(scene.beam, self.count)
         if self.x is not None:
             check_number("axial_inertia.x", self.x, "metres, on the beam", above=0, at_most=scene.beam.length)
 
@@ -74,35 +66,32 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
         assert scene.drive is not None
         hertz, rows = scene.drive.frequency_hz, []
-        lines: dict[Inertia, list[Any]] = {inertia: [] for inertia in NAMES}
         for force in sorted(self.forces):
             progress(f"chains under {force:g} N")
-            forces = [replace(one, amplitude=force) for one in scene.forces]
-            size = 0.0
+            forces, size = [replace(one, amplitude=force) for one in scene.forces], 0.0
             for inertia, name in NAMES.items():
                 found = departure(scene.beam, forces, hertz, self.duration, self.count, x=self.x, inertia=inertia)
                 size = size or axial_inertia_size(scene.beam, hertz, found.slope**2)
                 rows.append((force, size, size <= NONLINEAR, name, found.end, found.rms))
-                lines[inertia].append((force, found.end, found.rms, size))
         x = 0.5 * scene.beam.length if self.x is None else self.x
         where = f"x = {x:g} m, N = {self.count}, {1e3 * self.duration:g} ms"
         columns = [Column("force", "N", "g"), Column("(kL)² ⟨θ²⟩", format=".1e"), Column("linear"), Column("chain")]
         columns += [Column("departure at the end", format=".2e"), Column("departure, rms", format=".2e")]
 
         def draw(ax: "Axes") -> None:
-            force, _, _, size = zip(*lines["full"], strict=True)
-            ax.loglog(force, size, color="#7d8590", linewidth=4.0, label="(kL)² ⟨θ²⟩")
-            for inertia, name in NAMES.items():
-                force, end, rms, _ = zip(*lines[inertia], strict=True)
-                ax.loglog(force, end, "-o", color=COLORS[inertia], label=name)
-                ax.loglog(force, rms, "--o", color=COLORS[inertia])
+            for (inertia, color), name in zip(COLORS.items(), NAMES.values(), strict=True):
+                force, size, _, _, end, rms = zip(*(row for row in rows if row[3] == name), strict=True)
+                if inertia == "full":
+                    ax.loglog(force, size, color="#7d8590", linewidth=4.0, label="(kL)² ⟨θ²⟩")
+                ax.loglog(force, end, "-o", color=color, label=name)
+                ax.loglog(force, rms, "--o", color=color)
             ax.set(xlabel="force, N", ylabel="relative departure")
             ax.legend()
 
-        force, end, _, _ = lines["full"][-1]
+        force, *_, end, _ = rows[-len(NAMES)]
         return Result(
             summary=f"Rigid links depart from the linear chain by {100 * end:.3g} % at {force:g} N ({where}).",
             tables=[Table(f"Departure from the linear chain, {where}", columns, rows)],
             figures=[Figure("axial-departures", f"Departure from the linear chain, {where}", CAPTION, draw)],
-            data={"x": x, "departures": lines},
+            data={"x": x, "departures": rows},
         )
