@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from verify import travelling_wave
     from verify.analytic_modes import ExactModel
-    from verify.chain.bending import Bent, bend
+    from verify.chain.statics import Bent, bend
     from verify.errors import InputError
     from verify.fem_beam import HermiteModel
     from verify.linear.field import HarmonicField
@@ -61,7 +61,7 @@ _HOMES = {
     "verify.segment_model": ("SegmentModel",),
     "verify.problem.point_attachments": ("PointMass", "PointSpring"),
     "verify.problem.beam": ("Beam", "PointForce"),
-    "verify.chain.bending": ("Bent", "bend"),
+    "verify.chain.statics": ("Bent", "bend"),
     "verify.problem.device": ("Device",),
     "verify.errors": ("InputError",),
     "verify.linear.field": ("HarmonicField",),

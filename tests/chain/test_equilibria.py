@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from msgspec import structs
-from reference.multibody import elastica_tip
+from reference.multibody import by_multipliers, elastica_tip
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import jn_zeros
 
 from verify import bend
-from verify.chain.dynamics import accelerations, at_rest, linearise, positions, project
-from verify.chain.problems import cantilever_tip, hanging_frequency, rollup_gap, turning_frequency
+from verify.chain.benchmarks import cantilever_tip, hanging_frequency, rollup_gap, rotating_frequency, straight
+from verify.chain.linearisation import linearise
 from verify.chain.statics import solve_static
-from verify.chain.system import Actuator, ChainState, LinkLoad, Rotation, build_system
+from verify.chain.system import LinkLoad, Rotation, build_system
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
@@ -36,14 +36,11 @@ def order(errors):
 def test_the_tip_tends_to_the_elastica_with_order_two(load):
     exact = elastica_tip(load)
     for which in (0, 1):
-        found = [
-            (bend(ROD, n, load * UNIT).deflection / L, bend(ROD, n, load * UNIT).shortening / L)[which]
-            for n in (30, 60)
-        ]
+        bent = [bend(ROD, n, load * UNIT) for n in (30, 60)]
+        found = [(one.deflection / L, one.shortening / L)[which] for one in bent]
         assert order(np.array(found) - exact[which]) == pytest.approx(2.0, abs=0.15)
         assert found[1] == pytest.approx(exact[which], rel=2e-3)
-    tip = cantilever_tip(load, 30)
-    assert tip.deflection == pytest.approx(bend(ROD, 30, load * UNIT).deflection / L, rel=1e-9)
+    assert cantilever_tip(load, 30).deflection == pytest.approx(bent[0].deflection / L, rel=1e-9)
 
 
 def elastica_under(along, across, moment):
@@ -137,7 +134,7 @@ def test_a_roller_ended_chain_buckles_at_four_k_over_l():
     def lowest(share):
         force = LinkLoad(link=9, at=float(system.lengths[0]), force=(-share * critical, 0.0))
         pressed = replace(system, loads=(force,))
-        return linearise(pressed, at_rest(pressed)).frequencies()[0]
+        return linearise(pressed, straight(pressed)).frequencies()[0]
 
     assert (lowest(0.75) / lowest(0.0)) ** 2 == pytest.approx(0.25, rel=2e-3)
     with pytest.raises(InputError, match="unstable"):
@@ -148,13 +145,17 @@ def test_a_roller_ended_chain_buckles_at_four_k_over_l():
 def test_small_motion_at_rest_is_that_of_the_segment_model(supports):
     beam = structs.replace(ROD, supports=supports)
     system = build_system(beam, 14)
-    found = linearise(system, at_rest(system)).frequencies()
+    found = linearise(system, straight(system)).frequencies()
     exact = 2 * np.pi * SegmentModel(beam, 14).modes(8).frequencies_hz
     assert found[:8] == pytest.approx(exact, rel=1e-9)
 
 
+def accelerations(system, angles):
+    return by_multipliers(system, 0.0, angles, np.zeros(len(angles)))
+
+
 @pytest.mark.parametrize("axial_inertia", [True, False])
-def test_the_linearisation_is_the_derivative_of_the_accelerations(axial_inertia):
+def test_the_linearisation_is_the_derivative_of_the_multiplier_equations(axial_inertia):
     rng = np.random.default_rng(11)
     lengths, masses = rng.uniform(0.02, 0.07, 6), rng.uniform(0.01, 0.04, 6)
     system = replace(
@@ -164,18 +165,39 @@ def test_the_linearisation_is_the_derivative_of_the_accelerations(axial_inertia)
         loads=(LinkLoad(link=3, at=0.01, force=(0.3, 2.0), moment=0.02),),
     )  # fmt: skip
     rest = solve_static(system)
-    assert abs(accelerations(system, rest)).max() < 1e-7 * abs(accelerations(system, at_rest(system))).max()
+    assert abs(accelerations(system, rest.angles)).max() < 1e-7 * abs(accelerations(system, np.zeros(6))).max()
     linear = linearise(system, rest)
     basis, step = linear.independent(), 1e-5
+    assert linear.constraint @ basis == pytest.approx(0.0, abs=1e-15)
     own = np.zeros((5, 5))
     for j, direction in enumerate(basis.T):
-        ahead, behind = (
-            accelerations(system, project(system, ChainState(rest.angles + sign * step * direction, np.zeros(6)))[0])
-            for sign in (1, -1)
-        )
+        ahead, behind = (accelerations(system, rest.angles + sign * step * direction) for sign in (1, -1))
         own[:, j] = np.linalg.lstsq(basis, (ahead - behind) / (2 * step), rcond=None)[0]
     mass, stiffness = (basis.T @ m @ basis for m in (linear.mass, linear.stiffness))
-    assert own == pytest.approx(-np.linalg.solve(mass, stiffness), rel=1e-5, abs=1e-6 * abs(own).max())
+    assert own == pytest.approx(-np.linalg.solve(mass, stiffness), rel=1e-4, abs=1e-4 * abs(own).max())
+
+
+def test_a_bent_rotating_chain_swings_about_its_equilibrium_as_the_multiplier_equations():
+    """Gyroscopic and centrifugal terms: roots of the multiplier equations' own derivatives."""
+    moment = LinkLoad(link=5, at=0.0, moment=0.9 * EI / L)
+    system = replace(build_system(ROD, 5), rotation=Rotation(rate=37.0), loads=(moment,))
+    rest = solve_static(system)
+    assert abs(rest.angles).max() > 0.1
+    angles, rates = rest.angles, np.zeros(5)
+    slopes = [
+        np.transpose(
+            [
+                by_multipliers(system, 0.0, angles + a * e, rates + (1 - a) * e)
+                - by_multipliers(system, 0.0, angles - a * e, rates - (1 - a) * e)
+                for e in 1e-4 * np.eye(5)
+            ]
+        )
+        / 2e-4
+        for a in (1, 0)
+    ]
+    roots = np.linalg.eigvals(np.block([[np.zeros((5, 5)), np.eye(5)], slopes]))
+    expected = np.sort(abs(roots.imag))[::2]
+    assert linearise(system, rest).frequencies() == pytest.approx(expected, rel=1e-5)
 
 
 @pytest.mark.parametrize(("n", "exact"), [(1, [1.5**0.5]), (2, [1.21013484, 3.24585485])])
@@ -193,20 +215,18 @@ def test_a_long_hanging_chain_tends_to_the_bessel_limit_with_order_two(mode):
 
 def test_a_spinning_cantilever_has_wrights_frequencies():
     """A. D. Wright et al., J. Appl. Mech. 49 (1982) 197, to more digits: lead-lag is sqrt(flap^2 - speed^2)."""
-    errors = [turning_frequency(1, n, 12.0) - 5.42704927779 for n in (40, 80)]
+    errors = [rotating_frequency(1, n, 12.0) - 5.42704927779 for n in (40, 80)]
     assert abs(errors[1]) < 0.01
     assert order(errors) == pytest.approx(2.0, abs=0.4)
-    assert turning_frequency(1, 40, 0.0) == pytest.approx(3.516015, rel=1e-3)
-    thirds = [turning_frequency(3, n, 12.0) for n in (40, 80, 160)]
+    assert rotating_frequency(1, 40, 0.0) == pytest.approx(3.516015, rel=1e-3)
+    thirds = [rotating_frequency(3, n, 12.0) for n in (40, 80, 160)]
     assert (thirds[0] - thirds[1]) / (thirds[1] - thirds[2]) == pytest.approx(4.0, rel=0.15)
 
 
-@pytest.mark.parametrize("holding", [{}, {"actuators": (Actuator(link=4, at=0.01, amplitude=0.02),)}])
-def test_an_equilibrium_of_a_loaded_chain_stands_still(holding):
-    system = replace(build_system(ROD, 9), gravity=(1.0, -9.81), rotation=Rotation(offset=-0.2), **holding)
-    rest = solve_static(system)
-    assert abs(accelerations(system, rest)).max() < 1e-6 * abs(accelerations(system, at_rest(system))).max()
-    assert abs(positions(system, rest)[0][-1, 1]) > 1e-3
+def test_nothing_that_does_not_rotate_with_the_hub_is_in_equilibrium():
+    system = replace(build_system(ROD, 4), rotation=Rotation(rate=3.0), gravity=(0.0, -9.81))
+    with pytest.raises(InputError, match=r"rotation\.rate"):
+        solve_static(system)
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference.multibody import by_multipliers, rigid_motion, woinowsky_krieger
+from reference.multibody import by_multipliers, rigid_motion
 
-from verify.chain.dynamics import accelerations, at_rest, energies, held_rows, keep_pivots, positions, project
-from verify.chain.problems import energy_drift, large_amplitude_frequency, shaken_imbalance, transient
-from verify.chain.small_motion import choose_pivots
+from verify.chain.benchmarks import transient
+from verify.chain.dynamics import (
+    accelerations,
+    at_rest,
+    choose_pivots,
+    energies,
+    held_rows,
+    keep_pivots,
+    positions,
+    project,
+)
 from verify.chain.stepping import simulate, step_limit
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
@@ -97,19 +105,6 @@ def test_the_driven_strip_equals_dense_integration_however_far_links_turn(force)
     assert motion.deflection([0.2])[:, 0] == pytest.approx(expected, rel=2e-7)
 
 
-@pytest.mark.parametrize("tip", ["free", "roller"])
-def test_work_energy_and_damping_balance_under_all_loads(tip):
-    assert shaken_imbalance(6, tip, 1e-9) < 2e-7
-    assert shaken_imbalance(6, tip, 1e-6) < 2e-4
-
-
-def test_energy_drift_falls_with_the_fourth_power_of_the_step_or_faster():
-    limit = step_limit(build_system(STRIP, 6), at_rest(build_system(STRIP, 6)))
-    drifts = [energy_drift(STRIP, 6, 0.03, 0.5, share * limit, 1e-8) for share in (0.4, 0.2)]
-    assert 3.7 < np.log2(drifts[0] / drifts[1]) < 6.0
-    assert energy_drift(STRIP, 6, 0.03, 0.5, None, 1e-9) < 1e-7
-
-
 def test_a_free_spinning_chain_keeps_its_angular_momentum():
     system = odd_chain(4, 5, stiffness=np.append(0.0, np.full(4, 1.3)), dashpots=np.full(5, 0.0), loads=(),
                        gravity=(0.0, 0.0), rotation=Rotation())  # fmt: skip
@@ -125,12 +120,6 @@ def test_a_free_spinning_chain_keeps_its_angular_momentum():
     found = [momentum(motion.state(i)) for i in range(7)]
     assert found == pytest.approx([found[0]] * 7, rel=1e-8)
     assert sum(energies(system, motion.state(6))) == pytest.approx(sum(energies(system, start)), rel=1e-8)
-
-
-@pytest.mark.parametrize("amplitude", [0.8, 2.0])
-def test_immovable_ends_stiffen_as_woinowsky_and_krieger_state(amplitude):
-    found = large_amplitude_frequency(STRIP, amplitude, 10)
-    assert found == pytest.approx(woinowsky_krieger(amplitude), rel=2e-4)
 
 
 def test_projection_meets_the_roller_by_the_dependent_angle_alone():

@@ -5,7 +5,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify import SegmentModel
-from verify.chain.departure import linear_deflection
+from verify.chain.benchmarks import linear_deflection
 from verify.chain.dynamics import at_rest
 from verify.chain.stepping import step_limit
 from verify.chain.system import build_system

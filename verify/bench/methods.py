@@ -191,7 +191,7 @@ def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array
 
 def chain(problem: Problem) -> Iterator[Question]:
     """The nonlinear chain over the step or the tolerance, and the linear one, exact in time."""
-    from verify.chain.departure import linear_deflection
+    from verify.chain.benchmarks import linear_deflection
     from verify.chain.system import build_system
 
     methods, error, uncertainty = chain_methods(problem)

@@ -13,8 +13,6 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.chain import kinematics, records
-from verify.chain.small_motion import Linearisation, choose_pivots
-from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular
 from verify.errors import InputError
 from verify.validation import check_unmasked
@@ -163,31 +161,21 @@ def _settle(system: ChainSystem, time: float, q: Array, v: Array, pivots: Indice
     return False
 
 
-def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
-    """Exact derivatives of the chain's equations at a state of equilibrium under its constant loads.
+def choose_pivots(rows: Array) -> Indices:
+    """Which angles depend on the others, (n_held,): complete pivoting on the constraint rows.
 
-    In absolute angles the stiffness is tridiagonal, a diagonal of dead loads and held forces, and the axial spring's
-    outer product; relative angles follow by their sums. Equal at rest to the matrices of `segment_model`. Where the
-    base turns steadily the equilibrium is one of the turning frame: centrifugal forces stiffen the chain, and where
-    it is bent gyroscopic ones couple it. Raises InputError for a state that moves, and for a turning base where
-    something does not turn with it.
+    Raises InputError where the held points leave no angle to depend on: a chain that stands upright under its
+    roller, or two held points in one place.
     """
-    q, v = _arrays(system, state)
-    if v.any():
-        raise InputError("state.rates: a chain is linearised about an equilibrium, give rates of zero")
-    theta = np.cumsum(q) + system.rotation.constant
-    found = forces_at(system, q, 1.0)
-    held = found.multipliers()
-    stiffness = np.diag(found.geometric + held @ found.held_bends)
-    stiffness += np.outer(found.reach_x, found.reach_x) * system.axial_spring
-    if len(found.turning):
-        stiffness += found.turning
-    sums: Any = np.tril(np.ones((system.n_links, system.n_links)))
-    turning = bool(system.rotation.rate)
-    return Linearisation(
-        mass=sums.T @ mass_matrix(system, theta) @ sums,
-        damping=np.diag(system.dashpots.astype(float)),
-        stiffness=sums.T @ stiffness @ sums + np.diag(system.stiffness.astype(float)),
-        constraint=found.held_rows @ sums,
-        gyroscopic=sums.T @ gyroscopic(system, theta) @ sums if turning else np.zeros((0, 0)),
-    )
+    left, pivots = rows.copy(), np.zeros(len(rows), dtype=np.int64)
+    free, largest = list(range(len(rows))), abs(rows).max() if rows.size else 0.0
+    for _ in range(len(rows)):
+        row = free[int(abs(left[free]).max(axis=1).argmax())]
+        column = int(abs(left[row]).argmax())
+        if abs(left[row, column]) <= 1e-9 * largest:
+            raise InputError("chain: its held points cannot be held at once in this position; move one or drop one")
+        pivots[row] = column
+        free.remove(row)
+        for other in free:
+            left[other] -= left[other, column] / left[row, column] * left[row]
+    return pivots

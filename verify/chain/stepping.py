@@ -9,9 +9,17 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.chain import records
-from verify.chain.dynamics import PIVOT_LOSS, accelerated, flatten, held_rows, keep_pivots, project, workspace
+from verify.chain.dynamics import (
+    PIVOT_LOSS,
+    accelerated,
+    choose_pivots,
+    flatten,
+    held_rows,
+    keep_pivots,
+    project,
+    workspace,
+)
 from verify.chain.result import ChainMotion, ChainStatistics
-from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError, near_name
 from verify.motion.result import END

@@ -166,7 +166,7 @@ _BELT = (2.0 * pi / 4000) ** 2 / 12.0
 @check("stick-slip", "belt speed, m/s", (0.3, 0.03, 3e-3, 3e-4), _BELT, beyond=(1e-7, 1e-12), refused=True)
 def stick_slip(speed: float) -> float:
     """Stick and slip times of Coulomb friction on a belt, integrated and in closed form."""
-    from verify.contact import belt
+    from verify.exact.contact import belt
     from verify.motion import rigid_surface
 
     mass, stiffness, static, kinetic = 1.3, 170.0, 5.1, 3.7
@@ -184,7 +184,7 @@ LINKS, SHORT, RATE = 100, 12, 17.3
 @check("chain-roll-up", "turns", (1, 5, 20), 1e-12, beyond=(40,))
 def chain_roll_up(turns: float) -> float:
     """Gap of a cantilever of 100 links rolled into closed circles by an end moment, over its length."""
-    from verify.chain.problems import rollup_gap
+    from verify.chain.benchmarks import rollup_gap
 
     return rollup_gap(LINKS, "half", turns)
 
@@ -213,7 +213,7 @@ def elastica(load: float) -> tuple[float, float]:
 @check("chain-dead-load", "P L^2 / EI", (0.1, 1.0, 4.0, 10.0, 100.0), 1.0, beyond=(1000.0, 1e4))
 def chain_dead_load(load: float) -> float:
     """Tip of 100 links under a dead load against the elastica, error over its bound load / (12 N^2)."""
-    from verify.chain.problems import cantilever_tip
+    from verify.chain.benchmarks import cantilever_tip
 
     found, (w, u) = cantilever_tip(load, LINKS), elastica(load)
     return worst(found.deflection - w, found.shortening - u) / (load / (12.0 * LINKS**2))
