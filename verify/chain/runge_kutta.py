@@ -26,7 +26,7 @@ RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
 TIME, STEP = 0, 1
 """Entries of `clock`."""
 RELATIVE, ABSOLUTE, ABSOLUTE_RATE, TURN, LARGEST, LARGEST_RATE, FURTHEST = range(7)
-"""Entries of `control`: tolerances, largest change of a coordinate in a step; largest rms and coordinate so far."""
+"""Entries of `control`: tolerances, largest mean change of a coordinate in a step; largest rms so far, largest coordinate."""
 STEPS, REJECTED, EVALUATIONS, KEPT = range(4)
 """Entries of `counts`."""
 
@@ -65,7 +65,7 @@ DORMAND_PRINCE = _tableau(
 """J. R. Dormand and P. J. Prince, J. Comp. Appl. Math. 6 (1980) 19."""
 
 
-@inline(fastmath={"contract"}, inline="always")
+@inline(fastmath={"contract"})
 def interpolate(n: int, s: float, h: float, y: Array, new: Array, k0: Array, k1: Array, out: Array) -> None:
     """The state at a part s of a step: quintic Hermite in the coordinates, its derivative in the rates."""
     r = 1.0 - s
@@ -84,25 +84,59 @@ def interpolate(n: int, s: float, h: float, y: Array, new: Array, k0: Array, k1:
         out[i] = u0 * y[i] + u1 * new[i] + h * s * r * (r * k0[i] - s * k1[i])
 
 
-@inline(fastmath={"contract"}, inline="always")
-def error_norm(n: int, h: float, k: Array, weights: Array, y: Array, trial: Array, control: Array) -> float:
-    """A step's estimated error over its tolerance: coordinates and rates each by their root mean square."""
+@inline(fastmath=FAST)
+def control_step(n: int, h: float, weights: Array, y: Array, k: Array, trial: Array, control: Array) -> tuple[bool, float]:
+    """Whether a step's estimated error lies within its tolerance, and the next step.
+
+    The error of coordinates, and that of rates, is the root mean square over that of the largest state so far.
+    """
     worst = 0.0
+    for i in range(2 * n):
+        trial[i] = 0.0
+    for j in range(weights.size):
+        for i in range(2 * n):
+            trial[i] += weights[j] * k[j, i]
     for row in range(2):
         error, size = 0.0, 0.0
-        for i in range(row * n, row * n + n):
-            trial[i] = 0.0
-        for j in range(weights.size):
-            for i in range(row * n, row * n + n):
-                trial[i] += weights[j] * k[j, i]
         for i in range(row * n, row * n + n):
             error, size = error + trial[i] * trial[i], size + y[i] * y[i]
         control[LARGEST + row] = max(control[LARGEST + row], np.sqrt(size / n))
         over = h * np.sqrt(error / n) / (control[ABSOLUTE + row] + control[RELATIVE] * control[LARGEST + row])
-        worst = max(worst, over) if over >= 0.0 else over
-        if not over >= 0.0:
-            break
-    return worst
+        if not np.isfinite(over):
+            return False, 0.2 * h
+        worst = max(worst, over)
+    return worst <= 1.0, h * min(4.0, max(0.2, 0.9 * max(worst, 1e-10) ** -0.2))
+
+
+@inline(fastmath={"contract"})
+def step_stages(
+    accelerate: Callable[..., None], links: Array, loads: Array, numbers: Array, scratch: Array,
+    a: Array, c: Array, n: int, t: float, h: float, y: Array, k: Array, new: Array,
+) -> None:  # fmt: skip
+    """The result of a step into `new`, derivatives of stages 1 to s and at the result into k[1:]."""
+    for s in range(1, c.size + 1):
+        for i in range(y.size):
+            new[i] = y[i]
+        for j in range(s):
+            weight = h * a[s, j]
+            if weight != 0.0:
+                for i in range(y.size):
+                    new[i] += weight * k[j, i]
+        accelerate(t + h if s == c.size else t + c[s] * h, new, k[s], links, loads, numbers, scratch)
+        for i in range(n):
+            k[s, i] = new[n + i]
+
+
+@inline(fastmath=FAST)
+def take(n: int, new: Array, rates: Array, y: Array, k0: Array, control: Array) -> float:
+    """Make the result of a step the state; the mean modulus of its rates."""
+    furthest, total = control[FURTHEST], 0.0
+    for i in range(y.size):
+        y[i], k0[i] = new[i], rates[i]
+    for i in range(n):
+        furthest, total = max(furthest, abs(new[i])), total + abs(new[n + i])
+    control[FURTHEST] = furthest
+    return total / n
 
 
 @jit(signature_or_function=MARCH, fastmath={"contract"})
@@ -116,12 +150,10 @@ def march(
     `k` is (s + 3, y.size) scratch, `kept` (samples, y.size). Steps are of clock[STEP], fixed where `weights` is empty,
     else controlled. Loads may change between calls: the derivative at the start is evaluated anew.
     """
-    stages, last, new = c.size, c.size, k[c.size + 1]
-    end = samples[samples.size - 1]
-    while counts[KEPT] < samples.size and samples[counts[KEPT]] <= clock[TIME]:
-        for i in range(y.size):
-            kept[counts[KEPT], i] = y[i]
-        counts[KEPT] += 1
+    last, new, trial, end = c.size, k[c.size + 1], k[c.size + 2], samples[samples.size - 1]
+    if counts[KEPT] == 0 and samples[0] <= clock[TIME]:
+        interpolate(n, 0.0, 1.0, y, y, y, y, kept[0])
+        counts[KEPT] = 1
     accelerate(clock[TIME], y, k[0], links, loads, numbers, scratch)
     for i in range(n):
         k[0, i] = y[n + i]
@@ -129,50 +161,28 @@ def march(
         if counts[KEPT] >= samples.size:
             return DONE
         t, h = clock[TIME], clock[STEP]
-        # a rest below rounding is part of the last step
-        closing = t + h * (1.0 + 1e-9) >= end
+        closing = t + h * (1.0 + 1e-9) >= end  # a rest below rounding is part of the last step
         if closing:
             h = end - t
         if t + h == t:
             return TOO_SMALL
-        for s in range(1, stages + 1):
-            for i in range(y.size):
-                new[i] = y[i]
-            for j in range(s):
-                if a[s, j] != 0.0:
-                    weight = h * a[s, j]
-                    for i in range(y.size):
-                        new[i] += weight * k[j, i]
-            accelerate(t + h if s == stages else t + c[s] * h, new, k[s], links, loads, numbers, scratch)
-            for i in range(n):
-                k[s, i] = new[n + i]
-        counts[EVALUATIONS] += stages
+        step_stages(accelerate, links, loads, numbers, scratch, a, c, n, t, h, y, k, new)
+        counts[EVALUATIONS] += last
         if weights.size > 0:
-            error = error_norm(n, h, k, weights, y, k[stages + 2], control)
-            factor = 0.2 if not error >= 0.0 else min(4.0, max(0.2, 0.9 * np.exp(-0.2 * np.log(max(error, 1e-10)))))
-            if not (closing and error <= 1.0):
-                clock[STEP] = h * factor
-            if not error <= 1.0:
+            accepted, following = control_step(n, h, weights, y, k, trial, control)
+            if not (accepted and closing):
+                clock[STEP] = following
+            if not accepted:
                 counts[REJECTED] += 1
                 continue
-        else:
-            fastest, total = 0.0, 0.0
-            for i in range(n, 2 * n):
-                fastest, total = max(fastest, abs(new[i])), total + new[i]
-            if not fastest * h < control[TURN] or not np.isfinite(total):
-                return DIVERGED
         while counts[KEPT] < samples.size and (closing or samples[counts[KEPT]] <= t + h):
             at = min((samples[counts[KEPT]] - t) / h, 1.0)
             interpolate(n, at, h, y, new, k[0], k[last], kept[counts[KEPT]])
             counts[KEPT] += 1
-        furthest = control[FURTHEST]
-        for i in range(y.size):
-            y[i], k[0, i] = new[i], k[last, i]
-        for i in range(n):
-            furthest = max(furthest, abs(y[i]))
-        control[FURTHEST] = furthest
         counts[STEPS] += 1
         clock[TIME] = end if closing else t + h
+        if not take(n, new, k[last], y, k[0], control) * h < control[TURN]:
+            return DIVERGED
     return DONE if counts[KEPT] >= samples.size else RUNNING
 
 
@@ -207,8 +217,8 @@ def integrate(
 ) -> Marched:
     """March from `y` at `start`, s, until all ascending `samples` are kept or the march ends; `y` becomes the end.
 
-    `control` is the relative tolerance, those of coordinates and rates, and the largest change of a coordinate in a
-    fixed step. An interrupt returns what is kept. `progress` is called with the fraction of time done.
+    `control` is the relative tolerance, those of coordinates and rates, and the largest mean change of a
+    coordinate in a step, above which it has diverged. An interrupt returns what is kept. `progress` is called with the fraction of time done.
     """
     k, kept, clock = np.zeros((len(tableau.c) + 3, y.size)), np.zeros((len(samples), y.size)), np.array([start, step])
     counts, numbers = np.zeros(4, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])
@@ -221,4 +231,5 @@ def integrate(
             progress((float(clock[TIME]) - start) / max(float(samples[-1]) - start, 1e-300))
     except KeyboardInterrupt:
         status = RUNNING
-    return Marched(kept[: counts[KEPT]], status, float(clock[TIME]), float(clock[STEP]), counts, float(numbers[FURTHEST]))
+    end, last = clock.tolist()
+    return Marched(kept[: counts[KEPT]], status, end, last, counts, float(numbers[FURTHEST]))
