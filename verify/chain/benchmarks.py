@@ -12,12 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array
-from verify.chain.confirmed import check_moved, from_rest
 from verify.chain.linearisation import linearise
-from verify.chain.result import ChainMotion
+from verify.chain.motion import ChainMotion, ElasticMotion, Method, check_moved, from_rest, simulate
 from verify.chain.statics import Bent, bend
-from verify.chain.stepping import Method, simulate
-from verify.chain.stretching import ElasticMotion
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, axial_stiffness, build_system, link_at
 from verify.errors import InputError
 from verify.options import Inertia, Links, Tip, Wall
