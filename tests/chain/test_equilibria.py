@@ -11,7 +11,8 @@ from scipy.optimize import brentq
 from scipy.special import ellipk, jn_zeros
 
 from verify import bend
-from verify.chain.benchmarks import cantilever_tip, hanging_frequency, rollup_gap, rotating_frequency, straight
+from verify.chain.benchmarks import cantilever_tip, hanging_frequency, rollup_gap, rotating_frequency
+from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.statics import solve_static
 from verify.chain.system import LinkLoad, Rotation, build_system
@@ -115,7 +116,7 @@ def test_a_roller_ended_chain_buckles_at_four_k_over_l():
 
     def lowest(share):
         force = LinkLoad(link=9, at=float(system.lengths[0]), force=(-share * critical, 0.0))
-        return linearise(replace(system, loads=(force,)), straight(system)).frequencies()[0]
+        return linearise(replace(system, loads=(force,)), at_rest(system)).frequencies()[0]
 
     assert (lowest(0.75) / lowest(0.0)) ** 2 == pytest.approx(0.25, rel=2e-3)
     with pytest.raises(InputError, match="unstable"):
@@ -127,7 +128,7 @@ def test_small_motion_at_rest_is_that_of_the_segment_model(supports):
     beam = structs.replace(ROD, supports=supports)
     system = build_system(beam, 14)
     exact = 2 * np.pi * SegmentModel(beam, 14).modes(8).frequencies_hz
-    assert linearise(system, straight(system)).frequencies()[:8] == pytest.approx(exact, rel=1e-9)
+    assert linearise(system, at_rest(system)).frequencies()[:8] == pytest.approx(exact, rel=1e-9)
 
 
 def slopes(system, angles, step, rates=False):
@@ -151,8 +152,8 @@ def test_the_linearisation_is_the_derivative_of_the_multiplier_equations(axial_i
         rotation=Rotation(offset=0.2), loads=(LinkLoad(link=3, at=0.01, force=(0.3, 2.0), moment=0.02),),
     )  # fmt: skip
     rest = solve_static(system)
-    at_rest, fallen = (by_multipliers(system, 0.0, angles, np.zeros(6)) for angles in (rest.angles, np.zeros(6)))
-    assert abs(at_rest).max() < 1e-7 * abs(fallen).max()
+    resting, fallen = (by_multipliers(system, 0.0, angles, np.zeros(6)) for angles in (rest.angles, np.zeros(6)))
+    assert abs(resting).max() < 1e-7 * abs(fallen).max()
     linear = linearise(system, rest)
     basis = linear.independent()
     assert linear.constraint @ basis == pytest.approx(0.0, abs=1e-15)
