@@ -237,7 +237,8 @@ def simulate(
     first = step or min(0.1 / max(fastest, 1e-12), max(float(samples[-1]) - start.time, 1e-12))
     floor = 1e-3 * tolerance**1.5
     control = (tolerance, floor, floor * max(fastest, 1.0), np.pi if step else np.inf)
-    model, y, ready = rigid_links.flatten(system), rigid_links.absolute(system, state), perf_counter()
+    model = rigid_links.flatten(system)
+    y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
     run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
     reached = samples[: len(run.kept)]

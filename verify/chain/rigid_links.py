@@ -1,12 +1,12 @@
-"""Acceleration of the planar chain of rigid links in O(N), absolute angles: articulated bodies, and a rolling tip.
+"""Acceleration of the planar chain of rigid links in O(N): absolute angles, articulated bodies, a rolling tip.
 
-State: absolute angles, their rates, energy lost in dashpots, work of loads and hub. Link i has the direction
-e = (cos, sin) and the normal t = (-sin, cos). From the tip towards the base the chain beyond a joint that accelerates by
-a needs the force B a + beta there, B a symmetric 2 x 2 mass: one link adds itself by a rank-one update (R. Featherstone,
-Rigid Body Dynamics Algorithms, 2008, chapter 7, here in the frame of the base); from the base on follow the angular
-accelerations. The roller's force is that which cancels the tip's acceleration across, by the response to a unit force
-there. Its closure y_N = 0 is one dependent joint angle, that with the longest lever arm: all links beyond turn with it
-(R. A. Wehage and E. J. Haug, J. Mech. Design 104 (1982) 247, the paper's ref. 6).
+State: absolute angles, their rates, energy lost in dashpots, work of loads and hub. A link has the direction (cos, sin)
+and the normal t = (-sin, cos). A joint with the acceleration a takes the force B a + beta from the chain beyond it, B a
+symmetric 2 x 2 mass; from the tip towards the base every link adds itself by a rank-one update, and from the base on
+follow the angular accelerations (R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7, in the frame of the
+base). The roller's force cancels the tip's acceleration across, by the response to a unit force there. The closure
+y_N = 0 is met in every stage by one dependent joint angle, that with the longest lever arm: the links beyond turn as
+one (R. A. Wehage and E. J. Haug, J. Mech. Design 104 (1982) 247, the paper's ref. 6).
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from verify.arrays import Array
-from verify.chain.kinematics import hub
+from verify.chain.kinematics import place
 from verify.chain.runge_kutta import ACCELERATION
 from verify.chain.system import ChainState, ChainSystem, circular
 from verify.jit import FAST, inline, jit
@@ -28,26 +28,23 @@ OFFSET, RATE, SWING, SWING_OMEGA, SWING_PHASE, ROLLER, TIP_SPRING, PIVOT, LENGTH
 COS, SIN, TORQUE, FORCE_X, FORCE_Y, INWARD, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(12)
 """Columns of `scratch`, (N + 1, 12); `UNIT` ends as the accelerations per force of the roller, the last the tip's."""
 SHORT_ARM = 0.1
-"""A dependent joint is exchanged where its lever arm falls below this part of the chain."""
+"""A dependent joint is exchanged, for the next stage, where its lever arm falls below this part of the chain."""
+Tip = tuple[float, float, float, float, float, float]
 
 
 @inline(fastmath=FAST)
-def place(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -> tuple[float, float, float, float, float, float]:
-    """Cosines and sines; the tip's y and its rate due to links before `pivot`, x, y, and their rates due to the others.
-
-    Below 0.5 rad by their series, at a third of the time.
-    """
+def directions(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -> Tip:
+    """Cosines and sines of links; the tip's y and its rate due to links before `pivot`, x, y, their rates beyond."""
     n, largest = theta.size, 0.0
     for i in range(n):
         largest = max(largest, abs(theta[i]))
-    small, x, y, vx, vy, rise, climb = largest <= 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    small, x, y, vx, vy, rise, climb = largest <= 0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(n):
-        if small:
+        if small:  # series to rounding, at a third of the time
             z = theta[i] * theta[i]
-            p = 1 / 40320 - z * (1 / 3628800 - z * (1 / 479001600 - z / 87178291200))
-            q = 1 / 362880 - z * (1 / 39916800 - z * (1 / 6227020800 - z / 1307674368000))
-            c = 1.0 - z * (0.5 - z * (1 / 24 - z * (1 / 720 - z * p)))
-            s = theta[i] * (1.0 - z * (1 / 6 - z * (1 / 120 - z * (1 / 5040 - z * q))))
+            p = 1 / 720 - z * (1 / 40320 - z * (1 / 3628800 - z / 479001600))
+            q = 1 / 5040 - z * (1 / 362880 - z * (1 / 39916800 - z / 6227020800))
+            c, s = 1.0 - z * (0.5 - z * (1 / 24 - z * p)), theta[i] * (1.0 - z * (1 / 6 - z * (1 / 120 - z * q)))
         else:
             c, s = np.cos(theta[i]), np.sin(theta[i])
         w[i, COS], w[i, SIN] = c, s
@@ -59,22 +56,14 @@ def place(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -> tup
     return rise, climb, x, y, vx, vy
 
 
-@inline(fastmath=FAST)
-def close(theta: Array, omega: Array, links: Array, numbers: Array, w: Array) -> tuple[float, float]:
-    """Turn of the links beyond the dependent joint, and change of their rates, by which the tip stays on y = 0."""
-    rise, climb, x, y, vx, vy = place(theta, omega, links, int(numbers[PIVOT]), w)
-    if abs(x) < SHORT_ARM * numbers[LENGTH]:
-        arm, longest = 0.0, 0.0
-        for i in range(theta.size - 1, -1, -1):
-            arm += 2.0 * links[i, HALF] * w[i, COS]
-            if abs(arm) > longest:
-                longest, numbers[PIVOT] = abs(arm), i
-        rise, climb, x, y, vx, vy = place(theta, omega, links, int(numbers[PIVOT]), w)
-    angle = np.arcsin(-rise / np.sqrt(x * x + y * y))
-    turn = (angle if x > 0.0 else np.pi - angle) - np.arctan2(y, x)
-    turn -= 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
-    c, s = np.cos(turn), np.sin(turn)
-    return turn, -(climb + c * vy + s * vx) / (c * x - s * y)
+@inline(fastmath={"contract"})
+def exchange(links: Array, numbers: Array, w: Array) -> None:
+    """Make the joint with the longest lever arm the dependent one."""
+    arm, longest = 0.0, 0.0
+    for i in range(links.shape[0] - 1, -1, -1):
+        arm += 2.0 * links[i, HALF] * w[i, COS]
+        if abs(arm) > longest:
+            longest, numbers[PIVOT] = abs(arm), i
 
 
 @inline(fastmath={"contract"})
@@ -121,16 +110,19 @@ def from_base(links: Array, roller: bool, w: Array, out: Array) -> None:
 
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath=FAST)
 def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbers: Array, w: Array) -> None:
-    """Derivatives of rates, dissipation and work into out[N:], after the closure of a rolling tip (see `runge_kutta`)."""
+    """Derivatives of rates, dissipation and work into out[N:], after the closure of a rolling tip."""
     n = links.shape[0]
-    theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, 0
-    turn, change = 0.0, 0.0
+    theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, int(numbers[PIVOT])
+    rise, climb, tip_x, tip_y, vx, vy = directions(theta, omega, links, pivot, w)
+    turn, change, cos_turn, sin_turn = 0.0, 0.0, 1.0, 0.0
     if roller:
-        turn, change = close(theta, omega, links, numbers, w)
-        pivot = int(numbers[PIVOT])
-    else:
-        place(theta, omega, links, n, w)
-    cos_turn, sin_turn = np.cos(turn), np.sin(turn)
+        angle = np.arcsin(-rise / np.sqrt(tip_x * tip_x + tip_y * tip_y))
+        turn = (angle if tip_x > 0.0 else np.pi - angle) - np.arctan2(tip_y, tip_x)
+        turn -= 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
+        cos_turn, sin_turn = np.cos(turn), np.sin(turn)
+        change = -(climb + cos_turn * vy + sin_turn * vx) / (cos_turn * tip_x - sin_turn * tip_y)
+        if abs(tip_x) < SHORT_ARM * numbers[LENGTH]:
+            exchange(links, numbers, w)
     phase = numbers[SWING_OMEGA] * t + numbers[SWING_PHASE]
     angle = numbers[OFFSET] + numbers[RATE] * t + numbers[SWING] * np.sin(phase)
     rate = numbers[RATE] + numbers[SWING] * numbers[SWING_OMEGA] * np.cos(phase)
@@ -203,8 +195,11 @@ def point_acceleration(link: int, arm: float, alpha: Array, links: Array, w: Arr
     return x, y
 
 
-def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
-    """(links, loads, numbers, scratch) of a chain, the data of `accelerate`."""
+def flatten(system: ChainSystem, spare: int = 0) -> tuple[Array, Array, Array, Array]:
+    """(links, loads, numbers, scratch) of a chain, the data of `accelerate`; `spare` rows of loads stay empty.
+
+    A spare row (arm, F_x, F_y, 0, 0, 0, link from 0) is a force that is constant over a piece of a march.
+    """
     half, turn, masses, n = system.lengths / 2.0, system.rotation, system.masses, system.n_links
     weights = [component * masses for component in system.gravity]
     own = [half, masses * system.axial_inertia, masses, system.inertias, system.stiffness, system.dashpots, *weights]
@@ -216,23 +211,25 @@ def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
     numbers = (turn.offset, turn.rate, *swing, system.tip == "roller", system.axial_spring, 0.0, system.length)
     return (
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
-        np.array(loads, dtype=float).reshape(len(loads), 7),
+        np.concatenate([np.array(loads, dtype=float).reshape(len(loads), 7), np.zeros((spare, 7))]),
         np.array(numbers, dtype=float),
         np.zeros((n + 1, UNIT + 1)),
     )
 
 
-def absolute(system: ChainSystem, state: ChainState) -> Array:
-    """The march's state, (2 N + 2,), of relative angles and rates."""
-    angle, rate = hub(system.rotation, state.time)
-    return np.concatenate([angle + np.cumsum(state.angles), rate + np.cumsum(state.rates), [0.0, 0.0]])
+def begin(system: ChainSystem, state: ChainState, numbers: Array) -> Array:
+    """The march's state, (2 N + 2,), of relative angles and rates; the joint of the longest lever arm depends."""
+    placed = place(system, state.time, state.angles, state.rates)
+    numbers[PIVOT] = np.argmax(abs(placed.joints[-1, 0] - placed.joints[:-1, 0]))
+    return np.concatenate([placed.directions, placed.rates, [0.0, 0.0]])
 
 
 def accelerations(system: ChainSystem, state: ChainState) -> Array:
     """Relative angular accelerations, (N,), rad/s^2, at a state that meets the roller."""
-    y, turn = absolute(system, state), system.rotation
+    model, turn = flatten(system), system.rotation
+    y = begin(system, state, model[2])
     out = np.zeros_like(y)
-    accelerate(state.time, y, out, *flatten(system))
+    accelerate(state.time, y, out, *model)
     omega = circular(turn.frequency_hz)
     base = -turn.amplitude * omega**2 * np.sin(omega * state.time + np.deg2rad(turn.phase_deg))
     return np.diff(out[system.n_links : -2], prepend=base)
@@ -243,9 +240,9 @@ def delassus(system: ChainSystem, state: ChainState, points: Sequence[tuple[int,
 
     A point is its link, 1..N, and metres from the link's near joint.
     """
-    y, model = absolute(system, state), flatten(system)
+    links, _, numbers, w = model = flatten(system)
+    y = begin(system, state, numbers)
     accelerate(state.time, y, np.zeros_like(y), *model)
-    links, _, numbers, w = model
     places = [(link - 1, at - float(links[link - 1, HALF])) for link, at in points]
     alpha, columns = np.zeros(system.n_links), []
     for link, arm in places:
