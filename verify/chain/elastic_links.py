@@ -1,8 +1,8 @@
 """Acceleration of the chain whose links stretch (EA / l), under the march of `runge_kutta`: a beam's axial inertia.
 
 A link that stretches evenly moves linearly with its joints: the mass matrix is constant, tridiagonal and the same along
-x and y, and no joint force is unknown. Coordinates are the displacements of joints 0..N from the straight chain, x and y
-in turn, so that small stretches keep their digits.
+x and y, and no joint force is unknown. Coordinates are the displacements of joints 0..N from the straight chain, x and
+y in turn, so that small stretches keep their digits.
 """
 
 import numpy as np
