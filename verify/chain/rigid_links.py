@@ -27,6 +27,8 @@ OFFSET, RATE, SWING, SWING_OMEGA, SWING_PHASE, ROLLER, TIP_SPRING, PIVOT, LENGTH
 """Entries of `numbers`: rotation of the hub, roller, axial spring there, dependent joint; length."""
 COS, SIN, TORQUE, FORCE_X, FORCE_Y, INWARD, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(12)
 """Columns of `scratch`, (N + 1, 12); `UNIT` ends as the accelerations per force of the roller, the last the tip's."""
+TINY = 1e-250
+"""Forces below this are zero: they fall by 0.27 a link, and subnormal numbers take a hundred times as long."""
 SHORT_ARM = 0.1
 """A dependent joint is exchanged, for the next stage, where its lever arm falls below this part of the chain."""
 Tip = tuple[float, float, float, float, float, float]
@@ -88,6 +90,10 @@ def from_tip(links: Array, pull: float, w: Array, out: Array) -> None:
         w[i, GAIN_X], w[i, GAIN_Y], w[i, MOBILITY], w[i, UNIT], out[i] = g * u1, g * u2, g, unit, free
         b11, b12, b22 = b11 + mx - g * (u1 * u1), b12 - g * (u1 * u2), b22 + my - g * (u2 * u2)
         f1, f2, r1, r2 = f1 - p1 + u1 * free, f2 - p2 + u2 * free, r1 + u1 * unit, r2 + u2 * unit
+        if abs(r1) + abs(r2) < TINY:
+            r1, r2 = 0.0, 0.0
+        if abs(f1) + abs(f2) < TINY:
+            f1, f2 = 0.0, 0.0
 
 
 @inline(fastmath={"contract"})
