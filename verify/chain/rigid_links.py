@@ -26,7 +26,7 @@ ARM, FX, FY, MOMENT, OMEGA, PHASE, LINK = range(7)
 OFFSET, RATE, SWING, SWING_OMEGA, SWING_PHASE, ROLLER, TIP_SPRING, PIVOT, LENGTH = range(9)
 """Entries of `numbers`: rotation of the hub, roller, axial spring there, dependent joint; length."""
 COS, SIN, TORQUE, FORCE_X, FORCE_Y, INWARD, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(12)
-"""Columns of `scratch`, (N + 1, 12); `UNIT` ends as the accelerations per force of the roller, the last the tip's."""
+"""Columns of `scratch`, (N + 1, 12); weight is in `FORCE`; `UNIT` ends as accelerations per force of the roller."""
 TINY = 1e-250
 """Forces below this are zero: they fall by 0.27 a link, and subnormal numbers take a hundred times as long."""
 SHORT_ARM = 0.1
@@ -90,10 +90,9 @@ def from_tip(links: Array, pull: float, w: Array, out: Array) -> None:
         w[i, GAIN_X], w[i, GAIN_Y], w[i, MOBILITY], w[i, UNIT], out[i] = g * u1, g * u2, g, unit, free
         b11, b12, b22 = b11 + mx - g * (u1 * u1), b12 - g * (u1 * u2), b22 + my - g * (u2 * u2)
         f1, f2, r1, r2 = f1 - p1 + u1 * free, f2 - p2 + u2 * free, r1 + u1 * unit, r2 + u2 * unit
-        if abs(r1) + abs(r2) < TINY:
-            r1, r2 = 0.0, 0.0
-        if abs(f1) + abs(f2) < TINY:
-            f1, f2 = 0.0, 0.0
+        if i & 63 == 0:
+            r1, r2 = (0.0, 0.0) if abs(r1) + abs(r2) < TINY else (r1, r2)
+            f1, f2 = (0.0, 0.0) if abs(f1) + abs(f2) < TINY else (f1, f2)
 
 
 @inline(fastmath={"contract"})
@@ -146,8 +145,7 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
         w[i - 1, TORQUE] = moment - after
         angle, rate, moment = theta[i], omega[i], after
         swing = links[i, HALF] * rate
-        w[i, FORCE_X], w[i, FORCE_Y], w[i, INWARD] = links[i, WEIGHT_X], links[i, WEIGHT_Y], swing * rate
-        w[i, VX], w[i, VY] = vx, vy
+        w[i, INWARD], w[i, VX], w[i, VY] = swing * rate, vx, vy
         vx, vy = vx - 2.0 * swing * w[i, SIN], vy + 2.0 * swing * w[i, COS]
     w[n - 1, TORQUE] = moment
     for k in range(loads.shape[0]):
@@ -164,6 +162,9 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
             pull += numbers[TIP_SPRING] * 2.0 * links[i, HALF] * (s * s / (1.0 + c) if c > 0.0 else 1.0 - c)
     from_tip(links, pull, w, out[n : 2 * n])
     from_base(links, roller, w, out[n : 2 * n])
+    for k in range(loads.shape[0]):
+        i = int(loads[k, LINK])
+        w[i, FORCE_X], w[i, FORCE_Y] = links[i, WEIGHT_X], links[i, WEIGHT_Y]
     out[2 * n], out[2 * n + 1] = lost, power
 
 
@@ -214,12 +215,14 @@ def flatten(system: ChainSystem, spare: int = 0) -> tuple[Array, Array, Array, A
         for p in system.loads
     ]
     swing = (turn.amplitude, circular(turn.frequency_hz), np.deg2rad(turn.phase_deg))
+    scratch = np.zeros((n + 1, UNIT + 1))
+    scratch[:-1, FORCE_X], scratch[:-1, FORCE_Y] = weights
     numbers = (turn.offset, turn.rate, *swing, system.tip == "roller", system.axial_spring, 0.0, system.length)
     return (
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
         np.concatenate([np.array(loads, dtype=float).reshape(len(loads), 7), np.zeros((spare, 7))]),
         np.array(numbers, dtype=float),
-        np.zeros((n + 1, UNIT + 1)),
+        scratch,
     )
 
 
