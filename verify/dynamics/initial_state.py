@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray
+from verify.arrays import Array, ComplexArray, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.excitation import RESONANCE
 from verify.dynamics.linear_system import Stage, basis_of
@@ -44,7 +44,7 @@ def _material(basis: TimeBasis, q: Array, x: Array, lever: Array) -> Array:
     return np.asarray(np.clip(x + lever * (q @ basis.shapes(x, 1)), 0.0, basis.beam.length))
 
 
-def _loads(contacts: Contacts, foot: Array, compliance: Array) -> Array:
+def _loads(contacts: Contacts, foot: Indices, compliance: Array) -> Array:
     """Force along z on each foot at rest, N, or minus the load of each point without foot.
 
     Preload springs relax as the beam, by its compliance (feet, feet) in m/N, and the contact deform.
@@ -137,7 +137,10 @@ def deepen_between_beams(basis: TimeBasis, contacts: Contacts, still: Array) -> 
 
 
 def largest_static_deflection(beam: Beam, model: str, count: int | None, contacts: Contacts) -> float | None:
-    """Static deflection under the points, m, by the first modes; None where they would move a beam with rigid motions."""
+    """Static deflection under the points, m, by the first modes.
+
+    None where they would move a beam with rigid motions.
+    """
     p, foot = contacts.points, contacts.indices[:, lay.OF_FOOT]
     if beam.rigid_motions:
         load = (contacts.feet[:, lay.PRESS] / np.bincount(foot))[foot]

@@ -99,6 +99,7 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """Whether the run had start = 'steady'."""
     starts: tuple[float, ...] = ()
     """Initial positions of the sliders, m."""
+    sliders: tuple[Slider, ...] = ()
     contact: "ContactState | None" = None
     """State of the sliders; None of a beam alone."""
     off: str = ""
