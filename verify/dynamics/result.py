@@ -63,8 +63,10 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Work of the driving forces; 0 in a steady field, whose drive is not computed."""
     load_work: float
     """Work of weight, preload, `slider.pull` and of what prescribes a speed."""
-    surface_work: float
-    """Work of the prescribed surface on one-way coupled sliders, along the beam and across."""
+    tangential_work: float
+    """Work of the surface's own motion along the beam on the sliders."""
+    normal_work: float
+    """Work of the rising surface, dw/dt of its material, on the feet."""
     slope_work: float
     """Work on sliders of slopes that they move along, N v w': no force along the beam pays for it in tangential
     kinematics, in which friction and `slider.pull` alone move a slider."""

@@ -70,7 +70,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """The run in steps that resolve motion and contact. Raises InputError."""
         beam, omega, sliders, starts = request.beam, request.omega, request.sliders, request.starts
         stages = [stage.within(contact_range(beam, starts[0])) for stage in stages]
-        if basis is not None:
+        if basis is not None and request.start == "rest":
             receptance = modal_receptance(basis, omega, request.damping_in(basis))
         else:
             receptance = field_receptance(
@@ -342,8 +342,8 @@ def _beam_energy(basis: TimeBasis | None, stage: Stage, z: ComplexArray, t: floa
 def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, rest: bool) -> EnergyBalance:
     """Works, losses and gains; the residual is that of the sliders or, from rest, of the beam, whichever is larger."""
     s, (slider, stored, kinetic, elastic) = recorded.sums.sum(axis=0), gains
-    surface, load = s[lay.ACROSS] + s[lay.ALONG], s[lay.PULLED] + s[lay.PRESSED]
-    residual = surface + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
+    load = s[lay.PULLED] + s[lay.PRESSED]
+    residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
     if rest:
         charged = s[lay.ON_BEAM] + s[lay.LIFTED_BEAM] if contacts.two_way else 0.0
@@ -356,7 +356,8 @@ def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, r
         contact_elastic=stored,
         drive_work=driven,
         load_work=float(load),
-        surface_work=float(surface),
+        tangential_work=float(s[lay.ALONG]),
+        normal_work=float(s[lay.ACROSS]),
         slope_work=float(s[lay.UPHILL]),
         damping_loss=lost,
         friction_loss=float(s[lay.DISSIPATED]),

@@ -137,7 +137,14 @@ def check_energy(energy: EnergyBalance | None, gained: float, motion: Motion, fr
     if energy is None:
         return
     dt, duration = motion.statistics.step_s, float(motion.times[-1] - motion.times[0])
-    works = (energy.drive_work, energy.surface_work, energy.load_work, energy.kinetic + energy.elastic, energy.slider)
+    works = (
+        energy.drive_work,
+        energy.tangential_work,
+        energy.normal_work,
+        energy.load_work,
+        energy.elastic,
+        energy.slider,
+    )
     exchanged = max(abs(work) for work in works) + energy.friction_loss
     if not np.isfinite(exchanged):
         raise InputError(f"step = {dt:.3g} s: the energy overflows; give smaller forces or a lighter slider")
