@@ -67,6 +67,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Seconds before the stage begins."""
     unit_s: float
     steps: Steps
+    complex_rows: int = 0
+    """Rows with a complex psi, the last ones."""
     ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
     """What a slider did that is beyond the first edge, and beyond the last."""
 
@@ -81,14 +83,18 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return self.steps.every * self.steps.dt * np.arange(1.0, self.steps.n // self.steps.every + 1)
 
     def columns(self, x: Array, derivative: int = 0) -> Array:
-        """All shapes at x, (columns, len(x)): of rows with a real psi, the drive's, and two of each complex psi.
+        """All shapes at x, (columns, len(x)): real parts of psi, imaginary parts of the complex rows, the drive's.
 
         The drive has two for each power of t, the real and the imaginary part.
         """
         psi = self.shapes(x, derivative)
-        drive = self.field(x, derivative, psi)
-        own = np.concatenate([psi.real, psi.imag]) if np.iscomplexobj(psi) else psi
-        return np.concatenate([own, interleaved(drive.T).T])
+        imaginary = psi[len(psi) - self.complex_rows :].imag
+        return np.concatenate([psi.real, imaginary, interleaved(self.field(x, derivative, psi).T).T])
+
+    def factors(self, z: ComplexArray, t: Array) -> Array:
+        """Factors of the columns for free rows z, (len(t), n), at the times t: (len(t), columns)."""
+        imaginary = z[:, z.shape[1] - self.complex_rows :].imag
+        return np.concatenate([z.real, -imaginary, self.drive_factors(t)], axis=1)
 
     def table(self, first: int, last: int) -> Array:
         """Polynomials of pieces first..last-1, (pieces, degree + 1, columns)."""
@@ -104,11 +110,22 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         factors = (t[:, None] / self.unit_s) ** np.arange(powers) * np.exp(1j * self.omega * (t[:, None] + self.origin))
         return interleaved(factors.conj())
 
+    def rates_at_start(self, z: ComplexArray) -> Array:
+        """Time derivatives of the factors at time 0 for free rows z, (columns,)."""
+        rates, drive = (
+            self.rows.rates * z,
+            np.zeros(1 if self.forced is None else self.forced.forward.shape[1], complex),
+        )
+        drive[0] = 1j * self.omega
+        drive[1:2] = 1.0 / self.unit_s
+        drive *= np.exp(1j * self.omega * self.origin)
+        return np.concatenate(
+            [rates.real, -rates[len(rates) - self.complex_rows :].imag, interleaved(drive[None].conj())[0]]
+        )
+
     def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
         """Closed form, (len(t), len(x)), m: free rows from z at t = 0, and the drive."""
-        free = self.rows.after(z, t)
-        own = np.concatenate([free.real, -free.imag], axis=1) if np.iscomplexobj(self.shapes(x[:1], 0)) else free.real
-        return np.asarray(np.concatenate([own, self.drive_factors(t)], axis=1) @ self.columns(x))
+        return np.asarray(self.factors(self.rows.after(z, t), t) @ self.columns(x))
 
     def free(self, z: ComplexArray) -> ComplexArray:
         """The free part at the start of a motion that begins with z, (n,)."""
