@@ -51,7 +51,7 @@ def _loads(contacts: Contacts, foot: Indices, compliance: Array) -> Array:
     """
     if not len(contacts.feet):
         return -contacts.points[:, lay.LOAD]
-    press, spring = contacts.feet[:, lay.PRESS], contacts.feet[:, lay.SPRING]
+    press, spring = contacts.feet[:, lay.PRESS], contacts.feet[:, lay.SPRING_RATE]
     if not spring.any():
         return press
     deformed = compliance + np.diag(1.0 / np.bincount(foot, contacts.points[:, lay.STIFF]))
@@ -82,20 +82,9 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
 
     Raises InputError for a foot that nothing presses on.
     """
-    p, state = contacts.points, contacts.contacts
-    x, factors = contacts.start + p[:, lay.OFFSET], stage.factors(z[None], np.zeros(1))[0]
-    at = x
-    for _ in range(PASSES):
-        at = np.clip(x + p[:, lay.LEVER] * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
-    level = factors @ stage.columns(at, 0)
+    p, state, (level, _, climb) = contacts.points, contacts.contacts, surface_at_start(contacts, stage, z)
     if not len(contacts.feet):
-        rates, slope = stage.rates_at_start(z), factors @ stage.columns(at, 1)
-        rise, bend = rates @ stage.columns(at, 0), factors @ stage.columns(at, 2)
-        along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
-        along = along - slope * rise if contacts.following else along
-        # dw/dt + w' dX/dt at the material X = x + (h/2) w'
-        turn = rates @ stage.columns(at, 1) + bend * along
-        state[:, lay.RISE_RATE] = rise + slope * (along + p[:, lay.LEVER] * turn)
+        state[:, lay.CLIMBING] = climb
         return
     foot = contacts.indices[:, lay.OF_FOOT]
     for number, row in enumerate(contacts.feet):
@@ -103,6 +92,24 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
         row[lay.HEIGHT] = _rest_height(number, p[own], level[own], row, contacts.restitution is not None)
     height = contacts.feet[foot, lay.HEIGHT]
     state[:, lay.DEPTH] = p[:, lay.INSET] + p[:, lay.FACE] * (p[:, lay.IMAGE] * level - height)
+
+
+def surface_at_start(contacts: Contacts, stage: Stage, z: ComplexArray) -> tuple[Array, Array, Array]:
+    """Under every point: level, m, tangential speed, m/s, and speed across of a point that moves along it, (points,).
+
+    The material under a point at x is X = x + (h/2) w', its velocity (-(h/2) dw'/dt, dw/dt).
+    """
+    x, lever = contacts.start + contacts.points[:, lay.OFFSET], contacts.points[:, lay.LEVER]
+    owner = contacts.indices[:, lay.OF_SLIDER]
+    x = x + contacts.sliders[owner, lay.X]
+    factors, rates, at = stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z), x
+    for _ in range(PASSES):
+        at = np.clip(x + lever * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
+    level, slope, bend = (factors @ stage.columns(at, derivative) for derivative in range(3))
+    rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
+    along = contacts.sliders[owner, lay.V] - (slope * rise if contacts.following else 0.0)
+    tangential = (rise * slope - lever * turn) / np.sqrt(1.0 + slope**2)
+    return level, tangential, rise + slope * (along + lever * (turn + bend * along))
 
 
 def _rest_height(number: int, points: Array, level: Array, foot: Array, rigid: bool) -> float:
@@ -115,7 +122,7 @@ def _rest_height(number: int, points: Array, level: Array, foot: Array, rigid: b
     depth = points[:, lay.INSET] + face * points[:, lay.IMAGE] * level
 
     def force(z: float) -> float:
-        return float((face * stiff * np.maximum(depth - face * z, 0.0)).sum() + press - foot[lay.SPRING] * z)
+        return float((face * stiff * np.maximum(depth - face * z, 0.0)).sum() + press - foot[lay.SPRING_RATE] * z)
 
     total = float(stiff.sum())
     wide = 2.0 * float(np.abs(level).max()) + 2.0 * (abs(press) + total * points[:, lay.INSET].max()) / total + 1e-12

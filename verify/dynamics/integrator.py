@@ -253,7 +253,23 @@ def advance(
         if not find_pieces(0.5 * dt if spring else 0.0, edges, sliders, points, indices):
             return lay.OFF_PIECES
         if not spring:
-            look(START, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+            look(
+                START,
+                mark,
+                dt,
+                gravity,
+                codes,
+                table,
+                edges,
+                factors,
+                local,
+                stamp,
+                sliders,
+                feet,
+                points,
+                contacts,
+                indices,
+            )
         if accounts:
             add_powers(START, dt / 6.0, time, drive, rows, factors, forced, loads, growth, balance)
         rotate_half(rows)
@@ -261,7 +277,23 @@ def advance(
         if accounts:
             add_powers(MIDDLE, dt / 1.5, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
         if following:
-            look(HALF, mark + 2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+            look(
+                HALF,
+                mark + 2,
+                dt,
+                gravity,
+                codes,
+                table,
+                edges,
+                factors,
+                local,
+                stamp,
+                sliders,
+                feet,
+                points,
+                contacts,
+                indices,
+            )
         rotate_half(rows)
         set_factors(END, time + dt, n_complex, rows, drive, factors)
         set_mean_rates(dt, factors)
@@ -271,10 +303,42 @@ def advance(
             for k in range(feet.shape[0]):
                 feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
                 feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
-        look(MIDDLE, mark + 1, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+        look(
+            MIDDLE,
+            mark + 1,
+            dt,
+            gravity,
+            codes,
+            table,
+            edges,
+            factors,
+            local,
+            stamp,
+            sliders,
+            feet,
+            points,
+            contacts,
+            indices,
+        )
         if not spring:
             end = mark + 3 if two_way else mark + 4
-            look(END, end, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+            look(
+                END,
+                end,
+                dt,
+                gravity,
+                codes,
+                table,
+                edges,
+                factors,
+                local,
+                stamp,
+                sliders,
+                feet,
+                points,
+                contacts,
+                indices,
+            )
         if two_way:
             set_shapes(dt, rows, n_complex, table, edges, points, contacts, indices, shapes)
             if codes[lay.LAW] == lay.BILATERAL:
@@ -301,7 +365,23 @@ def advance(
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
             if not spring and find_pieces(0.0, edges, sliders, points, indices):
-                look(START, mark + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+                look(
+                    START,
+                    mark + 4,
+                    dt,
+                    gravity,
+                    codes,
+                    table,
+                    edges,
+                    factors,
+                    local,
+                    stamp,
+                    sliders,
+                    feet,
+                    points,
+                    contacts,
+                    indices,
+                )
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
     return lay.DONE

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.dynamics.excitation import NO_ROWS, Forced, Rows, forced_response, modal_rows
+from verify.dynamics.excitation import CONSTANT, NO_ROWS, Forced, Rows, forced_response, modal_rows
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS
 from verify.linear.surface import LEFT_BEAM, ContactRange
@@ -67,6 +67,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Seconds before the stage begins."""
     unit_s: float
     steps: Steps
+    envelope: Array = CONSTANT
+    """Amplitude of the forces as a polynomial in t / unit_s, (degree + 1,)."""
     complex_rows: int = 0
     """Rows with a complex psi, the last ones."""
     ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
@@ -189,6 +191,7 @@ def stages_from_rest(
                 origin=origin,
                 unit_s=piece.steps.duration,
                 steps=piece.steps,
+                envelope=piece.coefficients,
             )
         )
         origin += piece.steps.duration

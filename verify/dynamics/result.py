@@ -56,7 +56,7 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     elastic: float
     """The same, elastic."""
     slider: float
-    """Kinetic energy gained by sliders and feet, along and across the beam."""
+    """Kinetic energy gained by sliders along the beam and by feet across."""
     contact_elastic: float
     """Gained by normal and tangential contact springs."""
     drive_work: float

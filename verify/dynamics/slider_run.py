@@ -19,6 +19,7 @@ from verify.dynamics.initial_state import (
     set_down,
     static_deflection,
     steady_with_mass,
+    surface_at_start,
 )
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import MOST_STEPS, Request
@@ -159,6 +160,27 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         contacts.feet[:, : lay.TURN + 1], contacts.contacts[:] = state.feet, state.points
         return z
 
+    def _first_sample(self, contacts: Contacts, z: ComplexArray) -> Array:
+        """The sample before the first step, (1, sliders, KEPT): friction by its law, feet at rest without it."""
+        request, kept = self.request, np.zeros((1, len(self.request.sliders), lay.KEPT))
+        kept[0, :, lay.KEPT_X], kept[0, :, lay.KEPT_V] = contacts.sliders[:, lay.X], contacts.sliders[:, lay.V]
+        kept[0, :, lay.KEPT_NORMAL] = [slider.normal_force for slider in request.sliders]
+        kept[0, :, lay.KEPT_TOUCH] = 1.0
+        if request.feet:
+            kept[0, :, lay.KEPT_SURFACE] = np.nan
+            return kept
+        surface = surface_at_start(contacts, self.stages[0], z)[1]
+        kept[0, :, lay.KEPT_SURFACE] = surface
+        stuck = contacts.contacts[:, lay.STUCK] > 0.0
+        kept[0, :, lay.KEPT_STUCK] = stuck
+        for i, slider in enumerate(request.sliders):
+            slip = float(contacts.sliders[i, lay.V] - surface[i])
+            still = request.start == "rest" and request.before is None and slider.speed == 0.0
+            law = np.sign(slip) if slider.steepness is None else np.tanh(slider.steepness * slip)
+            if not (still or stuck[i]):  # at rest on a beam at rest, whatever the sign of rounding
+                kept[0, i, lay.KEPT_FRICTION] = -slider.mu * slider.normal_force * law
+        return kept
+
     def converged(self, progress: Progress) -> Motion:
         """The run; of a two-way coupled point slider whose step is not given with the change by doubling it.
 
@@ -189,6 +211,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         kinetic, elastic = _kinetic(request.sliders, contacts), _elastic(contacts)
         beam = _beam_energy(self.basis, stages[0], z, 0.0)
         first = (
+            self._first_sample(contacts, z),
             stages[0].deflection(z, np.zeros(1), request.points),
             contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(),
             (contacts.points[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[None],
@@ -200,7 +223,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         gains = (
             _kinetic(request.sliders, contacts) - kinetic,
             float(recorded.sums[:, lay.STORED].sum()) - elastic,
-            *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam),
+            *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam).tolist(),
         )
         statistics = Statistics(
             steps=recorded.n_steps,
@@ -216,8 +239,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             stages, contacts, recorded, first, statistics, _balance(recorded, gains, contacts, accounts)
         )
         if not statistics.interrupted:
-            gained = float(recorded.balance[lay.GAINED_ENERGY])
-            check_energy(motion.energy, gained, motion, request.frequency_hz)
+            created = float(recorded.balance[lay.CREATED])
+            assert motion.energy is not None
+            check_energy(motion.energy, created, statistics.step_s, request.frequency_hz)
         return motion
 
     def _motion(
@@ -225,17 +249,13 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         stages: list[Stage],
         contacts: Contacts,
         recorded: Recorded,
-        first: tuple[Array, Array, Array],
+        first: tuple[Array, ...],
         statistics: Statistics,
         energy: EnergyBalance,
     ) -> Motion:
         request, n = self.request, len(recorded.samples)
-        kept = np.concatenate([recorded.first[None], recorded.samples])
-        recordings = recorded.deflections, recorded.heights, recorded.pressures
-        deflection, heights, pressures = (np.concatenate(pair) for pair in zip(first, recordings, strict=True))
-        if request.start == "rest" and request.before is None:
-            still = np.array([slider.speed == 0.0 for slider in request.sliders])
-            kept[0, still, lay.KEPT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+        recordings = recorded.samples, recorded.deflections, recorded.heights, recorded.pressures
+        kept, deflection, heights, pressures = (np.concatenate(pair) for pair in zip(first, recordings, strict=True))
         end = _time_after(stages, recorded.n_steps)
         seconds = end - stages[0].origin
         sums, mean = recorded.sums, 1.0 / seconds if seconds > 0.0 else float("nan")
@@ -278,7 +298,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             point_offsets=offsets,
             events=recorded.events,
             mean_friction=total(mean * sums[:, lay.FRICTION_TIME]),
-            largest_friction=total(sums[:, lay.HARDEST]),
+            largest_friction=total(sums[:, lay.LARGEST]),
             mean_surface_speed=total(mean * sums[:, lay.SURFACE_TIME]),
             coupling=self.coupling,
             margins=margins,
@@ -315,14 +335,13 @@ def _time_after(stages: list[Stage], steps: int) -> float:
 
 
 def _kinetic(sliders: tuple[Slider, ...], contacts: Contacts) -> float:
-    """Of sliders and feet, along and across the beam, J."""
-    feet, bilateral = contacts.feet, contacts.law == lay.BILATERAL
+    """Of sliders along the beam and of feet across, J."""
+    feet = contacts.feet
     masses = np.array([slider.mass for slider in sliders])
     inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
     inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
     across = inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2
-    rise = contacts.points[:, lay.INERTIA] * contacts.contacts[:, lay.RISE_RATE] ** 2 if bilateral else np.zeros(1)
-    return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum() + rise.sum())
+    return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum())
 
 
 def _elastic(contacts: Contacts) -> float:

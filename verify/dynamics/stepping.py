@@ -173,7 +173,11 @@ class _Run:
             forced[:] = interleaved(stage.forced.forward + stage.forced.backward)
             growth = np.array(stage.envelope, dtype=float)
         codes = np.zeros(lay.CODES, dtype=np.int64)
-        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = contacts.law, contacts.two_way, contacts.two_way and contacts.presses
+        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = (
+            contacts.law,
+            contacts.two_way,
+            contacts.two_way and contacts.presses,
+        )
         codes[[lay.FOLLOWING, lay.COMPLEX, lay.ACCOUNTS]] = contacts.following, own - n, self.accounts
         factors, two_way = np.zeros((3, 2, columns)), contacts.two_way
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
@@ -257,6 +261,12 @@ def rows_of(stage: Stage, z: ComplexArray) -> Array:
     gain = stage.rows.participations * np.where(rate == 0.0, dt, grown / np.where(rate == 0.0, 1.0, rate))
     end = stage.rows.participations * grown
     half, rows = np.exp(0.5 * rate * dt), np.empty((lay.ROW, len(z)))
-    for first, value in ((lay.Z_RE, z), (lay.RATE_RE, rate), (lay.HALF_RE, half), (lay.GAIN_RE, gain), (lay.END_RE, end)):
+    for first, value in (
+        (lay.Z_RE, z),
+        (lay.RATE_RE, rate),
+        (lay.HALF_RE, half),
+        (lay.GAIN_RE, gain),
+        (lay.END_RE, end),
+    ):
         rows[first], rows[first + 1] = value.real, value.imag
     return rows
