@@ -102,7 +102,7 @@ def _foot(slider: Slider, foot: Foot) -> list[float]:
     row[lay.INVERSE_FOOT_MASS] = 1.0 / mass
     row[lay.INVERSE_INERTIA] = 1.0 / inertia if foot.pitches and foot.points > 1 else 0.0
     row[lay.PRESS] = force - slider.mass * slider.gravity / len(slider.feet)
-    row[lay.SPRING] = slider.preload_stiffness
+    row[lay.SPRING_RATE] = slider.preload_stiffness
     return row
 
 

@@ -101,7 +101,7 @@ def normal_force(
             own = couplings[1, i, i]
             for k in range(points.shape[0]):
                 climb -= couplings[0, i, k] * contacts[k, lay.FRICTION] + couplings[1, i, k] * contacts[k, lay.NORMAL]
-        return float((points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.CLIMBING])) / (1.0 + inertia * own))
+        return float((points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.RISE_RATE])) / (1.0 + inertia * own))
     depth, was, k = contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH], indices[i, lay.OF_FOOT]
     if depth <= 0.0:
         return 0.0

@@ -155,7 +155,7 @@ def look(
         if when == START:
             contacts[i, lay.START], contacts[i, lay.RISE], contacts[i, lay.COVARIANCE] = along, rise, slope
             if codes[lay.LAW] == lay.GIVEN:
-                contacts[i, lay.CLIMBING] = climb
+                contacts[i, lay.RISE_RATE] = climb
         elif when == END:
             contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - contacts[i, lay.COVARIANCE]) / 12.0
             contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.dynamics.excitation import NO_ROWS, Forced, Rows, forced_response, modal_rows
+from verify.dynamics.excitation import CONSTANT, NO_ROWS, Forced, Rows, forced_response, modal_rows
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS
 from verify.linear.surface import LEFT_BEAM, ContactRange
@@ -66,6 +66,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     origin: float
     """Seconds before the stage begins."""
     unit_s: float
+    envelope: Array
+    """Amplitude of the forces as a polynomial in t / unit_s."""
     steps: Steps
     complex_rows: int = 0
     """Rows with a complex psi, the last ones."""
@@ -188,6 +190,7 @@ def stages_from_rest(
                 omega=omega,
                 origin=origin,
                 unit_s=piece.steps.duration,
+                envelope=piece.coefficients,
                 steps=piece.steps,
             )
         )
@@ -231,6 +234,7 @@ def steady_stage(
         omega=harmonic.omega,
         origin=origin,
         unit_s=1.0,
+        envelope=CONSTANT,
         steps=steps,
     )
 

@@ -80,6 +80,8 @@ class Recorded(msgspec.Struct, eq=False, kw_only=True):
     """"end", "left the beam" and the like (`Stage.beyond`), "diverged", "interrupted" or "chatters"."""
     z: ComplexArray
     """All of the motion of every row at the end, (n,)."""
+    first: Array
+    """(sliders, KEPT), before the first step: speed; of points without feet the friction law and the surface speed."""
 
 
 def run_stages(
@@ -132,6 +134,7 @@ def run_stages(
         set_up_s=run.set_up_s,
         stopped=stopped,
         z=z,
+        first=run.first,
     )
 
 
@@ -148,6 +151,7 @@ class _Run:
         self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
         self.balance, self.tally = np.zeros(lay.BALANCE), np.zeros(3, dtype=np.int64)
         self.spans, self.block = np.zeros((n, 4 + 2 * SPANS)), np.zeros((n, n + 1))
+        self.first = np.zeros((n_sliders, lay.KEPT))
         self.couplings = np.zeros((2, n, n))
         self.feet_of = np.zeros(n_feet, dtype=np.int64)
         self.feet_of[contacts.indices[:, lay.OF_FOOT][: n * bool(n_feet)]] = contacts.indices[:, lay.OF_SLIDER]
@@ -187,16 +191,19 @@ class _Run:
                 stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
                 contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self._positions())
                 self.set_up_s += thread_time() - began
+                arrays = (
+                    contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet, contacts.points,
+                    contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes, response,
+                    self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples, self.heights,
+                    self.pressures, self.deflections, self.events, self.tally, self.sums, self.before, self.balance,
+                )  # fmt: skip
+                if self.n_steps == 0:
+                    advance(0, 1, stage.steps.dt, *arrays)
+                    self._sample_first()
                 while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
                     began = thread_time()
-                    reason = advance(
-                        min(CHUNK, stage.steps.n - int(self.tally[lay.STEP])), stage.steps.every, stage.steps.dt,
-                        contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
-                        contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
-                        response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
-                        self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
-                        self.balance,
-                    )  # fmt: skip
+                    n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
+                    reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
                     self.loop_s += thread_time() - began
                     self.n_steps = steps + int(self.tally[lay.STEP])
                     progress(self.n_steps)
@@ -217,6 +224,21 @@ class _Run:
                 x = contacts.start + self._positions()
                 why = stage.beyond(float(x.min()), float(x.max()))
         return why
+
+    def _sample_first(self) -> None:
+        """The state before the first step; a slider in contact with feet has friction from the first step on."""
+        sliders, contacts = self.contacts.sliders, self.contacts.contacts
+        self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
+        self.first[:, lay.KEPT_TOUCH] = 1.0
+        if self.contacts.law == lay.SPRING:
+            load = self.contacts.points[:, lay.STIFF] * np.maximum(contacts[:, lay.DEPTH], 0.0)
+            self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
+            self.first[:, lay.KEPT_SURFACE] = np.nan
+            return
+        load, slip, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.V] - contacts[:, lay.START], sliders[:, lay.STEEPNESS]
+        law = np.where(steepness > 0.0, np.tanh(steepness * slip), np.sign(slip))
+        self.first[:, lay.KEPT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
+        self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
 
     def _positions(self) -> Array:
         """Points from the start of the first slider, (points,), m, half a step on for feet."""
