@@ -67,6 +67,7 @@ def _run(contact: Contacts, steps: int, dt: float, position: float | None = None
         omega=1.0,
         origin=0.0,
         unit_s=1.0,
+        envelope=np.array([1.0]),
         steps=Steps(steps, dt, steps),
     )
     z = np.empty(0, dtype=complex) if position is None else np.array([position - 1j * speed])

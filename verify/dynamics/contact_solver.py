@@ -101,9 +101,7 @@ def normal_force(
             own = couplings[1, i, i]
             for k in range(points.shape[0]):
                 climb -= couplings[0, i, k] * contacts[k, lay.FRICTION] + couplings[1, i, k] * contacts[k, lay.NORMAL]
-        return float(
-            (points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.CLIMBING])) / (1.0 + inertia * own)
-        )
+        return float((points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.RISE_RATE])) / (1.0 + inertia * own))
     depth, was, k = contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH], indices[i, lay.OF_FOOT]
     if depth <= 0.0:
         return 0.0
@@ -144,9 +142,7 @@ def friction_force(
         since = 0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was)
         full = 1.0 + 0.5 * stiff * since * ease
         trial = stiff * (contacts[i, lay.STRETCH] - since * slip) / full
-        force, spans[i, 0] = elastic_force(
-            trial, stiff * since / full, static if stuck else kinetic, kinetic, steepness
-        )
+        force, spans[i, 0] = elastic_force(trial, stiff * since / full, static if stuck else kinetic, kinetic, steepness)
     elif kinetic <= 0.0:
         force = 0.0
     else:
@@ -205,9 +201,7 @@ def solve(
                 continue
             b, k = indices[i, lay.OF_SLIDER], indices[i, lay.OF_FOOT]
             if sweeps == 1 or law == lay.BILATERAL or points[i, lay.DASHPOT] > 0.0:
-                normal = normal_force(
-                    i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
-                )
+                normal = normal_force(i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings)
                 more = normal - contacts[i, lay.NORMAL]
                 contacts[i, lay.NORMAL] = normal
                 if presses and more != 0.0:

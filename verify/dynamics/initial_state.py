@@ -82,9 +82,16 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
 
     Raises InputError for a foot that nothing presses on.
     """
-    p, state, (level, _, climb) = contacts.points, contacts.contacts, surface_at_start(contacts, stage, z)
-    if not len(contacts.feet):
-        state[:, lay.CLIMBING] = climb
+    p, state, at = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
+    x, lever, factors, rates = at, p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
+    for _ in range(PASSES):
+        at = np.clip(x + lever * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
+    level, slope, bend = (factors @ stage.columns(at, derivative) for derivative in range(3))
+    if not len(contacts.feet):  # dw/dt + w' dX/dt of the material X = x + (h/2) w'
+        rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
+        along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
+        along = along - slope * rise if contacts.following else along
+        state[:, lay.RISE_RATE] = rise + slope * (along + lever * (turn + bend * along))
         return
     foot = contacts.indices[:, lay.OF_FOOT]
     for number, row in enumerate(contacts.feet):
@@ -92,24 +99,6 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
         row[lay.HEIGHT] = _rest_height(number, p[own], level[own], row, contacts.restitution is not None)
     height = contacts.feet[foot, lay.HEIGHT]
     state[:, lay.DEPTH] = p[:, lay.INSET] + p[:, lay.FACE] * (p[:, lay.IMAGE] * level - height)
-
-
-def surface_at_start(contacts: Contacts, stage: Stage, z: ComplexArray) -> tuple[Array, Array, Array]:
-    """Under every point: level, m, tangential speed, m/s, and speed across of a point that moves along it, (points,).
-
-    The material under a point at x is X = x + (h/2) w', its velocity (-(h/2) dw'/dt, dw/dt).
-    """
-    x, lever = contacts.start + contacts.points[:, lay.OFFSET], contacts.points[:, lay.LEVER]
-    owner = contacts.indices[:, lay.OF_SLIDER]
-    x = x + contacts.sliders[owner, lay.X]
-    factors, rates, at = stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z), x
-    for _ in range(PASSES):
-        at = np.clip(x + lever * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
-    level, slope, bend = (factors @ stage.columns(at, derivative) for derivative in range(3))
-    rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
-    along = contacts.sliders[owner, lay.V] - (slope * rise if contacts.following else 0.0)
-    tangential = (rise * slope - lever * turn) / np.sqrt(1.0 + slope**2)
-    return level, tangential, rise + slope * (along + lever * (turn + bend * along))
 
 
 def _rest_height(number: int, points: Array, level: Array, foot: Array, rigid: bool) -> float:

@@ -74,7 +74,7 @@ def move(
                 mean = contacts[i, lay.SURFACE] + spans[i, 1]
         sliders[b, lay.X] += dt * (mean * sliders[b, lay.FREE] + sliders[b, lay.DRIFT])
         if codes[lay.LAW] == lay.BILATERAL and points[i, lay.INERTIA] > 0.0:
-            contacts[i, lay.CLIMBING] += dt * (contacts[i, lay.NORMAL] - points[i, lay.LOAD]) / points[i, lay.INERTIA]
+            contacts[i, lay.RISE_RATE] += dt * (contacts[i, lay.NORMAL] - points[i, lay.LOAD]) / points[i, lay.INERTIA]
     for b in range(sliders.shape[0]):
         sliders[b, lay.V] += sliders[b, lay.GAINED]
         if spring:
@@ -115,7 +115,7 @@ def add_sums(
             n += 1
             force, push = contacts[i, lay.FRICTION], contacts[i, lay.NORMAL]
             if not spring:
-                fall = (contacts[i, lay.CLIMBING] - contacts[i, lay.CLOSING]) / dt
+                fall = (contacts[i, lay.RISE_RATE] - contacts[i, lay.CLOSING]) / dt
                 if codes[lay.LAW] == lay.BILATERAL and points[i, lay.INERTIA] > 0.0:
                     fall = (points[i, lay.LOAD] - push) / points[i, lay.INERTIA]
                 sums[b, lay.FALL] = max(sums[b, lay.FALL], fall)
@@ -132,7 +132,7 @@ def add_sums(
             sums[b, lay.ALONG] += dt * force * contacts[i, lay.SURFACE]
             sums[b, lay.DISSIPATED] -= dt * force * contacts[i, lay.SLIP]
             if points[i, lay.TANGENTIAL] == 0.0:
-                balance[lay.CREATED] += max(dt * force * contacts[i, lay.SLIP], 0.0)
+                balance[lay.GAINED_ENERGY] += max(dt * force * contacts[i, lay.SLIP], 0.0)
             if codes[lay.TWO_WAY] > 0:
                 sums[b, lay.ON_BEAM] -= dt * points[i, lay.WEIGHT] * force * contacts[i, lay.SURFACE]
             if codes[lay.PRESSES] > 0 or spring:
@@ -150,7 +150,7 @@ def add_sums(
         sums[b, lay.TOUCH_TIME] += dt * touching / n
         sums[b, lay.STICK_TIME] += dt * sticking / n
         sums[b, lay.SURFACE_TIME] += dt * surface / max(touching, 1)
-        sums[b, lay.LARGEST] = max(sums[b, lay.LARGEST], abs(total))
+        sums[b, lay.HARDEST] = max(sums[b, lay.HARDEST], abs(total))
     for k in range(feet.shape[0]):
         force = feet[k, lay.PRESS] - feet[k, lay.SPRING_RATE] * feet[k, lay.HEIGHT]
         sums[feet_of[k], lay.PRESSED] += dt * force * (feet[k, lay.CLIMB] + 0.5 * feet[k, lay.LIFTED])
@@ -247,29 +247,15 @@ def advance(
     spring, two_way, n_complex = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0, codes[lay.COMPLEX]
     following, accounts = codes[lay.FOLLOWING] > 0, codes[lay.ACCOUNTS] > 0
     set_factors(START, tally[lay.STEP] * dt, n_complex, rows, drive, factors)
+    if n_steps == 0 and not spring and find_pieces(0.0, edges, sliders, points, indices):
+        look(START, -2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
     for _ in range(n_steps):
         step = tally[lay.STEP]
         time, mark = step * dt, 4 * step
         if not find_pieces(0.5 * dt if spring else 0.0, edges, sliders, points, indices):
             return lay.OFF_PIECES
         if not spring:
-            look(
-                START,
-                mark,
-                dt,
-                gravity,
-                codes,
-                table,
-                edges,
-                factors,
-                local,
-                stamp,
-                sliders,
-                feet,
-                points,
-                contacts,
-                indices,
-            )
+            look(START, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
         if accounts:
             add_powers(START, dt / 6.0, time, drive, rows, factors, forced, loads, growth, balance)
         rotate_half(rows)
@@ -277,23 +263,7 @@ def advance(
         if accounts:
             add_powers(MIDDLE, dt / 1.5, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
         if following:
-            look(
-                HALF,
-                mark + 2,
-                dt,
-                gravity,
-                codes,
-                table,
-                edges,
-                factors,
-                local,
-                stamp,
-                sliders,
-                feet,
-                points,
-                contacts,
-                indices,
-            )
+            look(HALF, mark + 2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
         rotate_half(rows)
         set_factors(END, time + dt, n_complex, rows, drive, factors)
         set_mean_rates(dt, factors)
@@ -303,42 +273,10 @@ def advance(
             for k in range(feet.shape[0]):
                 feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
                 feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
-        look(
-            MIDDLE,
-            mark + 1,
-            dt,
-            gravity,
-            codes,
-            table,
-            edges,
-            factors,
-            local,
-            stamp,
-            sliders,
-            feet,
-            points,
-            contacts,
-            indices,
-        )
+        look(MIDDLE, mark + 1, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
         if not spring:
             end = mark + 3 if two_way else mark + 4
-            look(
-                END,
-                end,
-                dt,
-                gravity,
-                codes,
-                table,
-                edges,
-                factors,
-                local,
-                stamp,
-                sliders,
-                feet,
-                points,
-                contacts,
-                indices,
-            )
+            look(END, end, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
         if two_way:
             set_shapes(dt, rows, n_complex, table, edges, points, contacts, indices, shapes)
             if codes[lay.LAW] == lay.BILATERAL:
@@ -365,23 +303,7 @@ def advance(
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
             if not spring and find_pieces(0.0, edges, sliders, points, indices):
-                look(
-                    START,
-                    mark + 4,
-                    dt,
-                    gravity,
-                    codes,
-                    table,
-                    edges,
-                    factors,
-                    local,
-                    stamp,
-                    sliders,
-                    feet,
-                    points,
-                    contacts,
-                    indices,
-                )
+                look(START, mark + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
     return lay.DONE

@@ -27,7 +27,9 @@ def set_factors(when: int, time: float, n_complex: int, rows: Array, drive: Arra
     n = rows.shape[1]
     for j in range(n):
         factors[when, VALUE, j] = rows[lay.Z_RE, j]
-        factors[when, RATE, j] = rows[lay.RATE_RE, j] * rows[lay.Z_RE, j] - rows[lay.RATE_IM, j] * rows[lay.Z_IM, j]
+        factors[when, RATE, j] = (
+            rows[lay.RATE_RE, j] * rows[lay.Z_RE, j] - rows[lay.RATE_IM, j] * rows[lay.Z_IM, j]
+        )
     for k in range(n_complex):
         j = n - n_complex + k
         factors[when, VALUE, n + k] = -rows[lay.Z_IM, j]
@@ -153,7 +155,7 @@ def look(
         if when == START:
             contacts[i, lay.START], contacts[i, lay.RISE], contacts[i, lay.COVARIANCE] = along, rise, slope
             if codes[lay.LAW] == lay.GIVEN:
-                contacts[i, lay.CLIMBING] = climb
+                contacts[i, lay.RISE_RATE] = climb
         elif when == END:
             contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - contacts[i, lay.COVARIANCE]) / 12.0
             contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
@@ -196,11 +198,7 @@ def set_shapes(
             contacts[i, lay.SLOPE],
         )
         length = edges[piece + 1] - edges[piece]
-        lever, stretch, side = (
-            points[i, lay.LEVER],
-            np.sqrt(1.0 + slope * slope),
-            points[i, lay.FACE] * points[i, lay.IMAGE],
-        )
+        lever, stretch, side = points[i, lay.LEVER], np.sqrt(1.0 + slope * slope), points[i, lay.FACE] * points[i, lay.IMAGE]
         lean, weight = slope * lever / length, points[i, lay.WEIGHT] / dt
         for j in range(n + n_complex):
             value, first, here, turn = 0.0, 0.0, 0.0, 0.0

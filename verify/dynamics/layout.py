@@ -30,11 +30,11 @@ the beam; depth in the straight beam at foot height 0, m; 1/2 of a point between
 point without foot, N, and its mass across the beam, kg; half the thickness h/2 times face times image, m."""
 CONTACT = 27
 (
-    NORMAL, FRICTION, STUCK, DEPTH, STRETCH, CLIMBING, SURFACE, BEFORE, AT, ABOVE, SLOPE, LIFT, CLOSING, RAMP,
+    NORMAL, FRICTION, STUCK, DEPTH, STRETCH, RISE_RATE, SURFACE, BEFORE, AT, ABOVE, SLOPE, LIFT, CLOSING, RAMP,
     START, MEAN, END, RISE, WAS_DEPTH, WAS_STUCK, COVARIANCE, RELATIVE, SLIP, OWN,
     AT_END, ABOVE_END, SPEED_END,
 ) = range(CONTACT)  # fmt: skip
-"""Points, moving (n, CONTACT), zero at first except DEPTH (below zero: gap) and, of bilateral contact, CLIMBING, the
+"""Points, moving (n, CONTACT), zero at first except DEPTH (below zero: gap) and, of bilateral contact, RISE_RATE, the
 speed of the point across the beam, m/s. State: the first eight. NORMAL and FRICTION are means over the step, FRICTION
 acts on the slider; STRETCH is the elastic tangential displacement; SURFACE is the mean tangential speed of the surface
 over the step with all forces; BEFORE extrapolates it. The others are of one step: material under the point and the point
@@ -55,7 +55,7 @@ GIVEN, BILATERAL, SPRING = range(3)
 SUMS = 17
 (
     ACROSS, UPHILL, ALONG, PULLED, PRESSED, DISSIPATED, DAMPED, ON_BEAM, LIFTED_BEAM, FRICTION_TIME, NORMAL_TIME,
-    TOUCH_TIME, STICK_TIME, SURFACE_TIME, LARGEST, FALL, STORED,
+    TOUCH_TIME, STICK_TIME, SURFACE_TIME, HARDEST, FALL, STORED,
 ) = range(SUMS)  # fmt: skip
 """Sums over all steps of every slider (n, SUMS). Works, J: of the surface across and up its slopes on the feet, along
 on the slider, of the pull and what prescribes a speed, of what presses; friction loss; loss in dashpots and impacts;
@@ -63,7 +63,7 @@ work on the beam of friction, of normal forces. Integrals over time: friction (o
 of points in contact and sticking, displacement of the surface under the points in contact (mean of points). The largest
 friction, N; the largest downward acceleration of the surface, m/s^2; energy in the springs now, J."""
 BALANCE = 7
-DRIVEN, LOST, CREATED, SWEEPS, UNCONVERGED, RESIDUAL, BLOCKS = range(BALANCE)
+DRIVEN, LOST, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL, BLOCKS = range(BALANCE)
 """Balance (BALANCE,): work of the drive and loss in the modes, J (with ACCOUNTS); energy that friction created, the sum
 of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution did not converge; largest
 residual of a step, N; steps solved as a block."""

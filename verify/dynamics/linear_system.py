@@ -66,9 +66,9 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     origin: float
     """Seconds before the stage begins."""
     unit_s: float
+    envelope: Array
+    """Amplitude of the forces as a polynomial in t / unit_s."""
     steps: Steps
-    envelope: Array = CONSTANT
-    """Amplitude of the forces as a polynomial in t / unit_s, (degree + 1,)."""
     complex_rows: int = 0
     """Rows with a complex psi, the last ones."""
     ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
@@ -190,8 +190,8 @@ def stages_from_rest(
                 omega=omega,
                 origin=origin,
                 unit_s=piece.steps.duration,
-                steps=piece.steps,
                 envelope=piece.coefficients,
+                steps=piece.steps,
             )
         )
         origin += piece.steps.duration
@@ -234,6 +234,7 @@ def steady_stage(
         omega=harmonic.omega,
         origin=origin,
         unit_s=1.0,
+        envelope=CONSTANT,
         steps=steps,
     )
 

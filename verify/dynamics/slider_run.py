@@ -19,7 +19,6 @@ from verify.dynamics.initial_state import (
     set_down,
     static_deflection,
     steady_with_mass,
-    surface_at_start,
 )
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import MOST_STEPS, Request
@@ -160,27 +159,6 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         contacts.feet[:, : lay.TURN + 1], contacts.contacts[:] = state.feet, state.points
         return z
 
-    def _first_sample(self, contacts: Contacts, z: ComplexArray) -> Array:
-        """The sample before the first step, (1, sliders, KEPT): friction by its law, feet at rest without it."""
-        request, kept = self.request, np.zeros((1, len(self.request.sliders), lay.KEPT))
-        kept[0, :, lay.KEPT_X], kept[0, :, lay.KEPT_V] = contacts.sliders[:, lay.X], contacts.sliders[:, lay.V]
-        kept[0, :, lay.KEPT_NORMAL] = [slider.normal_force for slider in request.sliders]
-        kept[0, :, lay.KEPT_TOUCH] = 1.0
-        if request.feet:
-            kept[0, :, lay.KEPT_SURFACE] = np.nan
-            return kept
-        surface = surface_at_start(contacts, self.stages[0], z)[1]
-        kept[0, :, lay.KEPT_SURFACE] = surface
-        stuck = contacts.contacts[:, lay.STUCK] > 0.0
-        kept[0, :, lay.KEPT_STUCK] = stuck
-        for i, slider in enumerate(request.sliders):
-            slip = float(contacts.sliders[i, lay.V] - surface[i])
-            still = request.start == "rest" and request.before is None and slider.speed == 0.0
-            law = np.sign(slip) if slider.steepness is None else np.tanh(slider.steepness * slip)
-            if not (still or stuck[i]):  # at rest on a beam at rest, whatever the sign of rounding
-                kept[0, i, lay.KEPT_FRICTION] = -slider.mu * slider.normal_force * law
-        return kept
-
     def converged(self, progress: Progress) -> Motion:
         """The run; of a two-way coupled point slider whose step is not given with the change by doubling it.
 
@@ -211,7 +189,6 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         kinetic, elastic = _kinetic(request.sliders, contacts), _elastic(contacts)
         beam = _beam_energy(self.basis, stages[0], z, 0.0)
         first = (
-            self._first_sample(contacts, z),
             stages[0].deflection(z, np.zeros(1), request.points),
             contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(),
             (contacts.points[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[None],
@@ -239,7 +216,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             stages, contacts, recorded, first, statistics, _balance(recorded, gains, contacts, accounts)
         )
         if not statistics.interrupted:
-            created = float(recorded.balance[lay.CREATED])
+            created = float(recorded.balance[lay.GAINED_ENERGY])
             assert motion.energy is not None
             check_energy(motion.energy, created, statistics.step_s, request.frequency_hz)
         return motion
@@ -254,8 +231,12 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         energy: EnergyBalance,
     ) -> Motion:
         request, n = self.request, len(recorded.samples)
-        recordings = recorded.samples, recorded.deflections, recorded.heights, recorded.pressures
-        kept, deflection, heights, pressures = (np.concatenate(pair) for pair in zip(first, recordings, strict=True))
+        recordings = recorded.deflections, recorded.heights, recorded.pressures
+        deflection, heights, pressures = (np.concatenate(pair) for pair in zip(first, recordings, strict=True))
+        kept = np.concatenate([recorded.first[None], recorded.samples])
+        if request.start == "rest" and request.before is None:
+            still = np.array([slider.speed == 0.0 for slider in request.sliders])
+            kept[0, still, lay.KEPT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
         end = _time_after(stages, recorded.n_steps)
         seconds = end - stages[0].origin
         sums, mean = recorded.sums, 1.0 / seconds if seconds > 0.0 else float("nan")
@@ -298,7 +279,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             point_offsets=offsets,
             events=recorded.events,
             mean_friction=total(mean * sums[:, lay.FRICTION_TIME]),
-            largest_friction=total(sums[:, lay.LARGEST]),
+            largest_friction=total(sums[:, lay.HARDEST]),
             mean_surface_speed=total(mean * sums[:, lay.SURFACE_TIME]),
             coupling=self.coupling,
             margins=margins,

@@ -80,6 +80,8 @@ class Recorded(msgspec.Struct, eq=False, kw_only=True):
     """"end", "left the beam" and the like (`Stage.beyond`), "diverged", "interrupted" or "chatters"."""
     z: ComplexArray
     """All of the motion of every row at the end, (n,)."""
+    first: Array
+    """(sliders, KEPT), before the first step: speed; of points without feet the friction law and the surface speed."""
 
 
 def run_stages(
@@ -132,6 +134,7 @@ def run_stages(
         set_up_s=run.set_up_s,
         stopped=stopped,
         z=z,
+        first=run.first,
     )
 
 
@@ -148,6 +151,7 @@ class _Run:
         self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
         self.balance, self.tally = np.zeros(lay.BALANCE), np.zeros(3, dtype=np.int64)
         self.spans, self.block = np.zeros((n, 4 + 2 * SPANS)), np.zeros((n, n + 1))
+        self.first = np.zeros((n_sliders, lay.KEPT))
         self.couplings = np.zeros((2, n, n))
         self.feet_of = np.zeros(n_feet, dtype=np.int64)
         self.feet_of[contacts.indices[:, lay.OF_FOOT][: n * bool(n_feet)]] = contacts.indices[:, lay.OF_SLIDER]
@@ -173,11 +177,7 @@ class _Run:
             forced[:] = interleaved(stage.forced.forward + stage.forced.backward)
             growth = np.array(stage.envelope, dtype=float)
         codes = np.zeros(lay.CODES, dtype=np.int64)
-        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = (
-            contacts.law,
-            contacts.two_way,
-            contacts.two_way and contacts.presses,
-        )
+        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = contacts.law, contacts.two_way, contacts.two_way and contacts.presses
         codes[[lay.FOLLOWING, lay.COMPLEX, lay.ACCOUNTS]] = contacts.following, own - n, self.accounts
         factors, two_way = np.zeros((3, 2, columns)), contacts.two_way
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
@@ -191,16 +191,19 @@ class _Run:
                 stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
                 contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self._positions())
                 self.set_up_s += thread_time() - began
+                arrays = (
+                    contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet, contacts.points,
+                    contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes, response,
+                    self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples, self.heights,
+                    self.pressures, self.deflections, self.events, self.tally, self.sums, self.before, self.balance,
+                )  # fmt: skip
+                if self.n_steps == 0:
+                    advance(0, 1, stage.steps.dt, *arrays)
+                    self._sample_first()
                 while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
                     began = thread_time()
-                    reason = advance(
-                        min(CHUNK, stage.steps.n - int(self.tally[lay.STEP])), stage.steps.every, stage.steps.dt,
-                        contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
-                        contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
-                        response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
-                        self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
-                        self.balance,
-                    )  # fmt: skip
+                    n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
+                    reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
                     self.loop_s += thread_time() - began
                     self.n_steps = steps + int(self.tally[lay.STEP])
                     progress(self.n_steps)
@@ -221,6 +224,21 @@ class _Run:
                 x = contacts.start + self._positions()
                 why = stage.beyond(float(x.min()), float(x.max()))
         return why
+
+    def _sample_first(self) -> None:
+        """The state before the first step; a slider in contact with feet has friction from the first step on."""
+        sliders, contacts = self.contacts.sliders, self.contacts.contacts
+        self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
+        self.first[:, lay.KEPT_TOUCH] = 1.0
+        if self.contacts.law == lay.SPRING:
+            load = self.contacts.points[:, lay.STIFF] * np.maximum(contacts[:, lay.DEPTH], 0.0)
+            self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
+            self.first[:, lay.KEPT_SURFACE] = np.nan
+            return
+        load, slip, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.V] - contacts[:, lay.START], sliders[:, lay.STEEPNESS]
+        law = np.where(steepness > 0.0, np.tanh(steepness * slip), np.sign(slip))
+        self.first[:, lay.KEPT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
+        self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
 
     def _positions(self) -> Array:
         """Points from the start of the first slider, (points,), m, half a step on for feet."""
@@ -261,12 +279,6 @@ def rows_of(stage: Stage, z: ComplexArray) -> Array:
     gain = stage.rows.participations * np.where(rate == 0.0, dt, grown / np.where(rate == 0.0, 1.0, rate))
     end = stage.rows.participations * grown
     half, rows = np.exp(0.5 * rate * dt), np.empty((lay.ROW, len(z)))
-    for first, value in (
-        (lay.Z_RE, z),
-        (lay.RATE_RE, rate),
-        (lay.HALF_RE, half),
-        (lay.GAIN_RE, gain),
-        (lay.END_RE, end),
-    ):
+    for first, value in ((lay.Z_RE, z), (lay.RATE_RE, rate), (lay.HALF_RE, half), (lay.GAIN_RE, gain), (lay.END_RE, end)):
         rows[first], rows[first + 1] = value.real, value.imag
     return rows
