@@ -30,7 +30,7 @@ def creep_speed(
     gravity: Annotated[float, Meta(gt=0, description="m/s^2")] = GRAVITY,
 ) -> float:
     """Speed under a constant force below the friction limit, tanh friction."""
-    from verify.motion.rigid_surface import creep_speed
+    from verify.dynamics.belt import creep_speed
 
     return creep_speed(mu, slope, pull, gravity)
 
@@ -46,7 +46,7 @@ class Belt(msgspec.Struct, frozen=True, kw_only=True):
 
     def times(self) -> tuple[float, float]:
         """(stick, slip) time of a cycle, s."""
-        from verify.motion.rigid_surface import stick_slip_times
+        from verify.dynamics.belt import stick_slip_times
 
         return stick_slip_times(self.mass, self.stiffness, self.static, self.kinetic, self.speed)
 
@@ -68,7 +68,7 @@ def coulomb_decrement(
     *, mass: Mass, stiffness: Stiffness, force: Annotated[float, Meta(gt=0, description="friction, N")]
 ) -> float:
     """Amplitude that an oscillator with Coulomb friction loses in a cycle."""
-    from verify.motion.rigid_surface import coulomb_decrement
+    from verify.dynamics.belt import coulomb_decrement
 
     return coulomb_decrement(mass, stiffness, force)
 
