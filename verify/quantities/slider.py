@@ -124,10 +124,10 @@ def slider_run(
             f"time = {arguments['duration']:.12g} s: the slider {status.stopped} after {run.end.time:.6g} s, give a "
             "shorter time or another slider_position"
         )
-    if status.moved is not None and status.moved > CONVERGED:
+    if status.step_change is not None and status.step_change > CONVERGED:
         raise InputError(
             f"step = {status.step_s:.3g} s, the default: halving it changes the displacement by "
-            f"{100.0 * status.moved:.2g} %, give a shorter step or time"
+            f"{100.0 * status.step_change:.2g} %, give a shorter step or time"
         )
     return run
 
