@@ -51,7 +51,7 @@ def _loads(contacts: Contacts, foot: Indices, compliance: Array) -> Array:
     """
     if not len(contacts.feet):
         return -contacts.points[:, lay.LOAD]
-    press, spring = contacts.feet[:, lay.PRESS], contacts.feet[:, lay.SPRING]
+    press, spring = contacts.feet[:, lay.PRESS], contacts.feet[:, lay.SPRING_RATE]
     if not spring.any():
         return press
     deformed = compliance + np.diag(1.0 / np.bincount(foot, contacts.points[:, lay.STIFF]))
@@ -115,7 +115,7 @@ def _rest_height(number: int, points: Array, level: Array, foot: Array, rigid: b
     depth = points[:, lay.INSET] + face * points[:, lay.IMAGE] * level
 
     def force(z: float) -> float:
-        return float((face * stiff * np.maximum(depth - face * z, 0.0)).sum() + press - foot[lay.SPRING] * z)
+        return float((face * stiff * np.maximum(depth - face * z, 0.0)).sum() + press - foot[lay.SPRING_RATE] * z)
 
     total = float(stiff.sum())
     wide = 2.0 * float(np.abs(level).max()) + 2.0 * (abs(press) + total * points[:, lay.INSET].max()) / total + 1e-12
