@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
-from verify.dynamics.friction import coulomb_force, elastic_force, tanh_force
+from verify.dynamics.friction import coulomb_force, elastic_force, held_force, tanh_force
 from verify.jit import FAST, inline
 
 SWEEPS = 100
@@ -156,13 +156,17 @@ def friction_force(
             a1 = 4.0 * end + 2.0 * start - 6.0 * mean - gained
         if steepness > 0.0:
             force = tanh_force(v - mean + 0.5 * rise, rise - gained, ease, kinetic, steepness)
+        elif contacts[i, lay.WAS_STUCK] == 1.0 and own > 0.0:
+            force = held_force(i, (rise + start - v - gained) / ease, kinetic, static, contacts[i, lay.WAS_FRICTION], ease, spans)
         else:
             left = v - start if stuck else 0.0  # of the last step, taken off in this one
             force = coulomb_force(i, v - start, a0 - left, a1 - left, ease, kinetic, static, stuck, spans)
-    if codes[lay.TWO_WAY] > 0 and ease > 0.0:
+    if own > 0.0 and points[i, lay.TANGENTIAL] == 0.0:
         # A force that is constant over the step dissipates where it lies between none and the one without mean slip.
+        # Beyond, as in the step of a slip reversal, it returns at most what friction has dissipated before.
         bound = -2.0 * slip / ease
-        force = min(max(force, min(bound, 0.0)), max(bound, 0.0))
+        if 0.5 * dt * ease * force * (force - bound) > contacts[i, lay.LOSS]:
+            force = min(max(force, min(bound, 0.0)), max(bound, 0.0))
     contacts[i, lay.SLIP] = slip + 0.5 * ease * force
     return force
 
@@ -187,6 +191,7 @@ def solve(
     coupled, largest = law == lay.BILATERAL, 0.0
     for i in range(points.shape[0]):
         b = indices[i, lay.OF_SLIDER]
+        contacts[i, lay.WAS_FRICTION] = contacts[i, lay.FRICTION]
         contacts[i, lay.NORMAL], contacts[i, lay.FRICTION], contacts[i, lay.SLIP] = 0.0, 0.0, 0.0
         contacts[i, lay.WAS_STUCK], contacts[i, lay.STUCK] = contacts[i, lay.STUCK], 0.0
         contacts[i, lay.OWN] = own_product(i, 0, shapes) if two_way else 0.0
@@ -235,6 +240,8 @@ def solve(
             contacts[i, lay.SURFACE] = contacts[i, lay.MEAN] + product(i, 0, shapes, response)
         else:
             contacts[i, lay.SURFACE] = contacts[i, lay.MEAN]
+        if points[i, lay.TANGENTIAL] == 0.0:
+            contacts[i, lay.LOSS] -= dt * contacts[i, lay.FRICTION] * contacts[i, lay.SLIP]
         contacts[i, lay.BEFORE] = 2.0 * contacts[i, lay.SURFACE] - contacts[i, lay.MEAN]
 
 

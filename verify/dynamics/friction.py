@@ -144,7 +144,7 @@ def coulomb_force(
 ) -> float:
     """Mean friction in the step by Coulomb's law, from event to event.
 
-    Sets row i of `spans` (points, 4 + 2 SPANS): whether it sticks at the end, the relative displacement over dt, r at the
+    Sets row i of `spans` (points, 4 + 2 SPANS): 1 where it sticks all the step, 0.5 where from an event in it to its end, the relative displacement over dt, r at the
     end, the number of events, and of each the share of the step and its kind.
     """
     force, used, moved, n = 0.0, 0.0, 0.0, 0
@@ -165,8 +165,30 @@ def coulomb_force(
             n += 1
         if used >= 1.0 or (span <= 0.0 and event == 0.0):
             break
-    spans[i, 0], spans[i, 1], spans[i, 2], spans[i, 3] = 1.0 if stuck else 0.0, moved, r, n
+    sticks = 1.0 if n == 0 else 0.5  # within the step
+    spans[i, 0], spans[i, 1], spans[i, 2], spans[i, 3] = sticks if stuck else 0.0, moved, r, n
     return float(min(max(force, -max(static, kinetic)), max(static, kinetic)))
+
+
+@inline
+def held_force(
+    i: int, needed: float, kinetic: float, static: float, last: float, ease: float, spans: Array
+) -> float:
+    """Mean friction in the step of a point that sticks to a surface with a response, from the force that it `needed`.
+
+    A force that is constant in the step lets the surface move less evenly than the true one, so that means decide. It
+    slips where the line through the last mean and this one passes the static limit. `spans` as in `coulomb_force`.
+    """
+    size, sign = abs(needed), 1.0 if needed > 0.0 else -1.0
+    spans[i, 0], spans[i, 1], spans[i, 2], spans[i, 3] = 1.0, 0.0, 0.0, 0.0
+    if size <= static:
+        return needed
+    stays = min(max((static - sign * last) / (size - sign * last) - 0.5, 0.0), 1.0)
+    mean = stays * 0.5 * (0.5 * (sign * last + size) + static) + (1.0 - stays) * kinetic
+    spans[i, 0], spans[i, 2], spans[i, 3] = 0.0, -sign * (size - mean) * ease, 1.0
+    spans[i, 1] = 0.5 * (1.0 - stays) * spans[i, 2]
+    spans[i, 4], spans[i, 5] = stays, lay.SLIPS
+    return float(sign * mean)
 
 
 @inline

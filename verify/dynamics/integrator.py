@@ -70,7 +70,7 @@ def move(
                 most = sliders[b, lay.MU] * max(contacts[i, lay.NORMAL], 0.0)
                 half = tanh_change(start, a, 0.5 * ease * most, sliders[b, lay.STEEPNESS]) * light / ease
                 mean = v + (4.0 * half + light * force) / 6.0 + 0.5 * gained
-            elif spans[i, 3] > 0.0 or spans[i, 0] == 0.0:
+            else:
                 mean = contacts[i, lay.SURFACE] + spans[i, 1]
         sliders[b, lay.X] += dt * (mean * sliders[b, lay.FREE] + sliders[b, lay.DRIFT])
         if codes[lay.LAW] == lay.BILATERAL and points[i, lay.INERTIA] > 0.0:
@@ -128,7 +128,7 @@ def add_sums(
                 contacts[i, lay.CLOSING] += answer if spring else 0.0
             touching += 1
             total, normal, surface = total + force, normal + push, surface + contacts[i, lay.SURFACE]
-            sticking += contacts[i, lay.STUCK]
+            sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
             sums[b, lay.ALONG] += dt * force * contacts[i, lay.SURFACE]
             sums[b, lay.DISSIPATED] -= dt * force * contacts[i, lay.SLIP]
             if points[i, lay.TANGENTIAL] == 0.0:
@@ -281,9 +281,8 @@ def advance(
             set_shapes(dt, rows, n_complex, table, edges, points, contacts, indices, shapes)
             if codes[lay.LAW] == lay.BILATERAL:
                 set_end_couplings(rows, n_complex, table, edges, points, contacts, indices, shapes, couplings)
-        elif not spring:  # along the path: the product of rise and slope within the step
-            for i in range(points.shape[0]):
-                contacts[i, lay.MEAN] += contacts[i, lay.COVARIANCE]
+        for i in range(0 if spring else points.shape[0]):
+            contacts[i, lay.MEAN] += contacts[i, lay.COVARIANCE]
         solve(dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings, spans, block, balance)
         if two_way:
             apply_forces(codes, rows, points, contacts, shapes)

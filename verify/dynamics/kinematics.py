@@ -157,7 +157,12 @@ def look(
             if codes[lay.LAW] == lay.GIVEN:
                 contacts[i, lay.RISE_RATE] = climb
         elif when == END:
-            contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - contacts[i, lay.COVARIANCE]) / 12.0
+            # of the product of rise and slope: their covariance and the mean slope, order dt^2 both
+            first = contacts[i, lay.COVARIANCE]
+            contacts[i, lay.COVARIANCE] = (
+                (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0
+                + contacts[i, lay.LIFT] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
+            )
             contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
             contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
             contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
