@@ -1,0 +1,184 @@
+"""Curves of a motor: force over speed, the speed without load, start, stop and reversal, phase portraits.
+
+The no-load speed is that of a heavy slider: its speed is prescribed and does not vary within a period of the drive. A
+light slider, which follows the surface within the period, runs freely at another speed (`transient`).
+Time constants come from means over a sliding period, so that the phase of the drive at the start does not matter.
+"""
+
+from collections.abc import Sequence
+from math import e
+
+import numpy as np
+from msgspec import Struct
+
+from verify.arrays import Array
+from verify.errors import InputError
+from verify.motor import records
+from verify.motor.result import MotorRun
+from verify.motor.steady_state import (
+    BATCHES,
+    PERIODS,
+    MotorCase,
+    SteadyState,
+    balanced,
+    batch_error,
+    crest_speed,
+    steady_state,
+)
+
+STRIDE = 4
+"""Steps between two samples of a free run."""
+PORTRAIT = 48
+"""Points of a phase portrait in a period."""
+ALIKE = 0.05
+"""Largest error of the final speed over the crest speed."""
+DRIFTS = 0.01
+"""Largest residual acceleration at the end, over mu N / mass."""
+CARRIED = 0.1
+"""Largest error of the mean normal force at the end, over N."""
+REASONS = {
+    "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
+    "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
+    "shares": "the shares of contact and stick have not converged, raise periods or slider.contact.damping",
+    "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
+    "efficiency": "no power passes from the surface to the load, choose a speed between zero and no load",
+    "no load": "mean friction has one sign at all speeds up to twice the crest speed, raise slider.preload",
+    "free speed": "the free run has no steady end, raise periods or slider.preload",
+    "start": "the free run does not change its speed by more than its error, choose another slider.speed",
+    "stop": "the speed does not fall to 1/e after the drive is switched off, raise periods",
+    "reversal": "the speed does not change after the phases are reversed, raise periods",
+    "ringing": "a two-way coupled beam rings on after the drive is switched off, choose one-way coupling for stopping",
+    "left": "the slider leaves the beam, lower periods or change slider.position",
+}
+"""Why a figure is not available."""
+
+
+def force_speed(case: MotorCase, speeds: int | Sequence[float], periods: int = PERIODS) -> list[SteadyState]:
+    """Steady states at standstill and at these speeds, m/s, all of which continue the one at standstill.
+
+    A number of speeds stands for so many, from standstill to the crest speed in the direction of the stall force.
+    """
+    still = steady_state(case, 0.0, periods=periods)
+    if isinstance(speeds, int):
+        speeds = list(np.copysign(np.linspace(0.0, crest_speed(case), speeds)[1:], still.means.force))
+    return [still, *(steady_state(case, v, before=still.run, periods=periods) for v in speeds)]
+
+
+def no_load(
+    case: MotorCase, *, reach: float | None = None, still: SteadyState | None = None, periods: int = PERIODS
+) -> SteadyState:
+    """Steady state at the prescribed speed at which the mean friction force vanishes, between 0 and `reach`, m/s.
+
+    `reach` is twice the crest speed by default; `still` is the steady state at standstill. A force of a motion that is
+    not periodic counts as zero within its error. Raises InputError where the force has one sign up to `reach`, or has
+    not converged at the root.
+    """
+    from scipy.optimize import brentq
+
+    still = still or steady_state(case, 0.0, periods=periods)
+    states = {0.0: still}
+    end = float(np.copysign(2.0 * crest_speed(case) if reach is None else reach, still.means.force))
+
+    def force(speed: float) -> float:
+        found = states.get(speed) or steady_state(case, speed, before=still.run, periods=periods)
+        states[speed] = found
+        return 0.0 if not found.periodic and abs(found.means.force) <= found.errors.force else found.means.force
+
+    if force(0.0) * force(end) > 0.0:
+        raise InputError(f"reach = {end:.6g} m/s: {REASONS['no load']}")
+    speed = float(brentq(force, 0.0, end, xtol=1e-6 * abs(end)))
+    force(speed)
+    found = states[speed]
+    if not found.converged("force"):
+        raise InputError(f"periods = {periods!r}: {REASONS['force']}")
+    return found
+
+
+class Transient(Struct, frozen=True, eq=False, kw_only=True):
+    """A free run from one speed towards another."""
+
+    run: MotorRun
+    start_speed: float
+    """Before the run, m/s along +x."""
+    times: Array
+    """(n,), middles of the sliding periods, s from the start of the run; the first is half a period."""
+    speeds: Array
+    """(n,), means over these periods, m/s."""
+    speed: float
+    """Mean over the last quarter, m/s."""
+    error: float
+    """Of that mean: `batch_error`, m/s."""
+    last: int
+    """Samples of the last quarter, a multiple of 16."""
+    converged: bool
+    """Whether the run reaches its end, at a steady speed, with the normal force that the load demands."""
+
+    def time_constant(self, target: float | None = None) -> float | None:
+        """Time until 1 - 1/e of the change to `target` (m/s, default the final speed) is made, s; None where it is not.
+
+        At least half a period of the drive, the middle of the first mean.
+        """
+        target = self.speed if target is None else target
+        change = (self.speeds - self.start_speed) / (target - self.start_speed)
+        past = np.flatnonzero(change >= 1.0 - 1.0 / e)
+        if not len(past):
+            return None
+        i = max(int(past[0]), 1)
+        return float(np.interp(1.0 - 1.0 / e, change[i - 1 : i + 1], self.times[i - 1 : i + 1]))
+
+
+def transient(case: MotorCase, periods: int, before: Transient | None = None) -> Transient:
+    """The free slider for so many periods, from its own speed or from the end of another run.
+
+    Raises InputError where it leaves the beam before the first period has passed.
+    """
+    from scipy.interpolate import CubicHermiteSpline
+
+    # samples at whole steps: a period of 61 steps, a prime, keeps its step
+    n = int(np.ceil(periods * case.steps_per_period / STRIDE))
+    run = case.run(n * STRIDE / case.steps_per_period, n + 1, before.run if before else None)
+    times, slider = run.times - run.times[0], case.slider
+    if times[-1] <= case.period:
+        raise InputError(f"slider.position = {slider.start_on(case.beam):.6g} m: {REASONS['left']}")
+    inside = times[times <= times[-1] - case.period]
+    after = CubicHermiteSpline(times, run.travelled, run.speed)(inside + case.period)
+    last = max(len(times) // (4 * BATCHES), 1) * BATCHES
+    batches = np.diff(run.travelled[-last - 1 :: last // BATCHES]) / np.diff(times[-last - 1 :: last // BATCHES])
+    error, load = float(batch_error(batches)), slider.normal_force
+    drift = slider.mass * abs(batches[: BATCHES // 2].mean() - batches[BATCHES // 2 :].mean())
+    steady = error <= ALIKE * crest_speed(case)
+    steady &= drift <= DRIFTS * slider.mu * load * 0.5 * (times[-1] - times[-last - 1])
+    carries = not balanced(slider) or abs(run.normal_force[-last:].mean() - load) <= CARRIED * load
+    return Transient(
+        run=run,
+        start_speed=before.speed if before else slider.speed,
+        times=inside + 0.5 * case.period,
+        speeds=(after - run.travelled[: len(inside)]) / case.period,
+        speed=float(batches.mean()),
+        error=error,
+        last=last,
+        converged=bool(run.statistics.finished and steady and carries),
+    )
+
+
+def stop(case: MotorCase, before: Transient, periods: int) -> Transient:
+    """After a run, with the drive switched off: the forced field of a one-way coupled steady beam ends at once."""
+    return transient(case.scaled(1e-12), periods, before)
+
+
+def reversal(case: MotorCase, before: Transient, periods: int) -> Transient:
+    """After a run, with the phases of all forces negated at once."""
+    return transient(case.reversed(), periods, before)
+
+
+def phase_portrait(case: MotorCase, before: MotorRun, speed: float = 0.0) -> tuple[Array, Array]:
+    """(heights, m, their rates, m/s) of the feet over the period after a run at a prescribed speed, (49, feet) each.
+
+    The rates are the state of the feet, not differences of heights.
+    """
+    states = [before.state.feet]
+    for _ in range(PORTRAIT):
+        before = case.run(1.0 / PORTRAIT, 2, before, speed)
+        states.append(before.state.feet)
+    rows = np.array(states)
+    return rows[:, :, records.HEIGHT], rows[:, :, records.CLIMB]

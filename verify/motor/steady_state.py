@@ -1,0 +1,247 @@
+"""Steady state of a motor at a prescribed speed: means over whole periods of the drive, with their standard errors.
+
+The slider has the prescribed speed and a fixed position, so that its motion across the beam can be periodic. Windows of
+whole periods follow each other, ever longer; each is cut into 16 batches, whose means give the standard error (method
+of batch means: G. S. Fishman, Discrete-Event Simulation, Springer 2001, sec. 6.6). A periodic motion converges in the
+first windows, a chaotic one with the square root of time.
+
+The preload less the mean normal force is the momentum gained across the beam over the time of the mean. While a slider
+is in flight any two such means agree, so that this balance, and not the batches, is the error of the normal force.
+
+A point with tangential stiffness follows the slider elastically until it slips: at a small speed that takes any number
+of periods, in which the mean friction grows too slowly for any comparison of windows. A point that has slipped has
+forgotten its start (play operator: M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with Hysteresis, Springer 1989,
+ch. 2), so that the first window is run at a speed at which all points slip.
+"""
+
+from functools import lru_cache
+from math import copysign
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, get_args
+
+import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
+
+from verify.arrays import Array
+from verify.errors import InputError
+from verify.linear.surface import section_at
+from verify.motor.result import MotorRun, uninterrupted
+from verify.motor.run import STEPS_PER_PERIOD, run_motor
+from verify.options import Start
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.linear.field import HarmonicField
+
+Figure: TypeAlias = Literal["force", "normal force", "shares", "powers"]
+FIGURES: tuple[Figure, ...] = get_args(Figure)
+BATCHES = 16
+FIRST = 48
+"""Periods of the first two windows."""
+PERIODS = 50_000
+"""Default limit of the periods until the means converge."""
+PERIODIC = 1e-3
+"""Error of the mean friction over mu N below which a motion is periodic."""
+BALANCED = 3e-3
+"""Error of the mean normal force over the preload of a periodic motion."""
+TOLERANCE = 1e-2
+"""Error over full scale (mu N, N, 1, mu N times the largest speed) below which a mean has converged."""
+CHAOTIC = 768
+"""Periods from which on `TOLERANCE` is enough: earlier the batches of a chaotic motion are correlated."""
+SLIPS = 8.0
+"""Distance of the first window over mu N / (stiffness of the softest point): all points slip, whatever their share."""
+
+
+class MotorCase(Struct, frozen=True, kw_only=True):
+    """A slider with feet on a driven beam, and the model of the beam; fields as in `simulate`."""
+
+    beam: Beam
+    forces: tuple[PointForce, ...]
+    frequency_hz: float
+    slider: Slider
+    model: str = "segment"
+    count: int | None = 49
+    modes: int | None = None
+    start: Start = "steady"
+    soft_start_periods: float = 0.0
+    modal_damping: float | None = None
+    steps_per_period: int = STEPS_PER_PERIOD
+
+    @property
+    def period(self) -> float:
+        """Of the drive, s."""
+        return 1.0 / self.frequency_hz
+
+    def run(
+        self, periods: float, samples: int, before: MotorRun | None = None, prescribed_speed: float | None = None
+    ) -> MotorRun:
+        """A run of so many periods, continued from the end of another; a prescribed speed has a fixed position.
+
+        Raises InputError, and KeyboardInterrupt of a run that was interrupted.
+        """
+        settings = {name: getattr(self, name) for name in self.__struct_fields__}
+        fixed = prescribed_speed is not None
+        duration = periods * self.period
+        return uninterrupted(
+            run_motor(
+                **settings,
+                duration=duration,
+                samples=samples,
+                continue_from=before,
+                held_speed=prescribed_speed,
+                frozen=fixed,
+            )
+        )
+
+    def field(self) -> "HarmonicField":
+        """Steady field of the beam without the slider. Raises InputError."""
+        from verify.motion.slider_run import damped_field
+
+        return damped_field(self.model, self.count, self.beam, self.forces, self.frequency_hz, self.modal_damping)
+
+    def scaled(self, factor: float) -> "MotorCase":
+        """The same with all forces times a factor."""
+        return replace(self, forces=tuple(replace(one, amplitude=factor * one.amplitude) for one in self.forces))
+
+    def reversed(self) -> "MotorCase":
+        """The same with the phases of all forces negated: the wave travels the other way."""
+        return replace(self, forces=tuple(replace(one, phase_deg=-one.phase_deg) for one in self.forces))
+
+
+@lru_cache(maxsize=64)
+def crest_speed(case: MotorCase) -> float:
+    """First-order amplitude of the tangential surface velocity at the slider, (h/2) omega |w'|, m/s."""
+    field, x = case.field(), case.slider.start_on(case.beam)
+    return section_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
+
+
+class Means(NamedTuple):
+    """Means over a window, or their errors; of all points together."""
+
+    force: float
+    """Friction on the slider along +x, N."""
+    normal_force: float
+    """N."""
+    contact_share: float
+    """Share of points and time in contact."""
+    stuck_share: float
+    """Share of points and time that stick."""
+    surface_power: float
+    """Power of the surface's tangential motion on the slider, W."""
+    friction_power: float
+    """Power lost in friction and tangential compliance, W."""
+
+
+class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
+    """A motor at a prescribed speed."""
+
+    speed: float
+    """m/s along +x."""
+    means: Means
+    """Over the last window."""
+    errors: Means
+    """Of the means: twice the standard error of the batch means or the difference of the window's halves, where that
+    is larger; of the normal force that of the momentum balance; of the powers the change from the window before."""
+    periods: int
+    """Of all windows."""
+    window: int
+    """Periods of the last one."""
+    not_converged: tuple[Figure, ...]
+    periodic: bool
+    """Whether the motion is periodic, so that only rounding and the time step are in its means."""
+    run: MotorRun
+    """The last window, from the end of which another can continue."""
+
+    @property
+    def power(self) -> float:
+        """Mechanical power on the slider, force times speed, W."""
+        return self.means.force * self.speed + 0.0  # never a negative zero
+
+    @property
+    def efficiency(self) -> float | None:
+        """Power over surface power; None where one of the two is negative or the surface power zero."""
+        given = self.means.surface_power
+        return self.power / given if given > 0.0 and self.power >= 0.0 else None
+
+    def converged(self, *figures: Figure) -> bool:
+        """Whether these figures, or all, have converged."""
+        return not set(figures or FIGURES) & set(self.not_converged)
+
+
+def steady_state(
+    case: MotorCase, speed: float, *, before: MotorRun | None = None, periods: int = PERIODS
+) -> SteadyState:
+    """Means of a motor at a prescribed speed, m/s, after at most so many periods; `before` is a run to continue.
+
+    Windows of 48, 48, 96, 192, ... periods: batches of 3, 6, ..., in which subharmonics of order 2, 3 and 4 repeat.
+    Raises InputError where the motion diverges.
+    """
+    first = copysign(max(abs(speed), presliding_speed(case.slider, FIRST * case.period)), speed) if speed else 0.0
+    found = _window(case, first, FIRST, before, None)
+    found = _window(case, speed, FIRST, found.run, found)
+    while (found.not_converged or not (found.periodic or found.periods >= CHAOTIC)) and 2 * found.periods <= periods:
+        found = _window(case, speed, found.periods, found.run, found)
+    return found
+
+
+def _window(
+    case: MotorCase, speed: float, periods: int, before: MotorRun | None, last: SteadyState | None
+) -> SteadyState:
+    """The next window, with the errors of its means; the first has none that count. Raises InputError."""
+    run = case.run(periods, BATCHES + 1, before, speed)
+    if not run.statistics.finished:
+        raise InputError(
+            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped} after "
+            f"{run.state.time:.6g} s, give more"
+        )
+    batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
+    powers = run.ledger.along / run.duration, run.ledger.rubbed / run.duration
+    means, errors = Means(*batches.mean(axis=0), *powers), Means(*6 * (np.inf,))
+    slider = case.slider
+    if last:
+        changes = (abs(power - earlier) for power, earlier in zip(powers, last.means[4:], strict=True))
+        errors = Means(*batch_error(batches), *changes)
+        if balanced(slider):
+            errors = errors._replace(normal_force=abs(means.normal_force - slider.normal_force))
+    load = max(means.normal_force, slider.normal_force)
+    fastest = crest_speed(case) + abs(speed)
+    scales: dict[Figure, tuple[float, float]] = {
+        "force": (errors.force, slider.mu * load),
+        "normal force": (errors.normal_force, load),
+        "shares": (max(errors[2:4]), 1.0),
+        "powers": (max(errors[4:]), max(slider.mu * load * fastest, abs(means.surface_power))),
+    }
+    return SteadyState(
+        speed=speed,
+        means=means,
+        errors=errors,
+        periods=periods + (last.periods if last else 0),
+        window=periods,
+        periodic=errors.force <= PERIODIC * slider.mu * load and errors.normal_force <= BALANCED * load,
+        not_converged=tuple(name for name, (error, scale) in scales.items() if error > TOLERANCE * scale),
+        run=run,
+    )
+
+
+def batch_error(batches: Array) -> Array:
+    """Error of the mean of batch means (n, k): twice its standard error, or the difference of halves where larger."""
+    half = len(batches) // 2
+    error = 2.0 * batches.std(axis=0, ddof=1) / np.sqrt(len(batches))
+    return np.asarray(np.maximum(error, np.abs(batches[:half].mean(axis=0) - batches[half:].mean(axis=0))))
+
+
+def balanced(slider: Slider) -> bool:
+    """Whether the mean normal force is the load: no spring preloads a foot, and no second beam."""
+    return not slider.preload_stiffness and not any(foot.mirrored for foot in slider.feet)
+
+
+def presliding_speed(slider: Slider, seconds: float) -> float:
+    """Speed at which all points slip within so many seconds, m/s; 0 of a contact that is rigid along the surface.
+
+    The softest point is displaced by 8 times what the friction limit of the whole slider stretches it by.
+    """
+    contact = slider.contact
+    stiffnesses = [contact.along(foot.length) / foot.points for foot in slider.feet] if contact else []
+    softest = min((one for one in stiffnesses if one), default=np.inf)
+    return SLIPS * slider.mu * slider.normal_force / softest / seconds
