@@ -10,6 +10,7 @@ from math import e
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from verify.arrays import Array
 from verify.errors import InputError
@@ -26,8 +27,8 @@ from verify.motor.steady_state import (
     steady_state,
 )
 
-STRIDE = 4
-"""Steps between two samples of a free run."""
+FINE = 32
+"""Periods at the start of a free run in which every step is sampled, later every period."""
 PORTRAIT = 48
 """Points of a phase portrait in a period."""
 ALIKE = 0.05
@@ -98,6 +99,7 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
     """A free run from one speed towards another."""
 
     run: MotorRun
+    """All of it, or what follows the first 32 periods."""
     start_speed: float
     """Before the run, m/s along +x."""
     times: Array
@@ -105,11 +107,11 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
     speeds: Array
     """(n,), means over these periods, m/s."""
     speed: float
-    """Mean over the last quarter, m/s."""
+    """Mean of `speeds` over the last quarter, m/s."""
     error: float
     """Of that mean: `batch_error`, m/s."""
     last: int
-    """Samples of the last quarter, a multiple of 16."""
+    """Samples of `run` in the last quarter, a multiple of 16."""
     converged: bool
     """Whether the run reaches its end, at a steady speed, with the normal force that the load demands."""
 
@@ -132,28 +134,31 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
 
     Raises InputError where it leaves the beam before the first period has passed.
     """
-    from scipy.interpolate import CubicHermiteSpline
-
-    # samples at whole steps: a period of 61 steps, a prime, keeps its step
-    n = int(np.ceil(periods * case.steps_per_period / STRIDE))
-    run = case.run(n * STRIDE / case.steps_per_period, n + 1, before.run if before else None)
+    fine = periods if periods < 2 * FINE else FINE
+    run = case.run(fine, fine * case.steps_per_period + 1, before.run if before else None)
     times, slider = run.times - run.times[0], case.slider
     if times[-1] <= case.period:
         raise InputError(f"slider.position = {slider.start_on(case.beam):.6g} m: {REASONS['left']}")
-    inside = times[times <= times[-1] - case.period]
-    after = CubicHermiteSpline(times, run.travelled, run.speed)(inside + case.period)
-    last = max(len(times) // (4 * BATCHES), 1) * BATCHES
-    batches = np.diff(run.travelled[-last - 1 :: last // BATCHES]) / np.diff(times[-last - 1 :: last // BATCHES])
+    times = times[times <= (1.0 + 1e-9) * (times[-1] - case.period)]
+    ends = np.interp(times + case.period, run.times - run.times[0], run.travelled)
+    times, speeds = times + 0.5 * case.period, (ends - run.travelled[: len(times)]) / case.period
+    if run.statistics.finished and periods > fine:
+        begin, rest = run.times[0], periods - fine
+        run = replace(case, soft_start_periods=0.0).run(rest, rest + 1, run)
+        times = np.append(times, run.times[1:] - begin - 0.5 * case.period)
+        speeds = np.append(speeds, np.diff(run.travelled) / np.diff(run.times))
+    last = max(len(run.times) // (4 * BATCHES), 1) * BATCHES
+    batches = speeds[-last:].reshape(BATCHES, -1).mean(axis=1)
     error, load = float(batch_error(batches)), slider.normal_force
     drift = slider.mass * abs(batches[: BATCHES // 2].mean() - batches[BATCHES // 2 :].mean())
     steady = error <= ALIKE * crest_speed(case)
-    steady &= drift <= DRIFTS * slider.mu * load * 0.5 * (times[-1] - times[-last - 1])
+    steady &= drift <= DRIFTS * slider.mu * load * 0.5 * (run.times[-1] - run.times[-last])
     carries = not balanced(slider) or abs(run.normal_force[-last:].mean() - load) <= CARRIED * load
     return Transient(
         run=run,
         start_speed=before.speed if before else slider.speed,
-        times=inside + 0.5 * case.period,
-        speeds=(after - run.travelled[: len(inside)]) / case.period,
+        times=times,
+        speeds=speeds,
         speed=float(batches.mean()),
         error=error,
         last=last,

@@ -41,7 +41,7 @@ FIRST = 48
 """Periods of the first two windows."""
 PERIODS = 50_000
 """Default limit of the periods until the means converge."""
-PERIODIC = 1e-3
+PERIODIC = 3e-4
 """Error of the mean friction over mu N below which a motion is periodic."""
 BALANCED = 3e-3
 """Error of the mean normal force over the preload of a periodic motion."""

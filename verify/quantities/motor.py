@@ -108,7 +108,7 @@ class FreeRun(MotorOptions, frozen=True, kw_only=True):
 
     periods: Annotated[int, Meta(ge=64, description="of the drive")] = 2000
 
-    def run(self, scene: Scene, cache: "SolutionCache", steady: bool = True) -> "Transient":
+    def run(self, scene: Scene, cache: "SolutionCache") -> "Transient":
         """The run. Raises InputError where it leaves the beam, or has no steady end."""
         from verify.motor.curves import REASONS, transient
 
@@ -116,9 +116,9 @@ class FreeRun(MotorOptions, frozen=True, kw_only=True):
         if key not in cache.motors:
             cache.motors[key] = transient(key[1], self.periods)
         found: Transient = cache.motors[key]
-        missing = "left" if not found.run.statistics.finished else "free speed"
-        if not found.converged and (steady or missing == "left"):
-            raise InputError(f"periods = {self.periods!r}: {REASONS[missing]}")
+        if not found.converged:
+            reason = "free speed" if found.run.statistics.finished else "left"
+            raise InputError(f"periods = {self.periods!r}: {REASONS[reason]}")
         return found
 
 
@@ -141,7 +141,7 @@ def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
 
 
 @quantity("motor.contact_imbalance", unit="1")
-def contact_imbalance(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
+def contact_imbalance(scene: Scene, motor: FreeRun) -> float:
     """Residual of the free run's energy balance over the work of the surface."""
-    balance = free.run(scene, cache, steady=False).run.ledger
+    balance = motor.case(scene).run(motor.periods, 2).ledger
     return float(abs(balance.residual) / (abs(balance.across) + abs(balance.along)))
