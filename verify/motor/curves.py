@@ -54,45 +54,33 @@ REASONS = {
 """Why a figure is not available."""
 
 
-def force_speed(case: MotorCase, speeds: int | Sequence[float], periods: int = PERIODS) -> list[SteadyState]:
-    """Steady states at standstill and at these speeds, m/s, all of which continue the one at standstill.
-
-    A number of speeds stands for so many, from standstill to the crest speed in the direction of the stall force.
-    """
-    still = steady_state(case, 0.0, periods=periods)
-    if isinstance(speeds, int):
-        speeds = list(np.copysign(np.linspace(0.0, crest_speed(case), speeds)[1:], still.means.force))
-    return [still, *(steady_state(case, v, before=still.run, periods=periods) for v in speeds)]
+def force_speed(case: MotorCase, speeds: Sequence[float], still: SteadyState, periods: int) -> list[SteadyState]:
+    """Steady states at standstill, which is given, and at these speeds, m/s, all of which continue it."""
+    return [still, *(steady_state(case, float(v), periods, still.run) for v in speeds)]
 
 
-def no_load(
-    case: MotorCase, *, reach: float | None = None, still: SteadyState | None = None, periods: int = PERIODS
-) -> SteadyState:
-    """Steady state at the prescribed speed at which the mean friction force vanishes, between 0 and `reach`, m/s.
+def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
+    """Steady state at the prescribed speed at which the mean friction force vanishes, up to twice the crest speed.
 
-    `reach` is twice the crest speed by default; `still` is the steady state at standstill. A force of a motion that is
-    not periodic counts as zero within its error. Raises InputError where the force has one sign up to `reach`, or has
-    not converged at the root.
+    Raises InputError where the force has one sign up to that, or has not converged at the root.
     """
     from scipy.optimize import brentq
 
-    still = still or steady_state(case, 0.0, periods=periods)
-    states = {0.0: still}
-    end = float(np.copysign(2.0 * crest_speed(case) if reach is None else reach, still.means.force))
+    states = {0.0: steady_state(case, 0.0, periods)}
+    end = float(np.copysign(2.0 * crest_speed(case), states[0.0].means.force))
 
     def force(speed: float) -> float:
-        found = states.get(speed) or steady_state(case, speed, before=still.run, periods=periods)
-        states[speed] = found
-        return 0.0 if not found.periodic and abs(found.means.force) <= found.errors.force else found.means.force
+        if speed not in states:
+            states[speed] = steady_state(case, speed, periods, states[0.0].run)
+        return states[speed].means.force
 
     if force(0.0) * force(end) > 0.0:
-        raise InputError(f"reach = {end:.6g} m/s: {REASONS['no load']}")
-    speed = float(brentq(force, 0.0, end, xtol=1e-6 * abs(end)))
-    force(speed)
-    found = states[speed]
-    if not found.converged("force"):
+        raise InputError(f"slider.preload = {case.slider.preload!r} N: {REASONS['no load']}")
+    root = float(brentq(force, 0.0, end, xtol=1e-6 * abs(end)))
+    force(root)
+    if not states[root].converged("force"):
         raise InputError(f"periods = {periods!r}: {REASONS['force']}")
-    return found
+    return states[root]
 
 
 class Transient(Struct, frozen=True, eq=False, kw_only=True):
@@ -121,6 +109,8 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
         At least half a period of the drive, the middle of the first mean.
         """
         target = self.speed if target is None else target
+        if target == self.start_speed:
+            return None
         change = (self.speeds - self.start_speed) / (target - self.start_speed)
         past = np.flatnonzero(change >= 1.0 - 1.0 / e)
         if not len(past):
@@ -166,14 +156,20 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
     )
 
 
+def _driven(case: MotorCase, factor: float, sign: float) -> MotorCase:
+    """The same with the amplitudes of all forces times a factor and their phases times a sign."""
+    forces = (replace(f, amplitude=factor * f.amplitude, phase_deg=sign * f.phase_deg) for f in case.forces)
+    return replace(case, forces=tuple(forces))
+
+
 def stop(case: MotorCase, before: Transient, periods: int) -> Transient:
     """After a run, with the drive switched off: the forced field of a one-way coupled steady beam ends at once."""
-    return transient(case.scaled(1e-12), periods, before)
+    return transient(_driven(case, 1e-12, 1.0), periods, before)
 
 
 def reversal(case: MotorCase, before: Transient, periods: int) -> Transient:
     """After a run, with the phases of all forces negated at once."""
-    return transient(case.reversed(), periods, before)
+    return transient(_driven(case, 1.0, -1.0), periods, before)
 
 
 def phase_portrait(case: MotorCase, before: MotorRun, speed: float = 0.0) -> tuple[Array, Array]:

@@ -1,12 +1,10 @@
 """Steady state of a motor at a prescribed speed: means over whole periods of the drive, with their standard errors.
 
 The slider has the prescribed speed and a fixed position, so that its motion across the beam can be periodic. Windows of
-whole periods follow each other, ever longer; each is cut into 16 batches, whose means give the standard error (method
-of batch means: G. S. Fishman, Discrete-Event Simulation, Springer 2001, sec. 6.6). A periodic motion converges in the
-first windows, a chaotic one with the square root of time.
-
-The preload less the mean normal force is the momentum gained across the beam over the time of the mean. While a slider
-is in flight any two such means agree, so that this balance, and not the batches, is the error of the normal force.
+whole periods follow each other, each as long as all before it, and are cut into 16 batches, whose means give the
+standard error (batch means: G. S. Fishman, Discrete-Event Simulation, Springer 2001, sec. 6.6). The preload less the
+mean normal force is the momentum gained across the beam over the time of the mean: this balance is the error of the
+normal force, as two windows of a slider in flight agree.
 
 A point with tangential stiffness follows the slider elastically until it slips: at a small speed that takes any number
 of periods, in which the mean friction grows too slowly for any comparison of windows. A point that has slipped has
@@ -16,11 +14,11 @@ ch. 2), so that the first window is run at a speed at which all points slip.
 
 from functools import lru_cache
 from math import copysign
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from msgspec import Struct
-from msgspec.structs import replace
+from msgspec.structs import asdict
 
 from verify.arrays import Array
 from verify.errors import InputError
@@ -35,20 +33,20 @@ if TYPE_CHECKING:
     from verify.linear.field import HarmonicField
 
 Figure: TypeAlias = Literal["force", "normal force", "shares", "powers"]
-FIGURES: tuple[Figure, ...] = get_args(Figure)
 BATCHES = 16
 FIRST = 48
-"""Periods of the first two windows."""
-PERIODS = 50_000
+"""Periods of the first two windows: batches of 3, then of 6, in which subharmonics of order 2 and 3 repeat."""
+PERIODS = 12_500
 """Default limit of the periods until the means converge."""
-PERIODIC = 3e-4
-"""Error of the mean friction over mu N below which a motion is periodic."""
-BALANCED = 3e-3
-"""Error of the mean normal force over the preload of a periodic motion."""
-TOLERANCE = 1e-2
-"""Error over full scale (mu N, N, 1, mu N times the largest speed) below which a mean has converged."""
 CHAOTIC = 768
-"""Periods from which on `TOLERANCE` is enough: earlier the batches of a chaotic motion are correlated."""
+"""Periods from which on the tolerance is that of a motion that is not periodic: earlier its batches are correlated."""
+TOLERANCES: "dict[Figure, tuple[float, float]]" = {
+    "force": (3e-4, 1e-2),
+    "normal force": (3e-3, 1e-2),
+    "shares": (1e-2, 1e-2),
+    "powers": (1e-2, 1e-2),
+}
+"""Largest error over full scale (mu N, N, 1, mu N times the largest slip speed), before and from `CHAOTIC` on."""
 SLIPS = 8.0
 """Distance of the first window over mu N / (stiffness of the softest point): all points slip, whatever their share."""
 
@@ -76,37 +74,23 @@ class MotorCase(Struct, frozen=True, kw_only=True):
     def run(
         self, periods: float, samples: int, before: MotorRun | None = None, prescribed_speed: float | None = None
     ) -> MotorRun:
-        """A run of so many periods, continued from the end of another; a prescribed speed has a fixed position.
-
-        Raises InputError, and KeyboardInterrupt of a run that was interrupted.
-        """
-        settings = {name: getattr(self, name) for name in self.__struct_fields__}
+        """A run of so many periods after another; a prescribed speed, m/s, has a fixed position. Raises InputError."""
         fixed = prescribed_speed is not None
-        duration = periods * self.period
-        return uninterrupted(
-            run_motor(
-                **settings,
-                duration=duration,
-                samples=samples,
-                continue_from=before,
-                held_speed=prescribed_speed,
-                frozen=fixed,
-            )
+        run = run_motor(
+            **asdict(self),
+            duration=periods * self.period,
+            samples=samples,
+            continue_from=before,
+            held_speed=prescribed_speed,
+            frozen=fixed,
         )
+        return uninterrupted(run)
 
     def field(self) -> "HarmonicField":
         """Steady field of the beam without the slider. Raises InputError."""
         from verify.motion.slider_run import damped_field
 
         return damped_field(self.model, self.count, self.beam, self.forces, self.frequency_hz, self.modal_damping)
-
-    def scaled(self, factor: float) -> "MotorCase":
-        """The same with all forces times a factor."""
-        return replace(self, forces=tuple(replace(one, amplitude=factor * one.amplitude) for one in self.forces))
-
-    def reversed(self) -> "MotorCase":
-        """The same with the phases of all forces negated: the wave travels the other way."""
-        return replace(self, forces=tuple(replace(one, phase_deg=-one.phase_deg) for one in self.forces))
 
 
 @lru_cache(maxsize=64)
@@ -148,8 +132,6 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
     window: int
     """Periods of the last one."""
     not_converged: tuple[Figure, ...]
-    periodic: bool
-    """Whether the motion is periodic, so that only rounding and the time step are in its means."""
     run: MotorRun
     """The last window, from the end of which another can continue."""
 
@@ -166,21 +148,18 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
 
     def converged(self, *figures: Figure) -> bool:
         """Whether these figures, or all, have converged."""
-        return not set(figures or FIGURES) & set(self.not_converged)
+        return not set(figures or TOLERANCES) & set(self.not_converged)
 
 
-def steady_state(
-    case: MotorCase, speed: float, *, before: MotorRun | None = None, periods: int = PERIODS
-) -> SteadyState:
+def steady_state(case: MotorCase, speed: float, periods: int = PERIODS, before: MotorRun | None = None) -> SteadyState:
     """Means of a motor at a prescribed speed, m/s, after at most so many periods; `before` is a run to continue.
 
-    Windows of 48, 48, 96, 192, ... periods: batches of 3, 6, ..., in which subharmonics of order 2, 3 and 4 repeat.
     Raises InputError where the motion diverges.
     """
     first = copysign(max(abs(speed), presliding_speed(case.slider, FIRST * case.period)), speed) if speed else 0.0
     found = _window(case, first, FIRST, before, None)
     found = _window(case, speed, FIRST, found.run, found)
-    while (found.not_converged or not (found.periodic or found.periods >= CHAOTIC)) and 2 * found.periods <= periods:
+    while found.not_converged and 2 * found.periods <= periods:
         found = _window(case, speed, found.periods, found.run, found)
     return found
 
@@ -196,31 +175,24 @@ def _window(
             f"{run.state.time:.6g} s, give more"
         )
     batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
-    powers = run.ledger.along / run.duration, run.ledger.rubbed / run.duration
-    means, errors = Means(*batches.mean(axis=0), *powers), Means(*6 * (np.inf,))
-    slider = case.slider
+    powers = np.array([run.ledger.along, run.ledger.rubbed]) / run.duration
+    slider, means = case.slider, Means(*np.append(batches.mean(axis=0), powers).tolist())
+    errors = Means(*6 * [np.inf])
     if last:
-        changes = (abs(power - earlier) for power, earlier in zip(powers, last.means[4:], strict=True))
-        errors = Means(*batch_error(batches), *changes)
+        errors = Means(*np.append(batch_error(batches), np.abs(powers - last.means[4:])).tolist())
         if balanced(slider):
             errors = errors._replace(normal_force=abs(means.normal_force - slider.normal_force))
-    load = max(means.normal_force, slider.normal_force)
+    load, total = max(means.normal_force, slider.normal_force), periods + (last.periods if last else 0)
     fastest = crest_speed(case) + abs(speed)
-    scales: dict[Figure, tuple[float, float]] = {
-        "force": (errors.force, slider.mu * load),
-        "normal force": (errors.normal_force, load),
-        "shares": (max(errors[2:4]), 1.0),
-        "powers": (max(errors[4:]), max(slider.mu * load * fastest, abs(means.surface_power))),
+    shares: dict[Figure, float] = {
+        "force": errors.force / (slider.mu * load),
+        "normal force": errors.normal_force / load,
+        "shares": max(errors[2:4]),
+        "powers": max(errors[4:]) / max(slider.mu * load * fastest, abs(means.surface_power)),
     }
+    missing = tuple(name for name, share in shares.items() if share > TOLERANCES[name][total >= CHAOTIC])
     return SteadyState(
-        speed=speed,
-        means=means,
-        errors=errors,
-        periods=periods + (last.periods if last else 0),
-        window=periods,
-        periodic=errors.force <= PERIODIC * slider.mu * load and errors.normal_force <= BALANCED * load,
-        not_converged=tuple(name for name, (error, scale) in scales.items() if error > TOLERANCE * scale),
-        run=run,
+        speed=speed, means=means, errors=errors, periods=total, window=periods, not_converged=missing, run=run
     )
 
 

@@ -1,7 +1,7 @@
 """Quantities of a motor: a slider that may lose contact, at a prescribed speed or free."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import msgspec
 from msgspec import Meta
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.motor.curves import Transient
     from verify.motor.steady_state import Figure, MotorCase, SteadyState
+
+
+T = TypeVar("T")
 
 
 class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
@@ -37,20 +40,26 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         return MotorCase(beam=scene.beam, forces=forces, frequency_hz=hertz, slider=scene.slider, **settings)
 
 
+def cached(cache: "SolutionCache", function: "Callable[..., T]", *arguments: Any) -> "T":
+    """The value of a function, computed once for the same arguments."""
+    key = (function, *arguments)
+    if key not in cache.motors:
+        cache.motors[key] = function(*arguments)
+    found: T = cache.motors[key]
+    return found
+
+
 class Prescribed(MotorOptions, frozen=True, kw_only=True):
     """A slider at a prescribed speed and a fixed position."""
 
-    periods: Annotated[int, Meta(ge=96, description="of the drive, at most, until the means converge")] = 50_000
+    periods: Annotated[int, Meta(ge=96, description="of the drive, at most, until the means converge")] = 12_500
 
     def state(self, scene: Scene, cache: "SolutionCache", speed: float, *figures: "Figure") -> "SteadyState":
         """Means at a speed. Raises InputError where one of these figures has not converged."""
         from verify.motor.curves import REASONS
         from verify.motor.steady_state import steady_state
 
-        key = (self, speed, self.case(scene))
-        if key not in cache.motors:
-            cache.motors[key] = steady_state(key[-1], speed, periods=self.periods)
-        found: SteadyState = cache.motors[key]
+        found = cached(cache, steady_state, self.case(scene), speed, self.periods)
         for name in figures:
             if not found.converged(name):
                 raise InputError(f"periods = {self.periods!r}: {REASONS[name]}")
@@ -99,8 +108,7 @@ def no_load_speed(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> fl
     """Prescribed speed along +x at which the mean friction force vanishes: the free speed of a heavy slider."""
     from verify.motor.curves import no_load
 
-    still = motor.state(scene, cache, 0.0)
-    return no_load(motor.case(scene), still=still, periods=motor.periods).speed
+    return cached(cache, no_load, motor.case(scene), motor.periods).speed
 
 
 class FreeRun(MotorOptions, frozen=True, kw_only=True):
@@ -112,10 +120,7 @@ class FreeRun(MotorOptions, frozen=True, kw_only=True):
         """The run. Raises InputError where it leaves the beam, or has no steady end."""
         from verify.motor.curves import REASONS, transient
 
-        key = (self, self.case(scene))
-        if key not in cache.motors:
-            cache.motors[key] = transient(key[1], self.periods)
-        found: Transient = cache.motors[key]
+        found = cached(cache, transient, self.case(scene), self.periods)
         if not found.converged:
             reason = "free speed" if found.run.statistics.finished else "left"
             raise InputError(f"periods = {self.periods!r}: {REASONS[reason]}")

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
-PERIODS = 12_500
-"""Limit of the periods until means at a prescribed speed converge."""
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
 VALIDITY = {
@@ -122,7 +120,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             options = MotorOptions(
                 model=model, count=count, modal_damping=self.modal_damping, steps_per_period=self.steps_per_period
             )
-            fields.append(self._field(options.case(scene), fields[0].curve if fields else [], progress))
+            fields.append(self._field(options.case(scene), fields[0].curve if fields else [], cache, progress))
         first, (invalid, warnings) = fields[0], _validity(fields)
         converged = all(field.free.converged and field.curve[0].converged("force") for field in fields)
         speed, force = 100 * first.free.speed, first.curve[0].means.force
@@ -143,28 +141,38 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             },
         )
 
-    def _field(self, case: "MotorCase", like: "list[SteadyState]", progress: Progress) -> Field:
+    def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: "SolutionCache", progress: Progress) -> Field:
         """Prescribed speeds, free run, stop and reversal on one model. Raises InputError."""
+        import numpy as np
+
         from verify.motor import curves
+        from verify.motor.steady_state import PERIODS, crest_speed, steady_state
+        from verify.quantities.motor import cached
 
         name = sized_title(case.model, case.count)
         progress(f"force over speed, {name}")
-        curve = curves.force_speed(case, [at.speed for at in like[1:]] or self.speeds, PERIODS)
+        still = cached(cache, steady_state, case, 0.0, PERIODS)
+        speeds = [at.speed for at in like[1:]] or np.copysign(
+            np.linspace(0.0, crest_speed(case), self.speeds)[1:], still.means.force
+        )
+        curve = curves.force_speed(case, speeds, still, PERIODS)
         missing = {one: None for at in curve for one in at.not_converged}
         unloaded = None
         with suppress(InputError):
-            unloaded = curves.no_load(case, still=curve[0], periods=PERIODS).speed
+            unloaded = cached(cache, curves.no_load, case, PERIODS).speed
         progress(f"free run, {name}")
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
-        free, stop, reversal = curves.transient(begun, self.periods), None, None
+        free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
         finished, coupling = free.run.statistics.finished, free.run.coupling
         rings = coupling is not None and coupling.two_way
         times: dict[str, float | None] = dict.fromkeys(("start", "stop", "reversal"))
-        if finished and self.start == "steady":
-            stop = None if rings else curves.stop(case, free, self.periods)
-            reversal = curves.reversal(case, free, self.periods)
         if free.converged and abs(free.speed - free.start_speed) > free.error:
             times["start"] = free.time_constant()
+        if finished and self.start == "steady":
+            known = times["start"] or self.periods * case.period
+            periods = min(int(2.0 * TIME_CONSTANTS * known / case.period) + 2, self.periods)
+            stop = None if rings else curves.stop(case, free, periods)
+            reversal = curves.reversal(case, free, periods)
         if free.converged and abs(free.speed) > free.error:
             times["stop"] = stop.time_constant(0.0) if stop else None
             times["reversal"] = reversal.time_constant(-free.speed) if reversal else None
