@@ -5,7 +5,6 @@ light slider, which follows the surface within the period, runs freely at anothe
 Time constants come from means over a sliding period, so that the phase of the drive at the start does not matter.
 """
 
-from collections.abc import Sequence
 from math import e
 
 import numpy as np
@@ -31,12 +30,6 @@ FINE = 32
 """Periods at the start of a free run in which every step is sampled, later every period."""
 PORTRAIT = 48
 """Points of a phase portrait in a period."""
-ALIKE = 0.05
-"""Largest error of the final speed over the crest speed."""
-DRIFTS = 0.01
-"""Largest residual acceleration at the end, over mu N / mass."""
-CARRIED = 0.1
-"""Largest error of the mean normal force at the end, over N."""
 REASONS = {
     "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
     "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
@@ -52,11 +45,6 @@ REASONS = {
     "left": "the slider leaves the beam, lower periods or change slider.position",
 }
 """Why a figure is not available."""
-
-
-def force_speed(case: MotorCase, speeds: Sequence[float], still: SteadyState, periods: int) -> list[SteadyState]:
-    """Steady states at standstill, which is given, and at these speeds, m/s, all of which continue it."""
-    return [still, *(steady_state(case, float(v), periods, still.run) for v in speeds)]
 
 
 def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
@@ -101,15 +89,16 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
     last: int
     """Samples of `run` in the last quarter, a multiple of 16."""
     converged: bool
-    """Whether the run reaches its end, at a steady speed, with the normal force that the load demands."""
+    """Whether the run reaches its end, with an error up to 5 % of the crest speed, a residual acceleration up to 1 % of
+    mu N / mass and a mean normal force within 10 % of the load."""
 
     def time_constant(self, target: float | None = None) -> float | None:
-        """Time until 1 - 1/e of the change to `target` (m/s, default the final speed) is made, s; None where it is not.
+        """Time until 1 - 1/e of the change to `target` (m/s, default the final speed) is made, s.
 
-        At least half a period of the drive, the middle of the first mean.
+        At least half a period of the drive, the middle of the first mean. None where it is not made, or of no size.
         """
         target = self.speed if target is None else target
-        if target == self.start_speed:
+        if abs(target - self.start_speed) <= self.error:
             return None
         change = (self.speeds - self.start_speed) / (target - self.start_speed)
         past = np.flatnonzero(change >= 1.0 - 1.0 / e)
@@ -140,10 +129,9 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
     last = max(len(run.times) // (4 * BATCHES), 1) * BATCHES
     batches = speeds[-last:].reshape(BATCHES, -1).mean(axis=1)
     error, load = float(batch_error(batches)), slider.normal_force
-    drift = slider.mass * abs(batches[: BATCHES // 2].mean() - batches[BATCHES // 2 :].mean())
-    steady = error <= ALIKE * crest_speed(case)
-    steady &= drift <= DRIFTS * slider.mu * load * 0.5 * (run.times[-1] - run.times[-last])
-    carries = not balanced(slider) or abs(run.normal_force[-last:].mean() - load) <= CARRIED * load
+    drift = abs(batches[: BATCHES // 2].mean() - batches[BATCHES // 2 :].mean()) / (run.times[-1] - run.times[-last])
+    steady = error <= 0.05 * crest_speed(case) and 2.0 * slider.mass * drift <= 0.01 * slider.mu * load
+    carries = not balanced(slider) or abs(run.normal_force[-last:].mean() - load) <= 0.1 * load
     return Transient(
         run=run,
         start_speed=before.speed if before else slider.speed,
@@ -156,20 +144,16 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
     )
 
 
-def _driven(case: MotorCase, factor: float, sign: float) -> MotorCase:
-    """The same with the amplitudes of all forces times a factor and their phases times a sign."""
-    forces = (replace(f, amplitude=factor * f.amplitude, phase_deg=sign * f.phase_deg) for f in case.forces)
-    return replace(case, forces=tuple(forces))
-
-
 def stop(case: MotorCase, before: Transient, periods: int) -> Transient:
     """After a run, with the drive switched off: the forced field of a one-way coupled steady beam ends at once."""
-    return transient(_driven(case, 1e-12, 1.0), periods, before)
+    forces = tuple(replace(one, amplitude=1e-12 * one.amplitude) for one in case.forces)
+    return transient(replace(case, forces=forces), periods, before)
 
 
 def reversal(case: MotorCase, before: Transient, periods: int) -> Transient:
     """After a run, with the phases of all forces negated at once."""
-    return transient(_driven(case, 1.0, -1.0), periods, before)
+    forces = tuple(replace(one, phase_deg=-one.phase_deg) for one in case.forces)
+    return transient(replace(case, forces=forces), periods, before)
 
 
 def phase_portrait(case: MotorCase, before: MotorRun, speed: float = 0.0) -> tuple[Array, Array]:

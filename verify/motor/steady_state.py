@@ -14,7 +14,7 @@ ch. 2), so that the first window is run at a speed at which all points slip.
 
 from functools import lru_cache
 from math import copysign
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from msgspec import Struct
@@ -28,9 +28,6 @@ from verify.motor.run import STEPS_PER_PERIOD, run_motor
 from verify.options import Start
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
-
-if TYPE_CHECKING:
-    from verify.linear.field import HarmonicField
 
 Figure: TypeAlias = Literal["force", "normal force", "shares", "powers"]
 BATCHES = 16
@@ -86,18 +83,21 @@ class MotorCase(Struct, frozen=True, kw_only=True):
         )
         return uninterrupted(run)
 
-    def field(self) -> "HarmonicField":
-        """Steady field of the beam without the slider. Raises InputError."""
-        from verify.motion.slider_run import damped_field
 
-        return damped_field(self.model, self.count, self.beam, self.forces, self.frequency_hz, self.modal_damping)
+@lru_cache(maxsize=16)
+def surface_motion(case: MotorCase) -> tuple[float, float]:
+    """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) of the beam alone, under the slider."""
+    from verify.motion.slider_run import damped_field
+
+    field = damped_field(case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping)
+    x = case.slider.start_on(case.beam)
+    tangential = section_at(case.beam, x).surface_distance * field.omega
+    return float(abs(field.deflection([x]))[0]), tangential * float(abs(field.slope([x]))[0])
 
 
-@lru_cache(maxsize=64)
 def crest_speed(case: MotorCase) -> float:
-    """First-order amplitude of the tangential surface velocity at the slider, (h/2) omega |w'|, m/s."""
-    field, x = case.field(), case.slider.start_on(case.beam)
-    return section_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
+    """First-order amplitude of the tangential surface velocity under the slider, m/s."""
+    return surface_motion(case)[1]
 
 
 class Means(NamedTuple):
@@ -129,8 +129,6 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
     is larger; of the normal force that of the momentum balance; of the powers the change from the window before."""
     periods: int
     """Of all windows."""
-    window: int
-    """Periods of the last one."""
     not_converged: tuple[Figure, ...]
     run: MotorRun
     """The last window, from the end of which another can continue."""
@@ -191,9 +189,7 @@ def _window(
         "powers": max(errors[4:]) / max(slider.mu * load * fastest, abs(means.surface_power)),
     }
     missing = tuple(name for name, share in shares.items() if share > TOLERANCES[name][total >= CHAOTIC])
-    return SteadyState(
-        speed=speed, means=means, errors=errors, periods=total, window=periods, not_converged=missing, run=run
-    )
+    return SteadyState(speed=speed, means=means, errors=errors, periods=total, not_converged=missing, run=run)
 
 
 def batch_error(batches: Array) -> Array:

@@ -1,7 +1,7 @@
 """Quantities of a motor: a slider that may lose contact, at a prescribed speed or free."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
 from msgspec import Meta
@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.motor.curves import Transient
     from verify.motor.steady_state import Figure, MotorCase, SteadyState
-
-
-T = TypeVar("T")
 
 
 class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
@@ -40,13 +37,12 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         return MotorCase(beam=scene.beam, forces=forces, frequency_hz=hertz, slider=scene.slider, **settings)
 
 
-def cached(cache: "SolutionCache", function: "Callable[..., T]", *arguments: Any) -> "T":
+def cached(cache: "SolutionCache", function: Callable[..., Any], *arguments: Any) -> Any:
     """The value of a function, computed once for the same arguments."""
     key = (function, *arguments)
     if key not in cache.motors:
         cache.motors[key] = function(*arguments)
-    found: T = cache.motors[key]
-    return found
+    return cache.motors[key]
 
 
 class Prescribed(MotorOptions, frozen=True, kw_only=True):
@@ -55,26 +51,20 @@ class Prescribed(MotorOptions, frozen=True, kw_only=True):
     periods: Annotated[int, Meta(ge=96, description="of the drive, at most, until the means converge")] = 12_500
 
     def state(self, scene: Scene, cache: "SolutionCache", speed: float, *figures: "Figure") -> "SteadyState":
-        """Means at a speed. Raises InputError where one of these figures has not converged."""
+        """Means at a speed, m/s. Raises InputError where one of these figures has not converged."""
         from verify.motor.curves import REASONS
         from verify.motor.steady_state import steady_state
 
-        found = cached(cache, steady_state, self.case(scene), speed, self.periods)
+        found: SteadyState = cached(cache, steady_state, self.case(scene), speed, self.periods)
         for name in figures:
             if not found.converged(name):
                 raise InputError(f"periods = {self.periods!r}: {REASONS[name]}")
         return found
 
 
-def _efficiency(found: "SteadyState") -> float:
-    from verify.motor.curves import REASONS
-
-    if found.efficiency is None:
-        raise InputError(f"speed = {found.speed!r} m/s: {REASONS['efficiency']}")
-    return found.efficiency
-
-
-def _at_speed(name: str, unit: str, summary: str, read: "Callable[[SteadyState], float]", *figures: "Figure") -> None:
+def _at_speed(
+    name: str, unit: str, summary: str, read: "Callable[[SteadyState], float | None]", *figures: "Figure"
+) -> None:
     """Register a quantity of the slider at a prescribed speed."""
 
     @quantity(f"motor.{name}", unit=unit, summary=f"{summary} at a prescribed speed.")
@@ -85,12 +75,17 @@ def _at_speed(name: str, unit: str, summary: str, read: "Callable[[SteadyState],
         *,
         speed: Annotated[float, Meta(description="of the slider along +x, m/s")] = 0.0,
     ) -> float:
-        return read(motor.state(scene, cache, speed, *figures))
+        from verify.motor.curves import REASONS
+
+        value = read(motor.state(scene, cache, speed, *figures))
+        if value is None:
+            raise InputError(f"speed = {speed!r} m/s: {REASONS[name]}")
+        return value
 
 
 _at_speed("force_speed", "N", "Mean friction force on the slider", lambda at: at.means.force, "force")
 _at_speed("power", "W", "Mean mechanical power on the slider", lambda at: at.power, "force")
-_at_speed("efficiency", "1", "That power over the tangential power of the surface", _efficiency, "force", "powers")
+_at_speed("efficiency", "1", "Power over tangential surface power", lambda at: at.efficiency, "force", "powers")
 _at_speed("normal_mean", "N", "Mean normal force on the slider", lambda at: at.means.normal_force, "normal force")
 _at_speed("contact_share", "1", "Share of points and time in contact", lambda at: at.means.contact_share, "shares")
 _at_speed("stuck_share", "1", "Share of points and time that stick", lambda at: at.means.stuck_share, "shares")
@@ -108,19 +103,20 @@ def no_load_speed(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> fl
     """Prescribed speed along +x at which the mean friction force vanishes: the free speed of a heavy slider."""
     from verify.motor.curves import no_load
 
-    return cached(cache, no_load, motor.case(scene), motor.periods).speed
+    found: SteadyState = cached(cache, no_load, motor.case(scene), motor.periods)
+    return found.speed
 
 
 class FreeRun(MotorOptions, frozen=True, kw_only=True):
     """The free slider, from its own speed on a steady beam."""
 
-    periods: Annotated[int, Meta(ge=64, description="of the drive")] = 2000
+    periods: Annotated[int, Meta(ge=2, description="of the drive")] = 2000
 
     def run(self, scene: Scene, cache: "SolutionCache") -> "Transient":
         """The run. Raises InputError where it leaves the beam, or has no steady end."""
         from verify.motor.curves import REASONS, transient
 
-        found = cached(cache, transient, self.case(scene), self.periods)
+        found: Transient = cached(cache, transient, self.case(scene), self.periods)
         if not found.converged:
             reason = "free speed" if found.run.statistics.finished else "left"
             raise InputError(f"periods = {self.periods!r}: {REASONS[reason]}")
@@ -138,9 +134,7 @@ def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
     """Time until the free slider's mean over a sliding period has made 1 - 1/e of the change to its final speed."""
     from verify.motor.curves import REASONS
 
-    found = free.run(scene, cache)
-    time = found.time_constant() if abs(found.speed - found.start_speed) > found.error else None
-    if time is None:
+    if (time := free.run(scene, cache).time_constant()) is None:
         raise InputError(f"periods = {free.periods!r}: {REASONS['start']}")
     return time
 

@@ -3,6 +3,7 @@
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
+from math import copysign
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
@@ -63,8 +64,6 @@ class Field:
     """Drive phases reversed."""
     times: dict[str, float | None]
     """Time constants of start, stop and reversal, s."""
-    amplitude: float
-    """Of the surface under the slider, m."""
     missing: list[str]
     """Why figures are not available, keys of `curves.REASONS`."""
 
@@ -130,32 +129,22 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             tables=_tables(fields),
             figures=_figures(fields),
             warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing] + warnings,
-            data={
-                "curves": {
-                    field.name: [
-                        {"speed": at.speed, **at.means._asdict(), "force error": at.errors.force} for at in field.curve
-                    ]
-                    for field in fields
-                },
-                "margins": {field.name: field.free.run.motor_margins for field in fields},
-            },
         )
 
     def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: "SolutionCache", progress: Progress) -> Field:
         """Prescribed speeds, free run, stop and reversal on one model. Raises InputError."""
-        import numpy as np
-
         from verify.motor import curves
         from verify.motor.steady_state import PERIODS, crest_speed, steady_state
         from verify.quantities.motor import cached
 
         name = sized_title(case.model, case.count)
         progress(f"force over speed, {name}")
-        still = cached(cache, steady_state, case, 0.0, PERIODS)
-        speeds = [at.speed for at in like[1:]] or np.copysign(
-            np.linspace(0.0, crest_speed(case), self.speeds)[1:], still.means.force
-        )
-        curve = curves.force_speed(case, speeds, still, PERIODS)
+        still: SteadyState = cached(cache, steady_state, case, 0.0, PERIODS)
+        way = copysign(1.0, still.means.force)
+        speeds = [at.speed for at in like] or [
+            way * crest_speed(case) * k / (self.speeds - 1) for k in range(self.speeds)
+        ]
+        curve = [still, *(steady_state(case, speed, PERIODS, still.run) for speed in speeds[1:])]
         missing = {one: None for at in curve for one in at.not_converged}
         unloaded = None
         with suppress(InputError):
@@ -165,19 +154,25 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
         finished, coupling = free.run.statistics.finished, free.run.coupling
         rings = coupling is not None and coupling.two_way
-        times: dict[str, float | None] = dict.fromkeys(("start", "stop", "reversal"))
-        if free.converged and abs(free.speed - free.start_speed) > free.error:
-            times["start"] = free.time_constant()
+        begin = free.time_constant() if free.converged else None
         if finished and self.start == "steady":
-            known = times["start"] or self.periods * case.period
-            periods = min(int(2.0 * TIME_CONSTANTS * known / case.period) + 2, self.periods)
+            shown = 2.0 * TIME_CONSTANTS * begin / case.period + 2.0 if begin else self.periods
+            periods = min(int(shown), self.periods)
             stop = None if rings else curves.stop(case, free, periods)
             reversal = curves.reversal(case, free, periods)
-        if free.converged and abs(free.speed) > free.error:
-            times["stop"] = stop.time_constant(0.0) if stop else None
-            times["reversal"] = reversal.time_constant(-free.speed) if reversal else None
+        times = {
+            "start": begin,
+            "stop": stop.time_constant(0.0) if stop and free.converged else None,
+            "reversal": reversal.time_constant(-free.speed) if reversal and free.converged else None,
+        }
         end = "free speed" if finished else "left"
-        reasons = {"no load": unloaded, end: free.converged or None, "ringing": None if rings else True, **times}
+        reasons: dict[str, Any] = {
+            "no load": unloaded,
+            end: free.converged or None,
+            **(times if free.converged else {}),
+        }
+        if rings:
+            reasons = {key: value for key, value in reasons.items() if key != "stop"} | {"ringing": None}
         return Field(
             case=case,
             name=name,
@@ -187,19 +182,20 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             stop=stop,
             reversal=reversal,
             times=times,
-            amplitude=float(abs(case.field().deflection([case.slider.start_on(case.beam)])[0])),
             missing=[*missing, *(key for key, value in reasons.items() if value is None)],
         )
 
 
 def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
     """(whether a neglected effect is so large that the figures are void, warnings of those that are not small)."""
+    from verify.motor.steady_state import surface_motion
+
     run = fields[0].free.run
     margins, coupling = run.motor_margins, run.coupling
     assert coupling is not None
     sizes = {
         "coupling": 0.0 if coupling.two_way else max(coupling.normal_size, coupling.friction_size or 0.0),
-        "sag": 0.0 if margins.sag_taken else (margins.sag or 0.0) / fields[0].amplitude,
+        "sag": 0.0 if margins.sag_taken else (margins.sag or 0.0) / surface_motion(fields[0].case)[0],
         "axial": margins.chain or 0.0,
         "epsilon": margins.epsilon or 0.0,
         "step": max(field.free.run.motor_margins.step for field in fields) ** 2 / 24.0,
@@ -209,32 +205,31 @@ def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
 
 
 def _tables(fields: list[Field]) -> "list[Table]":
-    from verify.motor.steady_state import crest_speed
+    from verify.motor.steady_state import surface_motion
     from verify.report.result import Column, Table
 
     overview, rows, validity = [], [], []
     for field in fields:
         run, last = field.free.run, field.free.last
         pushing = [at for at in field.curve if at.converged("force")]
-        power = max((at.power for at in pushing if at.power > 0.0), default=None)
+        most = max((at.power for at in pushing if at.power > 0.0), default=None)
         best = max((at.efficiency for at in pushing if at.converged("powers") and at.efficiency), default=None)
         stall = field.curve[0].means.force if field.curve[0].converged("force") else None
-        own = (crest_speed(field.case), field.no_load, field.free.speed if field.free.converged else None, stall)
+        amplitude, crest = surface_motion(field.case)
+        own = (crest, field.no_load, field.free.speed if field.free.converged else None, stall)
         shares = (float(run.contact_share[-last:].mean()), float(run.stuck_share[-last:].mean()))
         losses = (run.ledger.rubbed / run.duration, (run.ledger.damped + run.ledger.impacts) / run.duration)
-        overview.append((field.name, *own, power, best, *shares, *field.times.values(), *losses))
+        overview.append((field.name, *own, most, best, *shares, *field.times.values(), *losses))
         for at in field.curve:
             power = at.power if at.converged("force") else None
             efficiency = at.efficiency if at.converged("force", "powers") else None
-            shares = (at.means.contact_share, at.means.stuck_share)
-            rows.append(
-                (field.name, at.speed, at.means.force, at.errors.force, power, efficiency, *shares, at.converged())
-            )
+            force, shares = (at.means.force, at.errors.force), (at.means.contact_share, at.means.stuck_share)
+            rows.append((field.name, at.speed, *force, power, efficiency, *shares, at.converged()))
         margins, coupling = run.motor_margins, run.coupling
         assert coupling is not None
         sag = None if margins.sag is None else round(margins.sag, 12)  # of balanced loads rounding is left
         sizes = (coupling.normal_size, coupling.friction_size, margins.chain, margins.step, field.free.error)
-        validity.append((field.name, margins.epsilon, sag, field.amplitude, *sizes))
+        validity.append((field.name, margins.epsilon, sag, amplitude, *sizes))
     columns = [Column("model"), si("crest speed", "m/s", ".5g"), si("no-load speed", "m/s", "+.5g")]
     columns += [si("free speed", "m/s", "+.5g"), si("stall force", "N", "+.4g"), si("largest power", "W")]
     columns += [percent("best efficiency", ".3g"), percent("contact", ".3g"), percent("stick", ".3g")]
