@@ -1,6 +1,8 @@
 """Results of motions in time."""
 
+import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from verify.arrays import Array
 from verify.dynamics.coupling import Coupling
@@ -106,6 +108,16 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """State of the sliders; None of a beam alone."""
     off: str = ""
     """What a slider did that left its contact range; empty otherwise."""
+
+    @property
+    def feet(self) -> Array:
+        """(feet, 4): height, its rate, pitch, its rate; (0, 4) without feet."""
+        return np.empty((0, 4)) if self.contact is None else self.contact.feet
+
+    def with_feet(self, feet: Array) -> "EndState":
+        """The same with other states of the feet."""
+        assert self.contact is not None
+        return replace(self, contact=replace(self.contact, feet=feet))
 
     @property
     def position(self) -> float | None:

@@ -12,9 +12,9 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.arrays import Array
+from verify.dynamics import layout as lay
+from verify.dynamics.result import Motion
 from verify.errors import InputError
-from verify.motor import records
-from verify.motor.result import MotorRun
 from verify.motor.steady_state import (
     BATCHES,
     PERIODS,
@@ -74,7 +74,7 @@ def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
 class Transient(Struct, frozen=True, eq=False, kw_only=True):
     """A free run from one speed towards another."""
 
-    run: MotorRun
+    run: Motion
     """All of it, or what follows the first 32 periods."""
     start_speed: float
     """Before the run, m/s along +x."""
@@ -156,14 +156,14 @@ def reversal(case: MotorCase, before: Transient, periods: int) -> Transient:
     return transient(replace(case, forces=forces), periods, before)
 
 
-def phase_portrait(case: MotorCase, before: MotorRun, speed: float = 0.0) -> tuple[Array, Array]:
+def phase_portrait(case: MotorCase, before: Motion, speed: float = 0.0) -> tuple[Array, Array]:
     """(heights, m, their rates, m/s) of the feet over the period after a run at a prescribed speed, (49, feet) each.
 
     The rates are the state of the feet, not differences of heights.
     """
-    states = [before.state.feet]
+    states = [before.end.feet]
     for _ in range(PORTRAIT):
         before = case.run(1.0 / PORTRAIT, 2, before, speed)
-        states.append(before.state.feet)
+        states.append(before.end.feet)
     rows = np.array(states)
-    return rows[:, :, records.HEIGHT], rows[:, :, records.CLIMB]
+    return rows[:, :, lay.HEIGHT], rows[:, :, lay.CLIMB]

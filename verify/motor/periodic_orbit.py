@@ -8,9 +8,10 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
+from verify.dynamics import layout as lay
+from verify.dynamics.contact_assembly import assemble
+from verify.dynamics.result import Motion
 from verify.errors import InputError
-from verify.motor.feet import Placed, feet_of
-from verify.motor.result import MotorRun
 from verify.motor.steady_state import MotorCase
 
 ROUNDS = 12
@@ -23,7 +24,7 @@ REPEATS = 1e-3
 class PeriodicOrbit(Struct, frozen=True, eq=False, kw_only=True):
     """A motion of the feet with the period of the drive."""
 
-    run: MotorRun
+    run: Motion
     """The period."""
     residual: float
     """Largest change of a coordinate over the period, relative to its scale."""
@@ -48,21 +49,22 @@ def periodic_orbit(
     if slider.coupling != "one-way" or case.start != "steady":
         raise InputError(f"slider.coupling = {slider.coupling!r}: a periodic orbit is of one-way coupling, choose it")
     run = case.run(settle, 61 * settle + 1, None, speed)
-    height = float(np.ptp(run.height[-61:]) + np.abs(run.state.feet[:, 0]).max()) + 1e-12
+    height = float(np.ptp(run.height[-61:]) + np.abs(run.end.feet[:, 0]).max()) + 1e-12
     arm = float(np.abs(run.point_offsets).max()) or 1.0
     scale = np.multiply.outer([height, height / arm], [1.0, 2.0 * np.pi * case.frequency_hz]).ravel()
-    moves = feet_of((Placed(slider, 0.0),)).given[:, :2] > 0.0  # inverse mass and inertia
+    feet = assemble(case.beam, (slider,), (slider.start_on(case.beam),), (speed,), (True,)).feet
+    moves = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]] > 0.0
     free = np.flatnonzero(np.repeat(moves, 2, axis=1).ravel())
     size = np.tile(scale, len(moves))[free]
 
-    def period(start: MotorRun, by: Array) -> MotorRun:
+    def period(start: Motion, by: Array) -> Motion:
         """The period after a start with its free coordinates shifted."""
-        feet = start.state.feet.copy()
+        feet = start.end.feet.copy()
         feet.flat[free] += by * size
-        return case.run(1.0, 2, replace(start, state=replace(start.state, feet=feet)), speed)
+        return case.run(1.0, 2, replace(start, end=start.end.with_feet(feet)), speed)
 
-    def coordinates(one: MotorRun) -> Array:
-        return np.asarray(one.state.feet.flat[free] / size)
+    def coordinates(one: Motion) -> Array:
+        return np.asarray(one.end.feet.flat[free] / size)
 
     still, best = np.zeros(len(free)), None
     for _ in range(ROUNDS):
@@ -76,9 +78,9 @@ def periodic_orbit(
         if residual <= tolerance:
             return best
         step = np.linalg.lstsq(np.eye(len(free)) - jacobian, change, rcond=None)[0]
-        feet = run.state.feet.copy()
+        feet = run.end.feet.copy()
         feet.flat[free] += step * size
-        run = replace(after, state=replace(after.state, feet=feet))
+        run = replace(after, end=after.end.with_feet(feet))
     if best is None or best.residual > REPEATS:
         raise InputError(f"speed = {speed!r} m/s: no motion repeats after one period, use means over many periods")
     return best

@@ -21,10 +21,12 @@ from msgspec import Struct
 from msgspec.structs import asdict
 
 from verify.arrays import Array
+from verify.dynamics.linear_system import damped_field
+from verify.dynamics.request import FEET_STEPS_PER_PERIOD
+from verify.dynamics.result import Motion
+from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.linear.surface import section_at
-from verify.motor.result import MotorRun, uninterrupted
-from verify.motor.run import STEPS_PER_PERIOD, run_motor
 from verify.options import Start
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
@@ -61,7 +63,7 @@ class MotorCase(Struct, frozen=True, kw_only=True):
     start: Start = "steady"
     soft_start_periods: float = 0.0
     modal_damping: float | None = None
-    steps_per_period: int = STEPS_PER_PERIOD
+    steps_per_period: int = FEET_STEPS_PER_PERIOD
 
     @property
     def period(self) -> float:
@@ -69,26 +71,26 @@ class MotorCase(Struct, frozen=True, kw_only=True):
         return 1.0 / self.frequency_hz
 
     def run(
-        self, periods: float, samples: int, before: MotorRun | None = None, prescribed_speed: float | None = None
-    ) -> MotorRun:
+        self, periods: float, samples: int, before: Motion | None = None, prescribed_speed: float | None = None
+    ) -> Motion:
         """A run of so many periods after another; a prescribed speed, m/s, has a fixed position. Raises InputError."""
         fixed = prescribed_speed is not None
-        run = run_motor(
+        run = simulate(
             **asdict(self),
             duration=periods * self.period,
             samples=samples,
             continue_from=before,
-            held_speed=prescribed_speed,
-            frozen=fixed,
+            prescribed_speed=prescribed_speed,
+            fixed_position=fixed,
         )
-        return uninterrupted(run)
+        if run.statistics.interrupted:
+            raise KeyboardInterrupt
+        return run
 
 
 @lru_cache(maxsize=16)
 def surface_motion(case: MotorCase) -> tuple[float, float]:
     """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) of the beam alone, under the slider."""
-    from verify.motion.slider_run import damped_field
-
     field = damped_field(case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping)
     x = case.slider.start_on(case.beam)
     tangential = section_at(case.beam, x).surface_distance * field.omega
@@ -130,7 +132,7 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
     periods: int
     """Of all windows."""
     not_converged: tuple[Figure, ...]
-    run: MotorRun
+    run: Motion
     """The last window, from the end of which another can continue."""
 
     @property
@@ -149,7 +151,7 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
         return not set(figures or TOLERANCES) & set(self.not_converged)
 
 
-def steady_state(case: MotorCase, speed: float, periods: int = PERIODS, before: MotorRun | None = None) -> SteadyState:
+def steady_state(case: MotorCase, speed: float, periods: int = PERIODS, before: Motion | None = None) -> SteadyState:
     """Means of a motor at a prescribed speed, m/s, after at most so many periods; `before` is a run to continue.
 
     Raises InputError where the motion diverges.
@@ -163,17 +165,18 @@ def steady_state(case: MotorCase, speed: float, periods: int = PERIODS, before: 
 
 
 def _window(
-    case: MotorCase, speed: float, periods: int, before: MotorRun | None, last: SteadyState | None
+    case: MotorCase, speed: float, periods: int, before: Motion | None, last: SteadyState | None
 ) -> SteadyState:
     """The next window, with the errors of its means; the first has none that count. Raises InputError."""
     run = case.run(periods, BATCHES + 1, before, speed)
     if not run.statistics.finished:
         raise InputError(
             f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped} after "
-            f"{run.state.time:.6g} s, give more"
+            f"{run.end.time:.6g} s, give more"
         )
     batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
-    powers = np.array([run.ledger.along, run.ledger.rubbed]) / run.duration
+    assert run.energy is not None
+    powers = np.array([run.energy.tangential_work, run.energy.friction_loss]) / run.duration
     slider, means = case.slider, Means(*np.append(batches.mean(axis=0), powers).tolist())
     errors = Means(*6 * [np.inf])
     if last:

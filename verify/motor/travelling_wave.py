@@ -5,20 +5,15 @@ from math import cos, isfinite, pi
 import numpy as np
 from msgspec.structs import replace
 
-from verify.arrays import Array
+from verify.arrays import Array, ComplexArray
+from verify.dynamics import layout as lay
+from verify.dynamics.contact_assembly import assemble
+from verify.dynamics.excitation import CONSTANT, NO_ROWS
+from verify.dynamics.linear_system import EXACT_DEGREE, Stage, Steps, cut
+from verify.dynamics.stepping import run_stages
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
-from verify.motion.contact import law_of
-from verify.motion.forcing import CONSTANT
-from verify.motion.records import Rider, V, X
-from verify.motion.stepping import Sliding, fresh_motion
-from verify.motion.stepping import run_stages as run_point
-from verify.motion.surface import ANALYTIC_DEGREE, NO_MODES, Stage, cut
-from verify.motor import records
-from verify.motor.feet import Placed, feet_of, fresh_log
 from verify.motor.steady_state import Means
-from verify.motor.stepping import Riding
-from verify.motor.stepping import run_stages as run_feet
 from verify.problem.beam import Beam
 from verify.problem.slider import Contact, Foot, Slider
 from verify.validation import check_number, check_whole
@@ -33,26 +28,18 @@ def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 
     omega = 2.0 * pi * frequency_hz
     k = float(np.sqrt(omega / beam.wave_constant))
 
-    def drive(x: Array, derivative: int) -> Array:
-        values = amplitude * (-1j * k) ** derivative * np.exp(-1j * k * x)
-        return np.array([values.real, values.imag])
-
     return Stage(
-        modal=NO_MODES,
+        rows=NO_ROWS,
         forced=None,
-        free_shapes=lambda x, derivative: np.empty((0, len(x))),
-        drive_shapes=drive,
-        from_modes=None,
-        load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
+        shapes=lambda x, derivative: np.empty((0, len(x))),
+        field=lambda x, derivative, psi: (amplitude * (-1j * k) ** derivative * np.exp(-1j * k * x))[None],
         edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2),
-        degree=ANALYTIC_DEGREE,
+        degree=EXACT_DEGREE,
         omega=omega,
         origin=0.0,
         unit_s=1.0,
-        growth=CONSTANT,
-        n_steps=STEPS,
-        every=STEPS,
-        dt=2.0 * pi / (omega - k * mean) / STEPS,
+        envelope=CONSTANT,
+        steps=Steps(STEPS, 2.0 * pi / (omega - k * mean) / STEPS, STEPS),
     )
 
 
@@ -65,15 +52,18 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
 
     check_number("amplitude", amplitude, "metres", above=0)
     slider.check_stays()
-    law, start, mean = law_of(slider, beam), slider.start_on(beam), 0.0
+    slider, start, mean = replace(slider, coupling="one-way"), slider.start_on(beam), 0.0
+    no_rows: ComplexArray = np.empty(0, dtype=complex)
 
     def period(speed: float, stage: Stage) -> tuple[float, float]:
         """(displacement, change of speed) over a period."""
-        sliding = Sliding.fresh(start, 1, np.empty(0), Rider(fresh_motion(speed), law, None), False)
-        run_point([stage], np.zeros((2, 0)), sliding, (), lambda n: None)
-        if not isfinite(sliding.motion[V]):
+        contacts = assemble(beam, (slider,), (start,), (None,), (False,))
+        contacts.sliders[0, lay.V] = speed
+        run_stages([stage], no_rows, contacts, np.empty(0))
+        travelled, reached = contacts.sliders[0, [lay.X, lay.V]]
+        if not isfinite(reached):
             raise InputError(f"amplitude = {amplitude!r} m: the slider leaves so steep a wave, lower it")
-        return float(sliding.motion[X]), float(sliding.motion[V]) - speed
+        return float(travelled), float(reached) - speed
 
     for _ in range(3):
         stage = wave_stage(beam, amplitude, frequency_hz, mean)
@@ -113,19 +103,16 @@ def foot_on_wave(
     length, thickness = 2.0 * pi / k, 2.0 * beam.surface_distance
     steps = cut(periods * wave.duration, wave.duration / steps_per_period * (1.0 + 1e-9), periods)
     edges: Array = np.linspace(-0.01 * length, 1.01 * length, int(np.ceil(2.0 * pi / 0.3)) + 2)
-    stage = replace(wave, edges=edges, n_steps=steps.n, dt=steps.dt, every=steps.every)
+    stage = replace(wave, edges=edges, steps=steps)
     crest = beam.surface_distance * k * stage.omega * amplitude
     along = 2.0 * mu / (epsilon * k * thickness) if epsilon else None
     contact = Contact(layer_stiffness=1.0, layer_tangential_stiffness=along)
     foot = Foot(length=length, points=points, offset=0.5 * length, pitches=False)
     slider = Slider(mass=1.0, mu=mu, law="coulomb", contact=contact, foot=(foot,))
-    placed = (Placed(slider, 0.0, -speed_ratio * crest, True),)
-    feet = feet_of(placed)
-    feet.given[:, records.FOOT_INVERSE_MASS] = 0.0
-    feet.state[:, records.HEIGHT] = amplitude * cos(contact_half_angle)
-    riding = Riding.of(feet, placed, beam, fresh_log(periods, feet, np.zeros((0, 2)), 1), np.empty(0), False)
-    run_feet([stage], [stage.table(0, len(edges) - 1)], np.zeros((2, 0)), riding, lambda n: None)
-    last = riding.log.kept[-1, 0]
-    read = records.KEPT_RUB, records.KEPT_PUSH, records.KEPT_TOUCHING, records.KEPT_STICKING
-    works = last[[records.KEPT_ALONG, records.KEPT_RUBBED]] * periods / stage.duration
+    contacts = assemble(beam, (replace(slider, coupling="one-way"),), (0.0,), (-speed_ratio * crest,), (True,))
+    contacts.feet[:, lay.INVERSE_FOOT_MASS] = 0.0
+    contacts.feet[:, lay.HEIGHT] = amplitude * cos(contact_half_angle)
+    last = run_stages([stage], np.empty(0, dtype=complex), contacts, np.empty(0)).samples[-1, 0]
+    read = lay.KEPT_FRICTION, lay.KEPT_NORMAL, lay.KEPT_TOUCH, lay.KEPT_STUCK
+    works = last[[lay.KEPT_ALONG, lay.KEPT_LOSS]] * periods / stage.duration
     return Means(*map(float, last[list(read)]), *map(float, works)), crest

@@ -142,5 +142,6 @@ def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
 @quantity("motor.contact_imbalance", unit="1")
 def contact_imbalance(scene: Scene, motor: FreeRun) -> float:
     """Residual of the free run's energy balance over the work of the surface."""
-    balance = motor.case(scene).run(motor.periods, 2).ledger
-    return float(abs(balance.residual) / (abs(balance.across) + abs(balance.along)))
+    balance = motor.case(scene).run(motor.periods, 2).energy
+    assert balance is not None
+    return float(abs(balance.residual) / (abs(balance.normal_work) + abs(balance.tangential_work)))

@@ -130,7 +130,6 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
                 modal_damping=0.0,
                 at=[driven.x],
                 samples=len(driven.times),
-                ledger=False,
             )
             lines[name] = np.asarray(run.deflection[:, 0])
         lines["linear"] = self.shown * unit

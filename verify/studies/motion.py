@@ -89,8 +89,8 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.analytic_modes import check_in_time
-        from verify.linear.registry import MODELS, bounding, discrete
         from verify.dynamics.simulate import simulate
+        from verify.linear.registry import MODELS, bounding, discrete
         from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result
 

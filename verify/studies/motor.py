@@ -98,13 +98,13 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
-        from verify.motor.feet import check_on_beam
+        from verify.dynamics.contact_assembly import check_sliders
 
         if not scene.forces or scene.drive is None or scene.drive.kind != "force":
             raise InputError("motor: the beam moves under a [drive] of kind force, add its forces")
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
-        check_on_beam(scene.slider, scene.beam, scene.slider.start_on(scene.beam))
+        check_sliders(scene.beam, (scene.slider,), (scene.slider.start_on(scene.beam),))
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
@@ -191,14 +191,14 @@ def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
     from verify.motor.steady_state import surface_motion
 
     run = fields[0].free.run
-    margins, coupling = run.motor_margins, run.coupling
+    margins, coupling = run.margins, run.coupling
     assert coupling is not None
     sizes = {
         "coupling": 0.0 if coupling.two_way else max(coupling.normal_size, coupling.friction_size or 0.0),
-        "sag": 0.0 if margins.sag_taken else (margins.sag or 0.0) / surface_motion(fields[0].case)[0],
-        "axial": margins.chain or 0.0,
-        "epsilon": margins.epsilon or 0.0,
-        "step": max(field.free.run.motor_margins.step for field in fields) ** 2 / 24.0,
+        "sag": 0.0 if coupling.two_way else (margins.static_deflection or 0.0) / surface_motion(fields[0].case)[0],
+        "axial": margins.nonlinearity,
+        "epsilon": margins.presliding or 0.0,
+        "step": max(field.free.run.margins.contact_step for field in fields) ** 2 / 24.0,
     }
     void = max(sizes[key] for key in ("coupling", "sag", "axial")) >= INVALID
     return void, [text.format(sizes[key]) for key, (limit, text) in VALIDITY.items() if sizes[key] > limit]
@@ -218,18 +218,27 @@ def _tables(fields: list[Field]) -> "list[Table]":
         amplitude, crest = surface_motion(field.case)
         own = (crest, field.no_load, field.free.speed if field.free.converged else None, stall)
         shares = (float(run.contact_share[-last:].mean()), float(run.stuck_share[-last:].mean()))
-        losses = (run.ledger.rubbed / run.duration, (run.ledger.damped + run.ledger.impacts) / run.duration)
+        assert run.energy is not None
+        losses = (run.energy.friction_loss / run.duration, run.energy.contact_loss / run.duration)
         overview.append((field.name, *own, most, best, *shares, *field.times.values(), *losses))
         for at in field.curve:
             power = at.power if at.converged("force") else None
             efficiency = at.efficiency if at.converged("force", "powers") else None
             force, shares = (at.means.force, at.errors.force), (at.means.contact_share, at.means.stuck_share)
             rows.append((field.name, at.speed, *force, power, efficiency, *shares, at.converged()))
-        margins, coupling = run.motor_margins, run.coupling
+        margins, coupling = run.margins, run.coupling
         assert coupling is not None
-        sag = None if margins.sag is None else round(margins.sag, 12)  # of balanced loads rounding is left
-        sizes = (coupling.normal_size, coupling.friction_size, margins.chain, margins.step, field.free.error)
-        validity.append((field.name, margins.epsilon, sag, amplitude, *sizes))
+        sag = (
+            None if margins.static_deflection is None else round(margins.static_deflection, 12)
+        )  # of balanced loads rounding is left
+        sizes = (
+            coupling.normal_size,
+            coupling.friction_size,
+            margins.nonlinearity,
+            margins.contact_step,
+            field.free.error,
+        )
+        validity.append((field.name, margins.presliding, sag, amplitude, *sizes))
     columns = [Column("model"), si("crest speed", "m/s", ".5g"), si("no-load speed", "m/s", "+.5g")]
     columns += [si("free speed", "m/s", "+.5g"), si("stall force", "N", "+.4g"), si("largest power", "W")]
     columns += [percent("best efficiency", ".3g"), percent("contact", ".3g"), percent("stick", ".3g")]
