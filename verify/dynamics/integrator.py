@@ -13,6 +13,7 @@ from verify.dynamics.kinematics import (
     RATE,
     START,
     VALUE,
+    filter_rates,
     find_pieces,
     look,
     rotate_half,
@@ -118,6 +119,9 @@ def add_sums(
                 fall = (contacts[i, lay.RISE_RATE] - contacts[i, lay.CLOSING]) / dt
                 if codes[lay.LAW] == lay.BILATERAL and points[i, lay.INERTIA] > 0.0:
                     fall = (points[i, lay.LOAD] - push) / points[i, lay.INERTIA]
+                    climb = contacts[i, lay.RISE_RATE] - 0.5 * dt * fall
+                    sums[b, lay.PRESSED] -= dt * points[i, lay.LOAD] * climb
+                    sums[b, lay.UPHILL] += dt * push * contacts[i, lay.SLOPE] * mean * sliders[b, lay.FREE]
                 sums[b, lay.FALL] = max(sums[b, lay.FALL], fall)
             elif push == 0.0:
                 continue
@@ -125,7 +129,9 @@ def add_sums(
             if codes[lay.PRESSES] > 0:
                 answer = product(i, TRANSVERSE, shapes, response)
                 lift += face * answer
-                contacts[i, lay.CLOSING] += answer if spring else 0.0
+                if spring:
+                    contacts[i, lay.CLOSING] += answer
+                    contacts[i, lay.LIFT] = lift
             touching += 1
             total, normal, surface = total + force, normal + push, surface + contacts[i, lay.SURFACE]
             sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
@@ -136,10 +142,11 @@ def add_sums(
             if codes[lay.TWO_WAY] > 0:
                 sums[b, lay.ON_BEAM] -= dt * points[i, lay.WEIGHT] * force * contacts[i, lay.SURFACE]
             if codes[lay.PRESSES] > 0 or spring:
-                sums[b, lay.LIFTED_BEAM] -= dt * push * face * (lift - (contacts[i, lay.RAMP] if spring else 0.0))
+                across = dt * push * face * (lift - (contacts[i, lay.RAMP] if spring else 0.0))
+                sums[b, lay.ACROSS] += across
+                sums[b, lay.LIFTED_BEAM] -= across
             if spring:
                 k, uphill = indices[i, lay.OF_FOOT], dt * push * face * contacts[i, lay.RAMP]
-                sums[b, lay.ACROSS] += dt * push * face * lift - uphill
                 sums[b, lay.UPHILL] += uphill
                 closing = 0.5 * face * (feet[k, lay.LIFTED] + points[i, lay.ARM] * feet[k, lay.TURNED])
                 loss = push - points[i, lay.STIFF] * contacts[i, lay.DEPTH]
@@ -256,17 +263,16 @@ def advance(
             return lay.OFF_PIECES
         if not spring:
             look(START, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-        if accounts:
-            add_powers(START, dt / 6.0, time, drive, rows, factors, forced, loads, growth, balance)
         rotate_half(rows)
         set_factors(MIDDLE, time + 0.5 * dt, n_complex, rows, drive, factors)
         if accounts:
-            add_powers(MIDDLE, dt / 1.5, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
+            add_powers(MIDDLE, 4.0 * dt / 6.0, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
         if following:
             look(HALF, mark + 2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
         rotate_half(rows)
         set_factors(END, time + dt, n_complex, rows, drive, factors)
         set_mean_rates(dt, factors)
+        filter_rates(dt, n_complex, rows, factors)
         if spring:
             for b in range(sliders.shape[0]):
                 sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
@@ -290,14 +296,15 @@ def advance(
         move(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(drive[lay.ORIGIN] + time, dt, codes, sliders, points, contacts, indices, spans, events, tally)
         tally[lay.STEP] += 1
-        if two_way:
-            set_factors(START, time + dt, n_complex, rows, drive, factors)
-        else:
-            for k in range(2):
-                for j in range(factors.shape[2]):
-                    factors[START, k, j] = factors[END, k, j]
+        if two_way or accounts:
+            set_factors(END, time + dt, n_complex, rows, drive, factors)
         if accounts:
-            add_powers(START, dt / 6.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
+            add_powers(END, dt / 3.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
+        if two_way or accounts:
+            filter_rates(dt, n_complex, rows, factors)
+        for k in range(2):
+            for j in range(factors.shape[2]):
+                factors[START, k, j] = factors[END, k, j]
         if not np.isfinite(sliders[0, lay.V] + factors[START, VALUE, 0]):
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:

@@ -56,6 +56,15 @@ def set_mean_rates(dt: float, factors: Array) -> None:
         factors[MIDDLE, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
 
 
+@inline(fastmath=FAST)
+def filter_rates(dt: float, n_complex: int, rows: Array, factors: Array) -> None:
+    """Mean rates over the step in place of those at its end where a row is not resolved."""
+    n = rows.shape[1]
+    for j in range(n + n_complex):
+        if rows[lay.COARSE, j if j < n else j - n_complex] > 0.0:
+            factors[END, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
+
+
 @inline
 def find_pieces(ahead: float, edges: Array, sliders: Array, points: Array, indices: Indices) -> bool:
     """Set the piece under every point `ahead` seconds on; whether all are on the pieces."""
@@ -146,12 +155,18 @@ def look(
         stretch = np.sqrt(1.0 + slope * slope)
         along = (rise * slope - lever * turn) / stretch
         if codes[lay.FOLLOWING] > 0 and when != MIDDLE:
-            share = 4.0 / 6.0 if when == HALF else 1.0 / 6.0
+            tilt, drift = rise * (turn + 2.0 * bend * v) - gravity * slope, -slope * rise
             if when == START:
+                if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
+                    sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
+                    sliders[b, lay.X] += 0.5 * dt * (drift - contacts[i, lay.DRIFT_END])
                 sliders[b, lay.TILT], sliders[b, lay.DRIFT] = 0.0, 0.0
-            sliders[b, lay.TILT] += share * (rise * (turn + 2.0 * bend * v) - gravity * slope)
-            sliders[b, lay.DRIFT] -= share * slope * rise
-        climb = rise + slope * (v + lever * (turn + bend * v))
+            share = 4.0 / 6.0 if when == HALF else 1.0 / 6.0
+            sliders[b, lay.TILT] += share * tilt
+            sliders[b, lay.DRIFT] += share * drift
+            contacts[i, lay.TILT_END], contacts[i, lay.DRIFT_END] = tilt, drift
+        on = v - slope * rise if codes[lay.FOLLOWING] > 0 else v
+        climb = rise + slope * (on + lever * (turn + bend * on))
         if when == START:
             contacts[i, lay.START], contacts[i, lay.RISE], contacts[i, lay.COVARIANCE] = along, rise, slope
             if codes[lay.LAW] == lay.GIVEN:

@@ -5,10 +5,11 @@ times a factor of time. Columns 0..n-1 are the (real parts of the) shapes psi of
 imaginary parts of the last `COMPLEX` rows, factor -Im z; then the drive's, in pairs (t/T)^d (cos, -sin)(omega s).
 """
 
-ROW = 10
-Z_RE, Z_IM, RATE_RE, RATE_IM, HALF_RE, HALF_IM, GAIN_RE, GAIN_IM, END_RE, END_IM = range(ROW)
+ROW = 11
+Z_RE, Z_IM, RATE_RE, RATE_IM, HALF_RE, HALF_IM, GAIN_RE, GAIN_IM, END_RE, END_IM, COARSE = range(ROW)
 """Rows (ROW, n): state z, rate lambda, e^{lambda dt/2}, what a unit force that is constant over the step adds to z of a
-unit shape by its end, G = c (e^{lambda dt} - 1)/lambda, and to its rate, lambda G."""
+unit shape by its end, G = c (e^{lambda dt} - 1)/lambda, and to its rate, lambda G; 1 where the step does not resolve
+the row, |lambda| dt > 1.5: the mean rate of the step, G/dt of a force, stands for that at its end."""
 OMEGA, ORIGIN, UNIT = range(3)
 """Drive (3,): angular frequency, seconds before the stage, T of the powers of time."""
 
@@ -28,10 +29,10 @@ OFFSET, ARM, STIFF, DASHPOT, TANGENTIAL, FACE, IMAGE, INSET, WEIGHT, LOAD, INERT
 damping and tangential stiffness (0: rigid); +1 on the upper face, -1 on the lower one; +1, or -1 on the mirror image of
 the beam; depth in the straight beam at foot height 0, m; 1/2 of a point between two beams, else 1; normal load of a
 point without foot, N, and its mass across the beam, kg; half the thickness h/2 times face times image, m."""
-CONTACT = 29
+CONTACT = 30
 (
     NORMAL, FRICTION, STUCK, DEPTH, STRETCH, RISE_RATE, SURFACE, BEFORE, LOSS, AT, ABOVE, SLOPE, LIFT, CLOSING, RAMP,
-    START, MEAN, END, RISE, WAS_DEPTH, WAS_STUCK, COVARIANCE, RELATIVE, SLIP, OWN,
+    START, MEAN, END, RISE, WAS_DEPTH, WAS_STUCK, COVARIANCE, SLIP, OWN, TILT_END, DRIFT_END,
     AT_END, ABOVE_END, SPEED_END, WAS_FRICTION,
 ) = range(CONTACT)  # fmt: skip
 """Points, moving (n, CONTACT), zero at first except DEPTH (below zero: gap) and, of bilateral contact, RISE_RATE, the
@@ -41,7 +42,7 @@ over the step with all forces; BEFORE extrapolates it; LOSS is the energy that f
 dissipated so far. The others are of one step: material under the point and the point
 itself on the piece, slope, mean rate of rise under it, rate at which the gap closes, share of the rise by slopes;
 speed of the surface at the start, in the mean and at the end without contact forces, its gain; last depth and sticking;
-covariance of rise and slope in the step; displacement relative to the surface; mean slip v - s; own response; material
+covariance of rise and slope in the step; mean slip v - s; own response; acceleration and drift of "following" at the end without forces; material
 under the point, point and its speed along at the end; last friction."""
 OF_SLIDER, OF_FOOT, PIECE = range(3)
 """Indices (n_points, 3): slider, foot (0 without feet) and piece of the beam of every point."""

@@ -16,6 +16,8 @@ EVENTS = 20_000
 """Capacity of the event log."""
 SPANS = 12
 """Spans between events in a step, as in `friction`."""
+RESOLVED = 1.5
+"""Radians and nepers per step of a row beyond which rates are means over the step."""
 REACH = 8
 """Pieces of a table on each side of the points."""
 
@@ -118,6 +120,7 @@ def run_stages(
         z = stage.whole(run.z, run.time(stage))
         if stopped != "end":
             break
+    run.store(stages[-1].steps.dt)
     n = int(run.tally[lay.SAMPLES])
     n_events = int(run.tally[lay.EVENTS])
     return Recorded(
@@ -240,6 +243,15 @@ class _Run:
         self.first[:, lay.KEPT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
         self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
 
+    def store(self, dt: float) -> None:
+        """Energy of the normal springs at the end of the last step, with the depths of its middle drawn on."""
+        p, c, feet = self.contacts.points, self.contacts.contacts, self.contacts.feet
+        if len(feet):
+            foot = feet[self.contacts.indices[:, lay.OF_FOOT]]
+            climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
+            depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
+            np.add.at(self.sums[:, lay.STORED], self.contacts.indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2)
+
     def _positions(self) -> Array:
         """Points from the start of the first slider, (points,), m, half a step on for feet."""
         contacts = self.contacts
@@ -277,8 +289,10 @@ def rows_of(stage: Stage, z: ComplexArray) -> Array:
     rate, dt = stage.rows.rates, stage.steps.dt
     grown = np.expm1(rate * dt)
     gain = stage.rows.participations * np.where(rate == 0.0, dt, grown / np.where(rate == 0.0, 1.0, rate))
-    end = stage.rows.participations * grown
+    coarse = abs(rate) * dt > RESOLVED
+    end = np.where(coarse, gain / dt, stage.rows.participations * grown)
     half, rows = np.exp(0.5 * rate * dt), np.empty((lay.ROW, len(z)))
     for first, value in ((lay.Z_RE, z), (lay.RATE_RE, rate), (lay.HALF_RE, half), (lay.GAIN_RE, gain), (lay.END_RE, end)):
         rows[first], rows[first + 1] = value.real, value.imag
+    rows[lay.COARSE] = coarse
     return rows
