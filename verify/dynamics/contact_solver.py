@@ -10,6 +10,7 @@ import numpy as np
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.friction import coulomb_force, elastic_force, held_force, tanh_force
+from verify.dynamics.kinematics import MIDDLE, VALUE
 from verify.jit import FAST, inline
 
 SWEEPS = 100
@@ -300,8 +301,13 @@ def solve_block(
 
 
 @inline(fastmath=FAST)
-def apply_forces(codes: Indices, rows: Array, points: Array, contacts: Array, shapes: Array) -> None:
-    """Forces that are constant over the step, to the rows at its end: exact."""
+def apply_forces(
+    codes: Indices, rows: Array, points: Array, contacts: Array, shapes: Array, factors: Array
+) -> None:  # fmt: skip
+    """Forces that are constant over the step, to the rows at its end: exact.
+
+    By mid-step such a force has added 1/(1 + e^{lambda dt/2}) of that: the rates there replace factors[MIDDLE, VALUE].
+    """
     n, n_complex = rows.shape[1], codes[lay.COMPLEX]
     for j in range(n):
         real, imaginary = 0.0, 0.0
@@ -312,5 +318,8 @@ def apply_forces(codes: Indices, rows: Array, points: Array, contacts: Array, sh
             real -= along * shapes[0, i, j] + across * shapes[1, i, j]
             if j >= n - n_complex:
                 imaginary -= along * shapes[0, i, j + n_complex] + across * shapes[1, i, j + n_complex]
-        rows[lay.Z_RE, j] += rows[lay.GAIN_RE, j] * real - rows[lay.GAIN_IM, j] * imaginary
-        rows[lay.Z_IM, j] += rows[lay.GAIN_RE, j] * imaginary + rows[lay.GAIN_IM, j] * real
+        added = complex(rows[lay.GAIN_RE, j], rows[lay.GAIN_IM, j]) * complex(real, imaginary)
+        rows[lay.Z_RE, j] += added.real
+        rows[lay.Z_IM, j] += added.imag
+        rate, half = complex(rows[lay.RATE_RE, j], rows[lay.RATE_IM, j]), complex(rows[lay.HALF_RE, j], rows[lay.HALF_IM, j])
+        factors[MIDDLE, VALUE, j] = (rate * added / (1.0 + half)).real

@@ -45,8 +45,27 @@ def add_powers(
             rate += forced[j, d] * factors[when, RATE, first + d]
         driven += grown * (loads[0, j] * c - loads[1, j] * s) * rate
         lost -= 2.0 * rows[lay.RATE_RE, j] * rate * rate
+    balance[lay.END_DRIVE], balance[lay.END_LOSS] = driven, lost
     balance[lay.DRIVEN] += weight * driven
     balance[lay.LOST] += weight * lost
+
+
+@inline(fastmath=FAST)
+def add_contact_powers(
+    weight: float, time: float, drive: Array, rows: Array, factors: Array, forced: Array, loads: Array, growth: Array,
+    balance: Array,
+) -> None:  # fmt: skip
+    """What the rates that contact forces add by mid-step (`apply_forces`) add to the powers there."""
+    angle, part, grown = drive[lay.OMEGA] * (drive[lay.ORIGIN] + time), time / drive[lay.UNIT], 0.0
+    c, s, n, first = np.cos(angle), np.sin(angle), rows.shape[1], factors.shape[2] - forced.shape[1]
+    for d in range(len(growth) - 1, -1, -1):
+        grown = grown * part + growth[d]
+    for j in range(n):
+        rate, added = factors[MIDDLE, RATE, j], factors[MIDDLE, VALUE, j]
+        for d in range(forced.shape[1]):
+            rate += forced[j, d] * factors[MIDDLE, RATE, first + d]
+        balance[lay.DRIVEN] += weight * grown * (loads[0, j] * c - loads[1, j] * s) * added
+        balance[lay.LOST] -= weight * 2.0 * rows[lay.RATE_RE, j] * added * (2.0 * rate + added)
 
 
 @inline
@@ -266,7 +285,11 @@ def advance(
         rotate_half(rows)
         set_factors(MIDDLE, time + 0.5 * dt, n_complex, rows, drive, factors)
         if accounts:
-            add_powers(MIDDLE, 4.0 * dt / 6.0, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
+            if step == 0:
+                add_powers(START, 0.0, time, drive, rows, factors, forced, loads, growth, balance)
+            balance[lay.DRIVEN] += dt / 6.0 * balance[lay.END_DRIVE]
+            balance[lay.LOST] += dt / 6.0 * balance[lay.END_LOSS]
+            add_powers(MIDDLE, dt / 1.5, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
         if following:
             look(HALF, mark + 2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
         rotate_half(rows)
@@ -291,7 +314,9 @@ def advance(
             contacts[i, lay.MEAN] += contacts[i, lay.COVARIANCE]
         solve(dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings, spans, block, balance)
         if two_way:
-            apply_forces(codes, rows, points, contacts, shapes)
+            apply_forces(codes, rows, points, contacts, shapes, factors)
+            if accounts:
+                add_contact_powers(dt / 1.5, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
         add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, sums, balance)
         move(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(drive[lay.ORIGIN] + time, dt, codes, sliders, points, contacts, indices, spans, events, tally)
@@ -299,7 +324,7 @@ def advance(
         if two_way or accounts:
             set_factors(END, time + dt, n_complex, rows, drive, factors)
         if accounts:
-            add_powers(END, dt / 3.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
+            add_powers(END, dt / 6.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
         if two_way or accounts:
             filter_rates(dt, n_complex, rows, factors)
         for k in range(2):

@@ -58,7 +58,7 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     elastic: float
     """The same, elastic."""
     slider: float
-    """Kinetic energy gained by sliders along the beam and by feet across."""
+    """Kinetic energy gained by sliders and feet, along and across the beam."""
     contact_elastic: float
     """Gained by normal and tangential contact springs."""
     drive_work: float

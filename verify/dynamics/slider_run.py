@@ -316,13 +316,14 @@ def _time_after(stages: list[Stage], steps: int) -> float:
 
 
 def _kinetic(sliders: tuple[Slider, ...], contacts: Contacts) -> float:
-    """Of sliders along the beam and of feet across, J."""
-    feet = contacts.feet
+    """Of sliders and feet, along and across the beam, J."""
+    feet, bilateral = contacts.feet, contacts.law == lay.BILATERAL
     masses = np.array([slider.mass for slider in sliders])
     inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
     inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
     across = inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2
-    return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum())
+    rise = contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2 if bilateral else 0.0
+    return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum() + rise)
 
 
 def _elastic(contacts: Contacts) -> float:
