@@ -158,7 +158,7 @@ def friction_force(
         if steepness > 0.0:
             force = tanh_force(v - mean + 0.5 * rise, rise - gained, ease, kinetic, steepness)
         elif contacts[i, lay.WAS_STUCK] == 1.0 and own > 0.0:
-            force = held_force(i, (rise + start - v - gained) / ease, kinetic, static, contacts[i, lay.WAS_FRICTION], ease, spans)
+            force = held_force(i, -2.0 * slip / ease, kinetic, static, contacts[i, lay.WAS_FRICTION], ease, spans)
         else:
             left = v - start if stuck else 0.0  # of the last step, taken off in this one
             force = coulomb_force(i, v - start, a0 - left, a1 - left, ease, kinetic, static, stuck, spans)
