@@ -108,7 +108,8 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
     second, metre = sqrt(mass / stiffness), static / stiffness  # units in which mass, spring and static force are 1
     belt, step = speed * second / metre, 2.0 * pi / STEPS_PER_PERIOD
     contact = _contact(belt, kinetic / static, 1.0, 0.0, 1.0, 0.0, 0.0)
-    contact.sliders[0, lay.FREE], contact.contacts[0, lay.STUCK] = 0.0, 1.0
+    contact.sliders[0, lay.FREE] = 0.0
+    contact.contacts[0, [lay.STUCK, lay.FRICTION]] = 1.0, -1.0
     # every slip begins with the static force on a mass that moves with the belt, so that the first cycle is periodic
     steps, slip, position = STEPS_PER_PERIOD // 8, 0.0, 1.0
     z = np.array([position - 1j * belt])

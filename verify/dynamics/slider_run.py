@@ -215,11 +215,12 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         motion = self._motion(
             stages, contacts, recorded, first, statistics, _balance(recorded, gains, contacts, accounts)
         )
-        if not statistics.interrupted:
-            created = float(recorded.balance[lay.GAINED_ENERGY])
-            assert motion.energy is not None
-            check_energy(motion.energy, created, statistics.step_s, request.frequency_hz)
-        return motion
+        if statistics.interrupted:
+            return motion
+        assert motion.energy is not None
+        created, dt = float(recorded.balance[lay.GAINED_ENERGY]), statistics.step_s
+        notes = check_energy(motion.energy, created, dt, request.frequency_hz, request.feet)
+        return replace(motion, notes=(*motion.notes, *notes))
 
     def _motion(
         self,
