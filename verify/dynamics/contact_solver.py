@@ -16,6 +16,8 @@ SWEEPS = 100
 """Sweeps before the friction forces of a step are solved as a block."""
 TOLERANCE = 1e-12
 """Change of a force in a sweep, of the largest friction limit, at which sweeps have converged."""
+DAMPING = 0.1
+"""Share of the slip at the end of a step in the condition of a sticking point."""
 TRANSVERSE = 1
 """Row of `shapes` of the normal direction; responses are two rows further."""
 
@@ -157,16 +159,18 @@ def friction_force(
         if steepness > 0.0:
             force = tanh_force(v - mean + 0.5 * rise, rise - gained, ease, kinetic, steepness)
         elif contacts[i, lay.WAS_STUCK] == 1.0 and own > 0.0:
-            force = held_force(i, -2.0 * slip / ease, kinetic, static, contacts[i, lay.WAS_FRICTION], ease, spans)
+            # no mean slip, which alone would leave an alternating one: a share of no slip at the end damps it
+            needed = (-2.0 * (1.0 - DAMPING) * slip + DAMPING * (start + rise - v - gained)) / ease
+            force = held_force(i, needed, kinetic, static, contacts[i, lay.WAS_FRICTION], ease, spans)
         else:
             left = v - start if stuck else 0.0  # of the last step, taken off in this one
             force = coulomb_force(i, v - start, a0 - left, a1 - left, ease, kinetic, static, stuck, spans)
     if own > 0.0 and points[i, lay.TANGENTIAL] == 0.0:
         # A force that is constant over the step dissipates where it lies between none and the one without mean slip.
         # Beyond, as in the step of a slip reversal, it returns at most what friction has dissipated before.
-        bound = -2.0 * slip / ease
-        if 0.5 * dt * ease * force * (force - bound) > contacts[i, lay.LOSS]:
-            force = min(max(force, min(bound, 0.0)), max(bound, 0.0))
+        bound = -slip / ease
+        wide = np.sqrt(bound * bound + 2.0 * max(contacts[i, lay.LOSS], 0.0) / (dt * ease))
+        force = min(max(force, bound - wide), bound + wide)
     contacts[i, lay.SLIP] = slip + 0.5 * ease * force
     return force
 

@@ -20,6 +20,7 @@ from verify.dynamics.kinematics import (
     set_factors,
     set_mean_rates,
     set_shapes,
+    shift_factors,
 )
 from verify.jit import FAST, inline, jit
 
@@ -123,7 +124,7 @@ def add_sums(
                     sums[b, lay.PRESSED] -= dt * points[i, lay.LOAD] * climb
                     sums[b, lay.UPHILL] += dt * push * contacts[i, lay.SLOPE] * mean * sliders[b, lay.FREE]
                 sums[b, lay.FALL] = max(sums[b, lay.FALL], fall)
-            elif push == 0.0:
+            elif contacts[i, lay.DEPTH] <= 0.0:
                 continue
             lift, face = contacts[i, lay.LIFT], points[i, lay.FACE]
             if codes[lay.PRESSES] > 0:
@@ -132,8 +133,8 @@ def add_sums(
                 if spring:
                     contacts[i, lay.CLOSING] += answer
                     contacts[i, lay.LIFT] = lift
-            touching += 1
-            total, normal, surface = total + force, normal + push, surface + contacts[i, lay.SURFACE]
+            touching += 1 if push > 0.0 or not spring else 0
+            total, normal, surface = total + force, normal + push, surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0)
             sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
             sums[b, lay.ALONG] += dt * force * contacts[i, lay.SURFACE]
             sums[b, lay.DISSIPATED] -= dt * force * contacts[i, lay.SLIP]
@@ -253,36 +254,36 @@ def advance(
     """
     spring, two_way, n_complex = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0, codes[lay.COMPLEX]
     following, accounts = codes[lay.FOLLOWING] > 0, codes[lay.ACCOUNTS] > 0
-    set_factors(START, tally[lay.STEP] * dt, n_complex, rows, drive, factors)
-    if n_steps == 0 and not spring and find_pieces(0.0, edges, sliders, points, indices):
-        look(START, -2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-    for _ in range(n_steps):
+    last = factors.shape[0] - 1  # END, as a number of the run: numba compiles a function again for every constant
+    set_factors(last, tally[lay.STEP] * dt, n_complex, rows, drive, factors)
+    shift_factors(factors)
+    for _ in range(n_steps if n_steps > 0 else 1):
         step = tally[lay.STEP]
         time, mark = step * dt, 4 * step
         if not find_pieces(0.5 * dt if spring else 0.0, edges, sliders, points, indices):
             return lay.OFF_PIECES
-        if not spring:
-            look(START, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-        rotate_half(rows)
-        set_factors(MIDDLE, time + 0.5 * dt, n_complex, rows, drive, factors)
-        if accounts:
-            add_powers(MIDDLE, 4.0 * dt / 6.0, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
-        if following:
-            look(HALF, mark + 2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-        rotate_half(rows)
-        set_factors(END, time + dt, n_complex, rows, drive, factors)
+        for when in range(HALF, last + 1, 2):
+            if n_steps == 0:
+                continue
+            rotate_half(rows)
+            set_factors(when, time + (0.5 * dt if when == HALF else dt), n_complex, rows, drive, factors)
+            if accounts and when == HALF:
+                add_powers(when, 4.0 * dt / 6.0, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
         set_mean_rates(dt, factors)
         filter_rates(dt, n_complex, rows, factors)
-        if spring:
-            for b in range(sliders.shape[0]):
-                sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
-            for k in range(feet.shape[0]):
-                feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
-                feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
-        look(MIDDLE, mark + 1, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-        if not spring:
-            end = mark + 3 if two_way else mark + 4
-            look(END, end, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+        for b in range(sliders.shape[0] if spring else 0):
+            sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
+        for k in range(feet.shape[0]):
+            feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
+            feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
+        for when in range(last + 1):
+            if (spring and when != MIDDLE) or (when == HALF and not following) or (n_steps == 0 and when != START):
+                continue
+            ready = mark + 4 if when == END and not two_way else mark + when  # the start of the next step as well
+            look(when, ready, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts,
+                 indices)  # fmt: skip
+        if n_steps == 0:
+            return lay.DONE
         if two_way:
             set_shapes(dt, rows, n_complex, table, edges, points, contacts, indices, shapes)
             if codes[lay.LAW] == lay.BILATERAL:
@@ -297,19 +298,18 @@ def advance(
         write_events(drive[lay.ORIGIN] + time, dt, codes, sliders, points, contacts, indices, spans, events, tally)
         tally[lay.STEP] += 1
         if two_way or accounts:
-            set_factors(END, time + dt, n_complex, rows, drive, factors)
-        if accounts:
-            add_powers(END, dt / 3.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
+            set_factors(last, time + dt, n_complex, rows, drive, factors)
+        if accounts:  # the ends of successive steps are the same
+            add_powers(last, dt / 3.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
         if two_way or accounts:
             filter_rates(dt, n_complex, rows, factors)
-        for k in range(2):
-            for j in range(factors.shape[2]):
-                factors[START, k, j] = factors[END, k, j]
+        shift_factors(factors)
         if not np.isfinite(sliders[0, lay.V] + factors[START, VALUE, 0]):
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
-            if not spring and find_pieces(0.0, edges, sliders, points, indices):
-                look(START, mark + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+            for when in range(0 if spring or not find_pieces(0.0, edges, sliders, points, indices) else 1):
+                look(when, mark + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points,
+                     contacts, indices)  # fmt: skip
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
     return lay.DONE
