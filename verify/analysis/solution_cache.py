@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from verify.arrays import Array
     from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
-    from verify.motion.result import Motion
+    from verify.dynamics.result import Motion
 
 EULER = "euler-bernoulli"
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]

@@ -7,7 +7,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.excitation import NO_ROWS, Rows
 from verify.dynamics.linear_system import Stage, Steps
@@ -17,10 +17,9 @@ from verify.problem.slider import GRAVITY
 from verify.validation import check_number
 
 STEPS = 4096
-STEPS_PER_PERIOD = 4000
+STEPS_PER_PERIOD = 8000
 BELOW = 1.0 - 1e-6
 """Share of mu g up to which a pull is balanced: beyond it the creep depends on digits that mu g does not have."""
-MOST_STEPS = 40_000_000
 LARGE = 1e100
 """Largest mass, stiffness, force; the least is one over it."""
 LEVER = 1e6
@@ -48,15 +47,15 @@ def _contact(
     return contact
 
 
-def _run(contact: Contacts, steps: int, dt: float, position: float | None = None, speed: float = 0.0) -> Recorded:
-    """Steps on a surface at rest, or, with a position, on a unit mass on a unit spring from there with a speed."""
+def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None) -> Recorded:
+    """Steps on a surface at rest, or on a unit mass on a unit spring in the state z = position - i speed."""
 
     def shapes(x: Array, derivative: int) -> Array:
         slope = -1.0 / LEVER  # the surface moves by -(h/2) w'
         return np.atleast_2d(slope * x if derivative == 0 else np.full(len(x), slope * (derivative == 1)))
 
     oscillator = Rows(rates=np.array([1j]), participations=np.array([-1j]), loads=np.zeros(1, dtype=complex))
-    alone = position is None
+    alone = z is None
     stage = Stage(
         rows=NO_ROWS if alone else oscillator,
         forced=None,
@@ -67,10 +66,10 @@ def _run(contact: Contacts, steps: int, dt: float, position: float | None = None
         omega=1.0,
         origin=0.0,
         unit_s=1.0,
+        envelope=np.array([1.0]),
         steps=Steps(steps, dt, steps),
     )
-    z = np.empty(0, dtype=complex) if position is None else np.array([position - 1j * speed])
-    return run_stages([stage], z, contact, np.empty(0))
+    return run_stages([stage], np.empty(0, dtype=complex) if z is None else z, contact, np.empty(0))
 
 
 def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
@@ -108,21 +107,22 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     second, metre = sqrt(mass / stiffness), static / stiffness  # units in which mass, spring and static force are 1
     belt, step = speed * second / metre, 2.0 * pi / STEPS_PER_PERIOD
-    steps = 4.0 * (2.0 * pi + 3.0 / belt) / step
-    if not steps <= MOST_STEPS:
-        raise InputError(
-            f"speed = {speed!r} m/s stretches the spring for {1.0 / belt / (2.0 * pi):.1e} of its periods: raise speed"
-        )
     contact = _contact(belt, kinetic / static, 1.0, 0.0, 1.0, 0.0, 0.0)
-    contact.sliders[0, lay.FREE], contact.contacts[0, lay.STUCK] = 0.0, 1.0
-    events = _run(contact, int(steps), step, 0.0, belt).events
-    sticks, slips = (events[events[:, 1] == kind, 0] for kind in (lay.STICKS, lay.SLIPS))
-    if len(sticks) < 2 or len(slips) < 2:
-        raise InputError(f"speed = {speed!r} m/s: the mass does not stick and slip, lower the speed of the belt")
-    last = slips[slips > sticks[0]][-1]
-    begin = sticks[sticks < last][-1]
-    before = slips[slips < begin][-1]
-    return float(last - begin) * second, float(begin - before) * second
+    contact.sliders[0, lay.FREE] = 0.0
+    contact.contacts[0, [lay.STUCK, lay.FRICTION]] = 1.0, -1.0
+    # every slip begins with the static force on a mass that moves with the belt, so that the first cycle is periodic
+    steps, slip, position = STEPS_PER_PERIOD // 8, 0.0, 1.0
+    z = np.array([position - 1j * belt])
+    for _ in range(16):
+        recorded = _run(contact, steps, step, z)
+        z, elapsed = recorded.z, slip + steps * step
+        sticks = recorded.events[recorded.events[:, 1] == lay.STICKS, 0]
+        if len(sticks):
+            slip += float(sticks[0])
+            position = float(z[0].real) - belt * (elapsed - slip)  # where it sticks: it moves with the belt since
+            return (1.0 - position) / belt * second, slip * second
+        slip = elapsed
+    raise InputError(f"speed = {speed!r} m/s: the mass does not stick and slip, lower the speed of the belt")
 
 
 def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
@@ -130,5 +130,5 @@ def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
     for name, value in (("mass", mass), ("stiffness", stiffness), ("force", force)):
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     contact, start = _contact(0.0, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0), 12.5
-    recorded = _run(contact, STEPS_PER_PERIOD, 2.0 * pi / STEPS_PER_PERIOD, start)
+    recorded = _run(contact, STEPS_PER_PERIOD, 2.0 * pi / STEPS_PER_PERIOD, np.array([start + 0j]))
     return (start - float(recorded.z[0].real)) * force / stiffness

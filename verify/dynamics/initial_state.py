@@ -82,20 +82,16 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
 
     Raises InputError for a foot that nothing presses on.
     """
-    p, state = contacts.points, contacts.contacts
-    x, factors = contacts.start + p[:, lay.OFFSET], stage.factors(z[None], np.zeros(1))[0]
-    at = x
+    p, state, at = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
+    x, lever, factors, rates = at, p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
     for _ in range(PASSES):
-        at = np.clip(x + p[:, lay.LEVER] * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
-    level = factors @ stage.columns(at, 0)
-    if not len(contacts.feet):
-        rates, slope = stage.rates_at_start(z), factors @ stage.columns(at, 1)
-        rise, bend = rates @ stage.columns(at, 0), factors @ stage.columns(at, 2)
+        at = np.clip(x + lever * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
+    level, slope, bend = (factors @ stage.columns(at, derivative) for derivative in range(3))
+    if not len(contacts.feet):  # dw/dt + w' dX/dt of the material X = x + (h/2) w'
+        rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
         along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
         along = along - slope * rise if contacts.following else along
-        # dw/dt + w' dX/dt at the material X = x + (h/2) w'
-        turn = rates @ stage.columns(at, 1) + bend * along
-        state[:, lay.RISE_RATE] = rise + slope * (along + p[:, lay.LEVER] * turn)
+        state[:, lay.RISE_RATE] = rise + slope * (along + lever * (turn + bend * along))
         return
     foot = contacts.indices[:, lay.OF_FOOT]
     for number, row in enumerate(contacts.feet):

@@ -24,6 +24,10 @@ from verify.dynamics.kinematics import (
 )
 from verify.jit import FAST, inline, jit
 
+POWERS = (1.0 / 6.0, 4.0 / 6.0, 3.0 / 6.0, -2.0 / 6.0)
+"""Simpson's weights of powers at the start, in mid-step, at the end with the step's contact forces and without: half of
+what contact adds by the end is added in mid-step."""
+
 
 @inline(fastmath=FAST)
 def add_powers(
@@ -262,13 +266,15 @@ def advance(
         time, mark = step * dt, 4 * step
         if not find_pieces(0.5 * dt if spring else 0.0, edges, sliders, points, indices):
             return lay.OFF_PIECES
-        for when in range(HALF, last + 1, 2):
-            if n_steps == 0:
+        for when in range(0, last + 1 if n_steps > 0 else 0):
+            if when == MIDDLE:
                 continue
-            rotate_half(rows)
-            set_factors(when, time + (0.5 * dt if when == HALF else dt), n_complex, rows, drive, factors)
-            if accounts and when == HALF:
-                add_powers(when, 4.0 * dt / 6.0, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
+            if when > START:
+                rotate_half(rows)
+                set_factors(when, time + (0.5 * dt if when == HALF else dt), n_complex, rows, drive, factors)
+            if accounts:
+                add_powers(when, dt * POWERS[when], time + 0.5 * dt * min(when, 2), drive, rows, factors, forced, loads,
+                           growth, balance)  # fmt: skip
         set_mean_rates(dt, factors)
         filter_rates(dt, n_complex, rows, factors)
         for b in range(sliders.shape[0] if spring else 0):
@@ -299,8 +305,8 @@ def advance(
         tally[lay.STEP] += 1
         if two_way or accounts:
             set_factors(last, time + dt, n_complex, rows, drive, factors)
-        if accounts:  # the ends of successive steps are the same
-            add_powers(last, dt / 3.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
+        if accounts:
+            add_powers(last, dt * POWERS[MIDDLE], time + dt, drive, rows, factors, forced, loads, growth, balance)
         if two_way or accounts:
             filter_rates(dt, n_complex, rows, factors)
         shift_factors(factors)

@@ -23,7 +23,7 @@ from verify.problem.slider import Slider
 from verify.validation import check_kind, check_number, check_unmasked, check_whole, plain, several
 
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
-"""Least number of a slider's steps in a period of the drive; a prime for feet: points that are evenly spaced in a wave do
+"""Least number of a slider's steps in a period of the drive; a prime for feet: points at equal distances in a wave do
 not all reverse their friction at the same phases of it."""
 FEET_MODES = 80
 """Modes of the exact beam under feet, unless given."""

@@ -1,6 +1,8 @@
 """Results of motions in time."""
 
+import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from verify.arrays import Array
 from verify.dynamics.coupling import Coupling
@@ -63,8 +65,10 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Work of the driving forces; 0 in a steady field, whose drive is not computed."""
     load_work: float
     """Work of weight, preload, `slider.pull` and of what prescribes a speed."""
-    surface_work: float
-    """Work of the prescribed surface on one-way coupled sliders, along the beam and across."""
+    tangential_work: float
+    """Work of the surface's own motion along the beam on the sliders."""
+    normal_work: float
+    """Work of the rising surface, dw/dt of its material, on the feet."""
     slope_work: float
     """Work on sliders of slopes that they move along, N v w': no force along the beam pays for it in tangential
     kinematics, in which friction and `slider.pull` alone move a slider."""
@@ -104,6 +108,16 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """State of the sliders; None of a beam alone."""
     off: str = ""
     """What a slider did that left its contact range; empty otherwise."""
+
+    @property
+    def feet(self) -> Array:
+        """(feet, 4): height, its rate, pitch, its rate; (0, 4) without feet."""
+        return np.empty((0, 4)) if self.contact is None else self.contact.feet
+
+    def with_feet(self, feet: Array) -> "EndState":
+        """The same with other states of the feet."""
+        assert self.contact is not None
+        return replace(self, contact=replace(self.contact, feet=feet))
 
     @property
     def position(self) -> float | None:

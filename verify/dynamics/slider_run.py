@@ -70,7 +70,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """The run in steps that resolve motion and contact. Raises InputError."""
         beam, omega, sliders, starts = request.beam, request.omega, request.sliders, request.starts
         stages = [stage.within(contact_range(beam, starts[0])) for stage in stages]
-        if basis is not None:
+        if basis is not None and request.start == "rest":
             receptance = modal_receptance(basis, omega, request.damping_in(basis))
         else:
             receptance = field_receptance(
@@ -200,7 +200,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         gains = (
             _kinetic(request.sliders, contacts) - kinetic,
             float(recorded.sums[:, lay.STORED].sum()) - elastic,
-            *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam),
+            *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam).tolist(),
         )
         statistics = Statistics(
             steps=recorded.n_steps,
@@ -215,24 +215,26 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         motion = self._motion(
             stages, contacts, recorded, first, statistics, _balance(recorded, gains, contacts, accounts)
         )
-        if not statistics.interrupted:
-            gained = float(recorded.balance[lay.GAINED_ENERGY])
-            check_energy(motion.energy, gained, motion, request.frequency_hz)
-        return motion
+        if statistics.interrupted:
+            return motion
+        assert motion.energy is not None
+        created, dt = float(recorded.balance[lay.GAINED_ENERGY]), statistics.step_s
+        notes = check_energy(motion.energy, created, dt, request.frequency_hz, request.feet)
+        return replace(motion, notes=(*motion.notes, *notes))
 
     def _motion(
         self,
         stages: list[Stage],
         contacts: Contacts,
         recorded: Recorded,
-        first: tuple[Array, Array, Array],
+        first: tuple[Array, ...],
         statistics: Statistics,
         energy: EnergyBalance,
     ) -> Motion:
         request, n = self.request, len(recorded.samples)
-        kept = np.concatenate([recorded.first[None], recorded.samples])
         recordings = recorded.deflections, recorded.heights, recorded.pressures
         deflection, heights, pressures = (np.concatenate(pair) for pair in zip(first, recordings, strict=True))
+        kept = np.concatenate([recorded.first[None], recorded.samples])
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             kept[0, still, lay.KEPT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
@@ -321,8 +323,8 @@ def _kinetic(sliders: tuple[Slider, ...], contacts: Contacts) -> float:
     inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
     inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
     across = inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2
-    rise = contacts.points[:, lay.INERTIA] * contacts.contacts[:, lay.RISE_RATE] ** 2 if bilateral else np.zeros(1)
-    return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum() + rise.sum())
+    rise = contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2 if bilateral else 0.0
+    return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum() + rise)
 
 
 def _elastic(contacts: Contacts) -> float:
@@ -342,8 +344,8 @@ def _beam_energy(basis: TimeBasis | None, stage: Stage, z: ComplexArray, t: floa
 def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, rest: bool) -> EnergyBalance:
     """Works, losses and gains; the residual is that of the sliders or, from rest, of the beam, whichever is larger."""
     s, (slider, stored, kinetic, elastic) = recorded.sums.sum(axis=0), gains
-    surface, load = s[lay.ACROSS] + s[lay.ALONG], s[lay.PULLED] + s[lay.PRESSED]
-    residual = surface + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
+    load = s[lay.PULLED] + s[lay.PRESSED]
+    residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
     if rest:
         charged = s[lay.ON_BEAM] + s[lay.LIFTED_BEAM] if contacts.two_way else 0.0
@@ -356,7 +358,8 @@ def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, r
         contact_elastic=stored,
         drive_work=driven,
         load_work=float(load),
-        surface_work=float(surface),
+        tangential_work=float(s[lay.ALONG]),
+        normal_work=float(s[lay.ACROSS]),
         slope_work=float(s[lay.UPHILL]),
         damping_loss=lost,
         friction_loss=float(s[lay.DISSIPATED]),

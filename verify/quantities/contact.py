@@ -30,7 +30,7 @@ def creep_speed(
     gravity: Annotated[float, Meta(gt=0, description="m/s^2")] = GRAVITY,
 ) -> float:
     """Speed under a constant force below the friction limit, tanh friction."""
-    from verify.motion.rigid_surface import creep_speed
+    from verify.dynamics.belt import creep_speed
 
     return creep_speed(mu, slope, pull, gravity)
 
@@ -46,7 +46,7 @@ class Belt(msgspec.Struct, frozen=True, kw_only=True):
 
     def times(self) -> tuple[float, float]:
         """(stick, slip) time of a cycle, s."""
-        from verify.motion.rigid_surface import stick_slip_times
+        from verify.dynamics.belt import stick_slip_times
 
         return stick_slip_times(self.mass, self.stiffness, self.static, self.kinetic, self.speed)
 
@@ -68,7 +68,7 @@ def coulomb_decrement(
     *, mass: Mass, stiffness: Stiffness, force: Annotated[float, Meta(gt=0, description="friction, N")]
 ) -> float:
     """Amplitude that an oscillator with Coulomb friction loses in a cycle."""
-    from verify.motion.rigid_surface import coulomb_decrement
+    from verify.dynamics.belt import coulomb_decrement
 
     return coulomb_decrement(mass, stiffness, force)
 
@@ -121,9 +121,9 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
 
     def force(self, scene: Scene, points: int = 61, refine: float = 1.0) -> float:
         """-F/(mu N) of so many springs, over a shorter time step. Raises InputError where none is in contact."""
-        from verify.motor.on_wave import over_a_wave
+        from verify.motor.travelling_wave import foot_on_wave
 
-        found, _ = over_a_wave(
+        means, _ = foot_on_wave(
             scene.beam,
             drive_frequency(scene),
             speed_ratio=self.speed_ratio,
@@ -133,9 +133,9 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
             points=points,
             steps_per_period=round(refine * self.steps_per_period),
         )
-        if found.normal_force <= 0.0:
+        if means.normal_force <= 0.0:
             raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
-        return -found.force / (MU * found.normal_force)
+        return -means.force / (MU * means.normal_force)
 
 
 @quantity("slider.wave_force", unit="1", reads=("beam", "drive"))

@@ -19,7 +19,7 @@ ULP = 1.1e-16
 
 def driven(duration: float, slider: Slider | None = None, samples: int = 2, **more: Any) -> Any:
     """The strip from rest under a force, in steps of a 64th of the period where it carries a slider."""
-    from verify.motion.simulate import simulate
+    from verify.dynamics.simulate import simulate
 
     step, at = STEP if slider else None, [0.29 * STRIP.length]
     settings = {"modes": MODES, "step": step, "slider": slider, "at": at, "samples": samples, **more}
@@ -52,15 +52,15 @@ _CENTRAL = ("central differences", central_error)
 @check("time-stepping", "steps", (1e3, 1e4, 1e5, 1e6, 1e7), 1.0, slow=True, baseline=_CENTRAL)
 def time_stepping(steps: float) -> float:
     """Modes advanced step by step against their closed form, error over 1.1e-16 per step."""
-    stepped = driven(steps * STEP, slider(), ledger=False)
+    stepped = driven(steps * STEP, slider())
     closed = driven(steps * STEP).deflection[-1, 0]
     return float(abs(stepped.deflection[-1, 0] - closed)) / (amplitude() * ULP * float(stepped.statistics.steps))
 
 
 def imbalance(steps: float, slope: float) -> float:
     """Energy missing from the balance of a slider on the driven strip, over input work and friction loss."""
-    ledger = driven(steps * STEP, slider(slope)).ledger
-    return float(abs(ledger.residual) / (ledger.rubbed + ledger.work_in))
+    energy = driven(steps * STEP, slider(slope)).energy
+    return float(abs(energy.residual) / (energy.friction_loss + energy.drive_work))
 
 
 @check("energy-steps", "steps", (1e4, 1e6, 1e7), 1e-6, slow=True)
@@ -79,7 +79,7 @@ def energy_slope(slope: float) -> float:
 def friction_bound(mu: float) -> float:
     """Excess of the friction force over mu m g and of the displacement over what it can cause, slope 1e9 s/m."""
     one = slider(1e9, mu)
-    run = driven(20_000 * STEP, one, ledger=False)
+    run = driven(20_000 * STEP, one)
     limit = one.mu * one.normal_force
     reach = 0.5 * limit / one.mass * float(run.times[-1]) ** 2
     return float(np.max([worst(run.friction) / limit - 1.0, worst(run.travelled) / reach - 1.0, 0.0]))
@@ -117,7 +117,7 @@ def decay_error(method: Any, mu: float, slope: float) -> float:
 
 def decay(mu: float, slope: float, time: float) -> float:
     """The speed left in the package, m/s."""
-    from verify.motion.rigid_surface import free_decay
+    from verify.dynamics.belt import free_decay
 
     return free_decay(mu, slope, SPEED, time)
 
@@ -151,7 +151,7 @@ def friction_rest(mu: float) -> float:
 @check("friction-creep", "1 - F / (mu m g)", (0.9, 0.1, 1e-3, 1e-5, 2e-6), 1e-10, beyond=(1e-7, 1e-12), refused=True)
 def friction_creep(left: float) -> float:
     """Creep speed under a force close to mu m g against artanh, error times the distance from mu m g."""
-    from verify.motion.rigid_surface import creep_speed
+    from verify.dynamics.belt import creep_speed
 
     pull = (1.0 - left) * MU * GRAVITY
     share = D(pull) / D(MU * GRAVITY)
@@ -167,13 +167,13 @@ _BELT = (2.0 * pi / 4000) ** 2 / 12.0
 def stick_slip(speed: float) -> float:
     """Stick and slip times of Coulomb friction on a belt, integrated and in closed form."""
     from verify.contact import belt
-    from verify.motion import rigid_surface
+    from verify.dynamics import belt as dynamic_belt
 
     mass, stiffness, static, kinetic = 1.3, 170.0, 5.1, 3.7
     omega, drop = sqrt(stiffness / mass), (static - kinetic) / stiffness
     exact = np.array([2.0 * drop / speed, (2.0 * pi - 2.0 * atan(omega * drop / speed)) / omega])
     found = [
-        law(mass, stiffness, static, kinetic, speed) for law in (rigid_surface.stick_slip_times, belt.stick_slip_times)
+        law(mass, stiffness, static, kinetic, speed) for law in (dynamic_belt.stick_slip_times, belt.stick_slip_times)
     ]
     return worst(np.array(found) / exact - 1.0)
 
@@ -243,7 +243,7 @@ def chain_spin(turns: float) -> float:
 
     system, start = pendulum()
     end = 2.0 * pi * turns / RATE
-    motion = simulate(system, start, [end], method="rk4", step=0.5 * step_limit(system, start), ledger=False)
+    motion = simulate(system, start, [end], method="rk4", step=0.5 * step_limit(system, start))
     return worst(motion.angles[-1][0] / (RATE * end) - 1.0, motion.angles[-1][1:] / (RATE * end))
 
 
@@ -266,7 +266,7 @@ def rk4_stability(part: float) -> float:
     system = build_system(STRIP, SHORT)
     start = at_rest(system, 1e-7 * np.random.default_rng(3).standard_normal(SHORT))
     step = part * step_limit(system, start)
-    motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step, ledger=False)
+    motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step)
     kinetic, elastic, _ = motion.energies()
     total = kinetic + elastic
     return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.finished else inf

@@ -183,7 +183,7 @@ _NEWMARK = ("average acceleration, 64 steps a period", newmark_error)
 def free_vibration_error(periods: float) -> float:
     """Mode 1 released and read at a zero crossing: the frequency error that would explain its deflection."""
     from verify.exact.closed_forms import frequency_hz
-    from verify.motion.free_vibration import free_vibration
+    from verify.dynamics.free_vibration import free_vibration
 
     hertz = frequency_hz(STRIP, 1)
     time = (periods + 0.25) / hertz

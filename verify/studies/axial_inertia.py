@@ -89,8 +89,8 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
         import numpy as np
 
         from verify.chain import departure as chains
-        from verify.motion.simulate import simulate
-        from verify.motion.validity import NONLINEAR, axial_inertia_size
+        from verify.dynamics.simulate import simulate
+        from verify.dynamics.validity import NONLINEAR, axial_inertia_size
         from verify.report.result import Column, Figure, Result, Table
 
         assert scene.drive is not None
@@ -130,7 +130,6 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
                 modal_damping=0.0,
                 at=[driven.x],
                 samples=len(driven.times),
-                ledger=False,
             )
             lines[name] = np.asarray(run.deflection[:, 0])
         lines["linear"] = self.shown * unit
