@@ -10,13 +10,14 @@ import numpy as np
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.friction import coulomb_force, elastic_force, held_force, tanh_force
-from verify.dynamics.kinematics import MIDDLE, VALUE
 from verify.jit import FAST, inline
 
 SWEEPS = 100
 """Sweeps before the friction forces of a step are solved as a block."""
 TOLERANCE = 1e-12
 """Change of a force in a sweep, of the largest friction limit, at which sweeps have converged."""
+DAMPING = 0.1
+"""Share of the slip at the end of a step in the condition of a sticking point."""
 TRANSVERSE = 1
 """Row of `shapes` of the normal direction; responses are two rows further."""
 
@@ -158,16 +159,18 @@ def friction_force(
         if steepness > 0.0:
             force = tanh_force(v - mean + 0.5 * rise, rise - gained, ease, kinetic, steepness)
         elif contacts[i, lay.WAS_STUCK] == 1.0 and own > 0.0:
-            force = held_force(i, -2.0 * slip / ease, kinetic, static, contacts[i, lay.WAS_FRICTION], ease, spans)
+            # no mean slip, which alone would leave an alternating one: a share of no slip at the end damps it
+            needed = (-2.0 * (1.0 - DAMPING) * slip + DAMPING * (start + rise - v - gained)) / ease
+            force = held_force(i, needed, kinetic, static, contacts[i, lay.WAS_FRICTION], ease, spans)
         else:
             left = v - start if stuck else 0.0  # of the last step, taken off in this one
             force = coulomb_force(i, v - start, a0 - left, a1 - left, ease, kinetic, static, stuck, spans)
     if own > 0.0 and points[i, lay.TANGENTIAL] == 0.0:
         # A force that is constant over the step dissipates where it lies between none and the one without mean slip.
         # Beyond, as in the step of a slip reversal, it returns at most what friction has dissipated before.
-        bound = -2.0 * slip / ease
-        if 0.5 * dt * ease * force * (force - bound) > contacts[i, lay.LOSS]:
-            force = min(max(force, min(bound, 0.0)), max(bound, 0.0))
+        bound = -slip / ease
+        wide = np.sqrt(bound * bound + 2.0 * max(contacts[i, lay.LOSS], 0.0) / (dt * ease))
+        force = min(max(force, bound - wide), bound + wide)
     contacts[i, lay.SLIP] = slip + 0.5 * ease * force
     return force
 
@@ -301,13 +304,8 @@ def solve_block(
 
 
 @inline(fastmath=FAST)
-def apply_forces(
-    codes: Indices, rows: Array, points: Array, contacts: Array, shapes: Array, factors: Array
-) -> None:  # fmt: skip
-    """Forces that are constant over the step, to the rows at its end: exact.
-
-    By mid-step such a force has added 1/(1 + e^{lambda dt/2}) of that: the rates there replace factors[MIDDLE, VALUE].
-    """
+def apply_forces(codes: Indices, rows: Array, points: Array, contacts: Array, shapes: Array) -> None:
+    """Forces that are constant over the step, to the rows at its end: exact."""
     n, n_complex = rows.shape[1], codes[lay.COMPLEX]
     for j in range(n):
         real, imaginary = 0.0, 0.0
@@ -318,8 +316,5 @@ def apply_forces(
             real -= along * shapes[0, i, j] + across * shapes[1, i, j]
             if j >= n - n_complex:
                 imaginary -= along * shapes[0, i, j + n_complex] + across * shapes[1, i, j + n_complex]
-        added = complex(rows[lay.GAIN_RE, j], rows[lay.GAIN_IM, j]) * complex(real, imaginary)
-        rows[lay.Z_RE, j] += added.real
-        rows[lay.Z_IM, j] += added.imag
-        rate, half = complex(rows[lay.RATE_RE, j], rows[lay.RATE_IM, j]), complex(rows[lay.HALF_RE, j], rows[lay.HALF_IM, j])
-        factors[MIDDLE, VALUE, j] = (rate * added / (1.0 + half)).real
+        rows[lay.Z_RE, j] += rows[lay.GAIN_RE, j] * real - rows[lay.GAIN_IM, j] * imaginary
+        rows[lay.Z_IM, j] += rows[lay.GAIN_RE, j] * imaginary + rows[lay.GAIN_IM, j] * real

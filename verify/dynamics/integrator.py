@@ -20,8 +20,13 @@ from verify.dynamics.kinematics import (
     set_factors,
     set_mean_rates,
     set_shapes,
+    shift_factors,
 )
 from verify.jit import FAST, inline, jit
+
+POWERS = (1.0 / 6.0, 4.0 / 6.0, 3.0 / 6.0, -2.0 / 6.0)
+"""Simpson's weights of powers at the start, in mid-step, at the end with the step's contact forces and without: half of
+what contact adds by the end is added in mid-step."""
 
 
 @inline(fastmath=FAST)
@@ -45,27 +50,8 @@ def add_powers(
             rate += forced[j, d] * factors[when, RATE, first + d]
         driven += grown * (loads[0, j] * c - loads[1, j] * s) * rate
         lost -= 2.0 * rows[lay.RATE_RE, j] * rate * rate
-    balance[lay.END_DRIVE], balance[lay.END_LOSS] = driven, lost
     balance[lay.DRIVEN] += weight * driven
     balance[lay.LOST] += weight * lost
-
-
-@inline(fastmath=FAST)
-def add_contact_powers(
-    weight: float, time: float, drive: Array, rows: Array, factors: Array, forced: Array, loads: Array, growth: Array,
-    balance: Array,
-) -> None:  # fmt: skip
-    """What the rates that contact forces add by mid-step (`apply_forces`) add to the powers there."""
-    angle, part, grown = drive[lay.OMEGA] * (drive[lay.ORIGIN] + time), time / drive[lay.UNIT], 0.0
-    c, s, n, first = np.cos(angle), np.sin(angle), rows.shape[1], factors.shape[2] - forced.shape[1]
-    for d in range(len(growth) - 1, -1, -1):
-        grown = grown * part + growth[d]
-    for j in range(n):
-        rate, added = factors[MIDDLE, RATE, j], factors[MIDDLE, VALUE, j]
-        for d in range(forced.shape[1]):
-            rate += forced[j, d] * factors[MIDDLE, RATE, first + d]
-        balance[lay.DRIVEN] += weight * grown * (loads[0, j] * c - loads[1, j] * s) * added
-        balance[lay.LOST] -= weight * 2.0 * rows[lay.RATE_RE, j] * added * (2.0 * rate + added)
 
 
 @inline
@@ -142,7 +128,7 @@ def add_sums(
                     sums[b, lay.PRESSED] -= dt * points[i, lay.LOAD] * climb
                     sums[b, lay.UPHILL] += dt * push * contacts[i, lay.SLOPE] * mean * sliders[b, lay.FREE]
                 sums[b, lay.FALL] = max(sums[b, lay.FALL], fall)
-            elif push == 0.0:
+            elif contacts[i, lay.DEPTH] <= 0.0:
                 continue
             lift, face = contacts[i, lay.LIFT], points[i, lay.FACE]
             if codes[lay.PRESSES] > 0:
@@ -151,8 +137,8 @@ def add_sums(
                 if spring:
                     contacts[i, lay.CLOSING] += answer
                     contacts[i, lay.LIFT] = lift
-            touching += 1
-            total, normal, surface = total + force, normal + push, surface + contacts[i, lay.SURFACE]
+            touching += 1 if push > 0.0 or not spring else 0
+            total, normal, surface = total + force, normal + push, surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0)
             sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
             sums[b, lay.ALONG] += dt * force * contacts[i, lay.SURFACE]
             sums[b, lay.DISSIPATED] -= dt * force * contacts[i, lay.SLIP]
@@ -272,40 +258,38 @@ def advance(
     """
     spring, two_way, n_complex = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0, codes[lay.COMPLEX]
     following, accounts = codes[lay.FOLLOWING] > 0, codes[lay.ACCOUNTS] > 0
-    set_factors(START, tally[lay.STEP] * dt, n_complex, rows, drive, factors)
-    if n_steps == 0 and not spring and find_pieces(0.0, edges, sliders, points, indices):
-        look(START, -2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-    for _ in range(n_steps):
+    last = factors.shape[0] - 1  # END, as a number of the run: numba compiles a function again for every constant
+    set_factors(last, tally[lay.STEP] * dt, n_complex, rows, drive, factors)
+    shift_factors(factors)
+    for _ in range(n_steps if n_steps > 0 else 1):
         step = tally[lay.STEP]
         time, mark = step * dt, 4 * step
         if not find_pieces(0.5 * dt if spring else 0.0, edges, sliders, points, indices):
             return lay.OFF_PIECES
-        if not spring:
-            look(START, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-        rotate_half(rows)
-        set_factors(MIDDLE, time + 0.5 * dt, n_complex, rows, drive, factors)
-        if accounts:
-            if step == 0:
-                add_powers(START, 0.0, time, drive, rows, factors, forced, loads, growth, balance)
-            balance[lay.DRIVEN] += dt / 6.0 * balance[lay.END_DRIVE]
-            balance[lay.LOST] += dt / 6.0 * balance[lay.END_LOSS]
-            add_powers(MIDDLE, dt / 1.5, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
-        if following:
-            look(HALF, mark + 2, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-        rotate_half(rows)
-        set_factors(END, time + dt, n_complex, rows, drive, factors)
+        for when in range(0, last + 1 if n_steps > 0 else 0):
+            if when == MIDDLE:
+                continue
+            if when > START:
+                rotate_half(rows)
+                set_factors(when, time + (0.5 * dt if when == HALF else dt), n_complex, rows, drive, factors)
+            if accounts:
+                add_powers(when, dt * POWERS[when], time + 0.5 * dt * min(when, 2), drive, rows, factors, forced, loads,
+                           growth, balance)  # fmt: skip
         set_mean_rates(dt, factors)
         filter_rates(dt, n_complex, rows, factors)
-        if spring:
-            for b in range(sliders.shape[0]):
-                sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
-            for k in range(feet.shape[0]):
-                feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
-                feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
-        look(MIDDLE, mark + 1, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
-        if not spring:
-            end = mark + 3 if two_way else mark + 4
-            look(END, end, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+        for b in range(sliders.shape[0] if spring else 0):
+            sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
+        for k in range(feet.shape[0]):
+            feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
+            feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
+        for when in range(last + 1):
+            if (spring and when != MIDDLE) or (when == HALF and not following) or (n_steps == 0 and when != START):
+                continue
+            ready = mark + 4 if when == END and not two_way else mark + when  # the start of the next step as well
+            look(when, ready, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts,
+                 indices)  # fmt: skip
+        if n_steps == 0:
+            return lay.DONE
         if two_way:
             set_shapes(dt, rows, n_complex, table, edges, points, contacts, indices, shapes)
             if codes[lay.LAW] == lay.BILATERAL:
@@ -314,27 +298,24 @@ def advance(
             contacts[i, lay.MEAN] += contacts[i, lay.COVARIANCE]
         solve(dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings, spans, block, balance)
         if two_way:
-            apply_forces(codes, rows, points, contacts, shapes, factors)
-            if accounts:
-                add_contact_powers(dt / 1.5, time + 0.5 * dt, drive, rows, factors, forced, loads, growth, balance)
+            apply_forces(codes, rows, points, contacts, shapes)
         add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, sums, balance)
         move(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(drive[lay.ORIGIN] + time, dt, codes, sliders, points, contacts, indices, spans, events, tally)
         tally[lay.STEP] += 1
         if two_way or accounts:
-            set_factors(END, time + dt, n_complex, rows, drive, factors)
+            set_factors(last, time + dt, n_complex, rows, drive, factors)
         if accounts:
-            add_powers(END, dt / 6.0, time + dt, drive, rows, factors, forced, loads, growth, balance)
+            add_powers(last, dt * POWERS[MIDDLE], time + dt, drive, rows, factors, forced, loads, growth, balance)
         if two_way or accounts:
             filter_rates(dt, n_complex, rows, factors)
-        for k in range(2):
-            for j in range(factors.shape[2]):
-                factors[START, k, j] = factors[END, k, j]
+        shift_factors(factors)
         if not np.isfinite(sliders[0, lay.V] + factors[START, VALUE, 0]):
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
-            if not spring and find_pieces(0.0, edges, sliders, points, indices):
-                look(START, mark + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+            for when in range(0 if spring or not find_pieces(0.0, edges, sliders, points, indices) else 1):
+                look(when, mark + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points,
+                     contacts, indices)  # fmt: skip
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
     return lay.DONE

@@ -6,9 +6,9 @@ from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
 from verify.jit import FAST, inline
 
-START, MIDDLE, END, HALF = range(4)
-"""Instants of a step. MIDDLE has the deflection of mid-step and the MEAN velocity over the step, displacement/dt, which
-is exact for every row; HALF is mid-step itself."""
+START, HALF, MIDDLE, END = range(4)
+"""Instants of a step. HALF is mid-step; MIDDLE has the deflection of mid-step and the MEAN velocity over the step,
+displacement/dt, which is exact for every row."""
 VALUE, RATE = range(2)
 
 
@@ -23,7 +23,7 @@ def rotate_half(rows: Array) -> None:
 
 @inline(fastmath=FAST)
 def set_factors(when: int, time: float, n_complex: int, rows: Array, drive: Array, factors: Array) -> None:
-    """Factors of all columns and their rates at a time of the stage; `factors` (3, 2, columns)."""
+    """Factors of all columns and their rates at a time of the stage; `factors` (4, 2, columns)."""
     n = rows.shape[1]
     for j in range(n):
         factors[when, VALUE, j] = rows[lay.Z_RE, j]
@@ -51,8 +51,9 @@ def set_factors(when: int, time: float, n_complex: int, rows: Array, drive: Arra
 
 @inline(fastmath=FAST)
 def set_mean_rates(dt: float, factors: Array) -> None:
-    """Mean rates over the step in place of those of mid-step."""
+    """Factors of MIDDLE."""
     for j in range(factors.shape[2]):
+        factors[MIDDLE, VALUE, j] = factors[HALF, VALUE, j]
         factors[MIDDLE, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
 
 
@@ -63,6 +64,13 @@ def filter_rates(dt: float, n_complex: int, rows: Array, factors: Array) -> None
     for j in range(n + n_complex):
         if rows[lay.COARSE, j if j < n else j - n_complex] > 0.0:
             factors[END, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
+
+
+@inline(fastmath=FAST)
+def shift_factors(factors: Array) -> None:
+    """The end of a step is the start of the next."""
+    for j in range(factors.shape[2]):
+        factors[START, VALUE, j], factors[START, RATE, j] = factors[END, VALUE, j], factors[END, RATE, j]
 
 
 @inline
@@ -143,7 +151,7 @@ def look(
     for i in range(points.shape[0]):
         b, piece = indices[i, lay.OF_SLIDER], indices[i, lay.PIECE]
         if stamp[piece] != mark:
-            set_polynomials(MIDDLE if when == HALF else when, piece, table, factors, local)
+            set_polynomials(when, piece, table, factors, local)
             stamp[piece] = mark
         lever, length, v = points[i, lay.LEVER], edges[piece + 1] - edges[piece], sliders[b, lay.V]
         x = sliders[b, lay.X] + points[i, lay.OFFSET]

@@ -182,7 +182,7 @@ class _Run:
         codes = np.zeros(lay.CODES, dtype=np.int64)
         codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = contacts.law, contacts.two_way, contacts.two_way and contacts.presses
         codes[[lay.FOLLOWING, lay.COMPLEX, lay.ACCOUNTS]] = contacts.following, own - n, self.accounts
-        factors, two_way = np.zeros((3, 2, columns)), contacts.two_way
+        factors, two_way = np.zeros((4, 2, columns)), contacts.two_way
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
         self.tally[lay.STEP], first = 0, self._around(stage)
         why, steps = "end", self.n_steps
