@@ -7,7 +7,7 @@ What there is (`help` of each says its fields, shapes and units; everything is S
   ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
   Modes, HarmonicField                                         what those return
   travelling_wave                                              the wave that a field carries: measure, WaveMeasures
-  simulate, Motion                                             a driven beam in time, with a slider or without
+  simulate, Motion                                             a driven beam in time, with sliders or without
   run_motor, run_motors, MotorRun, Contact, Foot               sliders that may leave the beam, on feet of many points
   free_vibration, FreeVibration                                a beam let go from a shape, without forces
   bend, Bent                                                   a chain under a large load at its tip
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from verify import travelling_wave
     from verify.analytic_modes import ExactModel
     from verify.chain.statics import Bent, bend
+    from verify.dynamics.free_vibration import FreeVibration, free_vibration
+    from verify.dynamics.result import Motion
+    from verify.dynamics.simulate import simulate
     from verify.errors import InputError
     from verify.fem_beam import HermiteModel
     from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
-    from verify.motion.free_vibration import FreeVibration, free_vibration
-    from verify.motion.result import Motion
-    from verify.motion.simulate import simulate
     from verify.motor.result import MotorRun
     from verify.motor.run import run_motor, run_motors
     from verify.problem.beam import Beam, PointForce
@@ -55,7 +55,7 @@ __all__ = [
 __version__ = "0.1.0"
 
 _HOMES = {
-    "verify": ("simulate", "travelling_wave"),
+    "verify": ("travelling_wave",),
     "verify.analytic_modes": ("ExactModel",),
     "verify.fem_beam": ("HermiteModel",),
     "verify.segment_model": ("SegmentModel",),
@@ -66,8 +66,9 @@ _HOMES = {
     "verify.errors": ("InputError",),
     "verify.linear.field": ("HarmonicField",),
     "verify.linear.modes": ("Modes",),
-    "verify.motion.free_vibration": ("FreeVibration", "free_vibration"),
-    "verify.motion.result": ("Motion",),
+    "verify.dynamics.free_vibration": ("FreeVibration", "free_vibration"),
+    "verify.dynamics.result": ("Motion",),
+    "verify.dynamics.simulate": ("simulate",),
     "verify.motor.result": ("MotorRun",),
     "verify.motor.run": ("run_motor", "run_motors"),
     "verify.scene.load": ("load_scene",),
@@ -80,7 +81,7 @@ _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name at its first use; `simulate` is a module that can be called."""
+    """Import a public name at its first use."""
     if name not in _HOME:
         raise AttributeError(f"module 'verify' has no attribute {name!r}")
     home = _HOME[name]

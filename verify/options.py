@@ -58,8 +58,8 @@ TIPS: tuple[str, ...] = get_args(Tip)
 Law = Literal["tanh", "coulomb"]
 """Friction law. tanh: the paper's Eq. (3), which never sticks. coulomb: mu N against the motion, with stiction."""
 
-CouplingChoice = Literal["auto", "one-way", "two-way"]
-"""Coupling of slider and beam. one-way: the slider does not act on the beam. auto: decided by its size."""
+CouplingChoice = Literal["two-way", "one-way"]
+"""Coupling of slider and beam. one-way: the slider does not act on the beam."""
 
 Kinematics = Literal["tangential", "following"]
 """Slider kinematics. tangential: m dv/dt = F, dx/dt = v. following: a point that follows the surface exactly."""

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from reference.slider import hermite_modes
 
 from verify import Beam, Contact, Foot, InputError, PointForce, PointSpring, Slider, run_motor, run_motors, simulate
-from verify.motion.surface import basis_of
+from verify.dynamics.linear_system import basis_of
 
 BEAM = Beam(length=0.31, width=0.017, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 HERTZ, ZETA, START, LOAD, MASS, STIFFNESS, TURNS = 700.0, 0.02, 0.117, 4.0, 0.02, 1.5e6, 3

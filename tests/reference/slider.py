@@ -98,12 +98,12 @@ def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.
     One-way, or coupled two-way, held on the surface or massless, tangential or following. The material under it stands
     at X = x + (h/2) w'(x); a held slider's reaction is square to the surface, so that it works on every mode by as much
     as that mode moves w(X). Its acceleration across is a central difference of its speed across, linear in the reaction.
+    Friction is limited by mu times a held slider's reaction where that presses, else by mu (m g + preload).
     """
     own, shape = modes
     n, omega, start = len(own), 2 * np.pi * hertz, slider.position
     held, follows = two_way and slider.normal == "held", slider.kinematics == "following"
-    load = slider.mass * slider.gravity + slider.preload
-    limit, slope_k = slider.mu * load, slider.slope
+    load, slope_k = slider.mass * slider.gravity + slider.preload, slider.slope
     loads = [(f.amplitude, np.deg2rad(f.phase_deg), shape(f.position, 0)) for f in forces]
 
     def lifted(q, x):
@@ -126,6 +126,7 @@ def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.
         q, qd, x, at, v = split(y)
         slope, rise = q @ shape(at, 1), qd @ shape(at, 0)
         along = (slope * shape(at, 0) - half * shape(at, 1)) / np.hypot(1.0, slope)
+        limit = slider.mu * (max(reaction, 0.0) if held else load)
         friction = -limit * np.tanh(slope_k * (v - qd @ along))
         push = smooth(t * hertz / soft) if soft else 1.0
         push = push * sum(f * np.cos(omega * t + turn) * one for f, turn, one in loads)
@@ -145,11 +146,18 @@ def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.
     def moved(t, y):
         if not held:
             return rates(t, y, 0.0)
-        lifts, tick = [], 1e-4 / own.max()
-        for reaction in (0.0, 1.0):
+        tick = 1e-4 / own.max()
+
+        def lifted_by(reaction):
             way = tick * rates(t, y, reaction)
-            lifts.append((across(y + way) - across(y - way)) / (2 * tick))
-        return rates(t, y, (load + slider.mass * lifts[0]) / (1 - slider.mass * (lifts[1] - lifts[0])))
+            return (across(y + way) - across(y - way)) / (2 * tick)
+
+        still = lifted_by(0.0)
+        for unit in (1.0, -1.0):  # friction is proportional to a reaction that presses, and vanishes where it pulls
+            reaction = (load + slider.mass * still) / (1 - slider.mass * (lifted_by(unit) - still) / unit)
+            if reaction * unit >= 0.0:
+                break
+        return rates(t, y, reaction)
 
     y = np.zeros(2 * n + 2 + len(LINES))
     y[2 * n + 1] = slider.speed

@@ -100,10 +100,10 @@ def field(problem: Problem) -> Iterator[Question]:
 
 def moved(problem: Problem, model: str, count: int | None, **more: Any) -> Any:
     """A motion from rest."""
-    from verify.motion.simulate import simulate
+    from verify.dynamics.simulate import simulate
 
     given = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
-    run = simulate(*given, model=model, count=count, soft_start_periods=SOFT_START, ledger=False, **more)
+    run = simulate(*given, model=model, count=count, soft_start_periods=SOFT_START, **more)
     if not run.statistics.finished:
         raise InputError(f"the run {run.statistics.stopped}: shorten motion.duration")
     return run
@@ -256,10 +256,10 @@ def engines(problem: Problem) -> Iterator[Question]:
     departure = error((times[1::20], references.deflection(links, times[1::20])))
 
     def displaced(count: int) -> float:
-        from verify.motion.simulate import simulate
+        from verify.dynamics.simulate import simulate
 
         given = (beam, problem.forces, hertz, end)
-        run = simulate(*given, count=LINKS, slider=one, step=end / count * (1.0 + 1e-9), samples=2, ledger=False)
+        run = simulate(*given, count=LINKS, slider=one, step=end / count * (1.0 + 1e-9), samples=2)
         return float(run.travelled[-1])
 
     finest = displaced(2**16)

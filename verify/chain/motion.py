@@ -16,8 +16,8 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.kinematics import at_rest, energies, hub, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
+from verify.dynamics.result import END, INTERRUPTED, Statistics
 from verify.errors import InputError
-from verify.motion.result import END, INTERRUPTED, Statistics
 from verify.options import LINKS, Links
 from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
 from verify.validation import check_number, check_unmasked, check_word

@@ -117,10 +117,7 @@ def check_rideable(slider: Slider) -> None:
 def coupling_on_chain(
     beam: Beam, forces: Sequence[PointForce], frequency_hz: float, n_segments: int, slider: Slider
 ) -> Coupling:
-    """Sizes of the coupling on the straight, steady chain: those of the segment model.
-
-    Raises InputError where coupling is "auto" and a size lies above `contact.FELT`.
-    """
+    """Sizes of the coupling on the straight, steady chain: those of the segment model."""
     x = slider.start_on(beam)
 
     def steady(forces: Sequence[PointForce]) -> "HarmonicField":
@@ -128,13 +125,7 @@ def coupling_on_chain(
 
     speed, unit = surface_speed(steady(forces), x), complex(steady([PointForce(position=x)]).deflection([x])[0])
     turned = turned_by(steady(couple(beam, x, frequency_hz)), x)
-    found = coupling_of(slider, section_at(beam, x), frequency_hz, speed, unit, turned)
-    if slider.coupling == "auto" and found.two_way:
-        raise InputError(
-            "slider.coupling = 'auto': a nonlinear chain carries a slider one way, and this one moves the surface by "
-            f"{found.relative_size or np.inf:.2g} of its motion; give 'one-way' or a lighter slider"
-        )
-    return found
+    return coupling_of(slider, section_at(beam, x), frequency_hz, speed, unit, turned)
 
 
 def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider, coupling: Coupling | None = None) -> ChainRide:

@@ -134,7 +134,7 @@ def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | N
 
 
 def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.motion.simulate import simulate
+    from verify.dynamics.simulate import simulate
     from verify.quantities.slider import TimeOptions, motion_arguments
 
     if scene.motion is None:

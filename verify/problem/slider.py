@@ -104,8 +104,8 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     mass: Annotated[float, unit("kg", gt=0)]
     """m_s, kg."""
-    mu: Annotated[float, unit("coefficient of friction", gt=0)]
-    """Coefficient of (kinetic) friction."""
+    mu: Annotated[float, unit("coefficient of friction", ge=0)]
+    """Coefficient of (kinetic) friction; 0 of a moving load."""
     slope: Annotated[float, unit("s/m", gt=0)] | None = None
     """K of Eq. (3), s/m, for law = 'tanh'; default 1e4."""
     law: Law = "tanh"
@@ -120,8 +120,8 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Normal force in addition to the weight, N."""
     gravity: Annotated[float, unit("m/s^2", ge=0)] = GRAVITY
     """m/s^2."""
-    coupling: CouplingChoice = "auto"
-    """One-way or two-way coupling; auto decides by the size of the coupling."""
+    coupling: CouplingChoice = "two-way"
+    """Coupling of slider and beam; the error of one-way coupling is a margin of the run."""
     line: Line = "spline"
     """Contact line on a chain: the paper's C2 spline, or the links' straight edges."""
     kinematics: Kinematics = "tangential"
@@ -164,7 +164,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def _check_contact(self, contact: Contact) -> None:
         """Raise InputError for what a slider with contact does not model, and for feet that do not fit its contact."""
-        for name, fixed in (("mu_static", None), ("line", "spline"), ("kinematics", "tangential"), ("normal", "held")):
+        for name, fixed in (("line", "spline"), ("kinematics", "tangential"), ("normal", "held")):
             if getattr(self, name) != fixed:
                 raise InputError(
                     f"slider.{name} = {getattr(self, name)!r} belongs to a slider that never loses contact: leave it "
@@ -186,8 +186,8 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """Raise InputError for a slider that may lose contact."""
         if self.contact is not None:
             raise InputError(
-                "slider.contact belongs to a slider that may lose contact, for run_motor and [motor]: leave it out for "
-                "one that never does"
+                "slider.contact belongs to a slider that may lose contact, for [motor]: leave it out for one that never "
+                "does"
             )
 
     @property

@@ -30,7 +30,7 @@ MU = 0.2
 @quantity("friction.creep_speed", unit="m/s", reads=())
 def creep_speed(*, mu: Mu, slope: Slope, pull: Pull, gravity: Gravity = GRAVITY) -> float:
     """Speed under a constant force below the friction limit, tanh friction."""
-    from verify.motion.rigid_surface import creep_speed
+    from verify.dynamics.belt import creep_speed
 
     return creep_speed(mu, slope, pull, gravity)
 
@@ -46,7 +46,7 @@ class Belt(msgspec.Struct, frozen=True, kw_only=True):
 
     def times(self) -> tuple[float, float]:
         """(stick, slip) time of a cycle, s."""
-        from verify.motion.rigid_surface import stick_slip_times
+        from verify.dynamics.belt import stick_slip_times
 
         return stick_slip_times(self.mass, self.stiffness, self.static, self.kinetic, self.speed)
 
@@ -66,7 +66,7 @@ def belt_slip_time(belt: Belt) -> float:
 @quantity("friction.coulomb_decrement", unit="m", reads=())
 def coulomb_decrement(*, mass: Mass, stiffness: Stiffness, force: Friction) -> float:
     """Amplitude that an oscillator with Coulomb friction loses in a cycle."""
-    from verify.motion.rigid_surface import coulomb_decrement
+    from verify.dynamics.belt import coulomb_decrement
 
     return coulomb_decrement(mass, stiffness, force)
 
@@ -111,13 +111,13 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
 
     def force(self, scene: Scene, points: int = 61, refine: float = 1.0) -> float:
         """-F/(mu N) of so many springs, time step over `refine`. Raises InputError where none is in contact."""
-        from verify.motor.on_wave import over_a_wave
+        from verify.motor.travelling_wave import foot_on_wave
 
         foot = msgspec.structs.asdict(self) | {"steps_per_period": round(refine * self.steps_per_period)}
-        found, _ = over_a_wave(scene.beam, drive_frequency(scene), mu=MU, points=points, **foot)
-        if found.normal_force <= 0.0:
+        means, _ = foot_on_wave(scene.beam, drive_frequency(scene), mu=MU, points=points, **foot)
+        if means.normal_force <= 0.0:
             raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
-        return -found.force / (MU * found.normal_force)
+        return -means.force / (MU * means.normal_force)
 
 
 @quantity("slider.wave_force", unit="1", reads=("beam", "drive"))

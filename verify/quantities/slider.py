@@ -17,7 +17,7 @@ from verify.validation import check_sizes
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
-    from verify.motion.result import Ledger, Motion
+    from verify.dynamics.result import EnergyBalance, Motion
 
 Time = Annotated[float, Meta(gt=0, description="s; default: the scene's motion.duration")]
 Window = Annotated[tuple[float, float], Meta(description="m, start and end")]
@@ -65,7 +65,7 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
-    from verify.motion.request import soft_start
+    from verify.dynamics.request import soft_start
 
     motion, soft = scene.motion, by.soft_start_periods
     time = by.time if by.time is not None or motion is None else motion.duration
@@ -97,9 +97,9 @@ def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -
     """A simulation, from the cache where it is there."""
     key = tuple((arguments | more).items())
     if key not in cache.motions:
-        from verify.motion.simulate import simulate
+        from verify.dynamics.simulate import simulate
 
-        more = {"samples": 2, "ledger": False} | more
+        more = {"samples": 2} | more
         cache.motions[key] = simulate(**arguments, **more, progress=cache.progress)
     return cache.motions[key]
 
@@ -108,8 +108,8 @@ def slider_run(
     scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, reverse: bool = False, **more: Any
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
-    from verify.motion.request import STEPS_PER_PERIOD
-    from verify.motion.step_control import KNOWN
+    from verify.dynamics.request import STEPS_PER_PERIOD
+    from verify.dynamics.step_control import CONVERGED
 
     arguments = motion_arguments(scene, by)
     if reverse:
@@ -124,13 +124,11 @@ def slider_run(
             f"time = {arguments['duration']:.12g} s: the slider {status.stopped} after {run.end.time:.6g} s, give a "
             "shorter time or another slider_position"
         )
-    if status.moved is not None and status.moved > KNOWN:
+    if status.step_change is not None and status.step_change > CONVERGED:
         raise InputError(
             f"step = {status.step_s:.3g} s, the default: halving it changes the displacement by "
-            f"{100.0 * status.moved:.2g} %, give a shorter step or time"
+            f"{100.0 * status.step_change:.2g} %, give a shorter step or time"
         )
-    if by.modes is not None and arguments["start"] == "steady" and not (run.coupling and run.coupling.two_way):
-        raise InputError(f"modes = {by.modes!r}: a steady field without two-way coupling has none, leave it out")
     return run
 
 
@@ -199,19 +197,20 @@ def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: Sl
     return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
 
 
-def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "Ledger":
-    balance = slider_run(scene, cache, by, slider, ledger=True).ledger
-    if balance is None:
+def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "EnergyBalance":
+    run = slider_run(scene, cache, by, slider)
+    balance = run.energy
+    if balance is None or run.end.steady:
         raise InputError("start = 'steady': the energy balance is of a run from rest, give start = 'rest'")
     return balance
 
 
 ENERGIES = {
-    "external_work": "work_in",
-    "damping_loss": "damped",
-    "friction_loss": "rubbed",
+    "external_work": "drive_work",
+    "damping_loss": "damping_loss",
+    "friction_loss": "friction_loss",
     "slider": "slider",
-    "friction_on_beam": "contact_on_beam",
+    "friction_on_beam": "friction_on_beam",
     "normal_on_beam": "normal_on_beam",
 }
 """Attributes of the energy balance by the name of the term."""
@@ -237,7 +236,7 @@ def energy(
 def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
     """Residual of the energy balance of beam and slider over the work of the forces, from rest."""
     balance = _energy_balance(scene, cache, by, slider)
-    return abs(balance.residual) / balance.work_in
+    return abs(balance.residual) / balance.drive_work
 
 
 @quantity("slider.coupling_size", unit="1")
@@ -267,7 +266,7 @@ def terminal_speed(
     kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] = "tangential",
 ) -> float:
     """Steady mean speed along +x of a slider on a pure wave towards +x, tanh friction."""
-    from verify.motion.pure_wave import terminal_speed
+    from verify.motor.travelling_wave import terminal_speed
 
     slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
     return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))

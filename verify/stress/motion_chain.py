@@ -19,7 +19,7 @@ ULP = 1.1e-16
 
 def driven(duration: float, slider: Slider | None = None, samples: int = 2, **more: Any) -> Any:
     """The strip from rest under a force, in steps of a 64th of the period where it carries a slider."""
-    from verify.motion.simulate import simulate
+    from verify.dynamics.simulate import simulate
 
     step, at = STEP if slider else None, [0.29 * STRIP.length]
     settings = {"modes": MODES, "step": step, "slider": slider, "at": at, "samples": samples, **more}
@@ -59,8 +59,8 @@ def time_stepping(steps: float) -> float:
 
 def imbalance(steps: float, slope: float) -> float:
     """Energy missing from the balance of a slider on the driven strip, over input work and friction loss."""
-    ledger = driven(steps * STEP, slider(slope)).ledger
-    return float(abs(ledger.residual) / (ledger.rubbed + ledger.work_in))
+    energy = driven(steps * STEP, slider(slope)).energy
+    return float(abs(energy.residual) / (energy.friction_loss + energy.drive_work))
 
 
 @check("energy-steps", "steps", (1e4, 1e6, 1e7), 1e-6, slow=True)
@@ -117,7 +117,7 @@ def decay_error(method: Any, mu: float, slope: float) -> float:
 
 def decay(mu: float, slope: float, time: float) -> float:
     """The speed left in the package, m/s."""
-    from verify.motion.rigid_surface import free_decay
+    from verify.dynamics.belt import free_decay
 
     return free_decay(mu, slope, SPEED, time)
 
@@ -151,7 +151,7 @@ def friction_rest(mu: float) -> float:
 @check("friction-creep", "1 - F / (mu m g)", (0.9, 0.1, 1e-3, 1e-5, 2e-6), 1e-10, beyond=(1e-7, 1e-12), refused=True)
 def friction_creep(left: float) -> float:
     """Creep speed under a force close to mu m g against artanh, error times the distance from mu m g."""
-    from verify.motion.rigid_surface import creep_speed
+    from verify.dynamics.belt import creep_speed
 
     pull = (1.0 - left) * MU * GRAVITY
     share = D(pull) / D(MU * GRAVITY)
@@ -166,14 +166,14 @@ _BELT = (2.0 * pi / 4000) ** 2 / 12.0
 @check("stick-slip", "belt speed, m/s", (0.3, 0.03, 3e-3, 3e-4), _BELT, beyond=(1e-7, 1e-12), refused=True)
 def stick_slip(speed: float) -> float:
     """Stick and slip times of Coulomb friction on a belt, integrated and in closed form."""
+    from verify.dynamics import belt as dynamic_belt
     from verify.exact.contact import belt
-    from verify.motion import rigid_surface
 
     mass, stiffness, static, kinetic = 1.3, 170.0, 5.1, 3.7
     omega, drop = sqrt(stiffness / mass), (static - kinetic) / stiffness
     exact = np.array([2.0 * drop / speed, (2.0 * pi - 2.0 * atan(omega * drop / speed)) / omega])
     found = [
-        law(mass, stiffness, static, kinetic, speed) for law in (rigid_surface.stick_slip_times, belt.stick_slip_times)
+        law(mass, stiffness, static, kinetic, speed) for law in (dynamic_belt.stick_slip_times, belt.stick_slip_times)
     ]
     return worst(np.array(found) / exact - 1.0)
 

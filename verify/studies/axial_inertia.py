@@ -60,7 +60,7 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Integrate every chain under every force. Raises InputError."""
         from verify.chain.benchmarks import departure
-        from verify.motion.validity import NONLINEAR, axial_inertia_size
+        from verify.dynamics.validity import NONLINEAR, axial_inertia_size
         from verify.report.result import Column, Figure, Result, Table
 
         assert scene.drive is not None

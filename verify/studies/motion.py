@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from verify.analysis.solution_cache import SolutionCache
-    from verify.motion.result import Motion as Run
+    from verify.dynamics.result import Motion as Run
     from verify.report.result import Result, Table
     from verify.scene.model import Scene
 
@@ -89,8 +89,8 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.analytic_modes import check_in_time
+        from verify.dynamics.simulate import simulate
         from verify.linear.registry import MODELS, bounding, discrete
-        from verify.motion.simulate import simulate
         from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result
 
@@ -134,7 +134,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             for key, title, own, y in lines
         ]
         keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
-        keys += ["coupling", "margins", "ledger", "statistics", "notes"]
+        keys += ["coupling", "margins", "energy", "statistics", "notes"]
         return Result(
             summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
             tables=_tables(runs),
@@ -151,9 +151,9 @@ def _title(run: "Run") -> str:
 
 def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
     """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
-    from verify.motion.contact import FELT
-    from verify.motion.step_control import KNOWN
-    from verify.motion.validity import NONLINEAR
+    from verify.dynamics.coupling import COUPLED
+    from verify.dynamics.step_control import CONVERGED
+    from verify.dynamics.validity import NONLINEAR
 
     stopped = [
         f"{_title(run)}: the slider {run.statistics.stopped}, after {1e3 * run.end.time:.4g} ms."
@@ -162,17 +162,17 @@ def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
     ]
     lift_off = max(run.margins.lift_off for run in runs.values())
     axial = max(run.margins.nonlinearity for run in runs.values())
-    moved = max(run.statistics.moved or 0.0 for run in runs.values())
-    one_way = [run.coupling for run in runs.values() if run.coupling and not run.coupling.pushes_back]
+    change = max(run.statistics.step_change or 0.0 for run in runs.values())
+    one_way = [run.coupling for run in runs.values() if run.coupling and not run.coupling.two_way]
     normal = max((coupling.normal_size for coupling in one_way), default=0.0)
     limits = {
         "lift-off": (lift_off, 1.0),
-        "coupling": (normal, FELT),
+        "coupling": (normal, COUPLED),
         "axial": (axial, NONLINEAR),
-        "step": (moved, KNOWN),
+        "step": (change, CONVERGED),
     }
     warnings = [WARNINGS[key].format(value) for key, (value, limit) in limits.items() if value > limit]
-    valid = not stopped and lift_off <= 1.0 and max(normal, axial) < LARGE and moved <= KNOWN
+    valid = not stopped and lift_off <= 1.0 and max(normal, axial) < LARGE and change <= CONVERGED
     return [*stopped, *warnings], valid
 
 
@@ -183,7 +183,7 @@ def _tables(runs: "dict[str, Run]") -> "list[Table]":
     rows, validity = [], []
     for run in runs.values():
         error = run.displacement / exact - 1.0 if exact and run.model != "analytic" else None
-        balance = run.ledger.residual / run.ledger.work_in if run.ledger and run.ledger.work_in else None
+        balance = run.energy.residual / run.energy.drive_work if run.energy and run.energy.drive_work else None
         own = (run.displacement, error, run.mean_speed, run.largest_friction, run.statistics.steps, balance)
         rows.append((_title(run), *own))
         coupling, margins = run.coupling, run.margins

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from reference.slider import hermite_modes
 
-from verify import free_vibration
+from verify.dynamics.free_vibration import CORNERS, free_vibration
 from verify.errors import InputError
-from verify.motion.free_vibration import CORNERS
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointMass
 
@@ -40,12 +39,12 @@ def test_a_released_mode_swings_at_its_own_frequency(mode, damping):
     here = np.array([modes.shape(x, 0)[mode - 1] for x in PLACES]) * 2e-5 / abs(shape).max()
     expected = np.outer(swing, here * np.sign(shape[np.argmax(abs(shape) > 1e-3 * abs(shape).max())]))
     assert motion.deflection == pytest.approx(expected, abs=1e-6 * 2e-5)
-    assert motion.unread == 0.0
+    assert motion.truncation == 0.0
 
 
 def test_a_cubic_shape_is_represented_exactly_by_elements():
     motion = free_vibration(ARM, tip, 2e-3, model="fem", count=5, at=PLACES, samples=5)
-    assert motion.unread < 1e-9
+    assert motion.truncation < 1e-9
     assert CORNERS not in motion.notes
     assert motion.deflection[0] == pytest.approx([tip(x) for x in PLACES], rel=1e-9)
     stiffness = ARM.bending_stiffness
@@ -71,11 +70,11 @@ def test_a_table_with_corners_is_approached_in_the_mean_square(model):
     length = STRIP.length
     table = ([0.0, 0.3 * length, length], [0.0, 1e-4, 0.0])
     motion = free_vibration(STRIP, table, 1e-3, **model, at=[0.3 * length], samples=3)
-    assert 1e-3 < motion.unread < 0.03
+    assert 1e-3 < motion.truncation < 0.03
     assert motion.deflection[0, 0] == pytest.approx(1e-4, rel=0.06)
     assert CORNERS in motion.notes
     many = free_vibration(STRIP, table, 1e-3, model="analytic", modes=200, at=[0.3 * length], samples=3)
-    assert many.unread < 0.1 * motion.unread
+    assert many.truncation < 0.1 * motion.truncation
 
 
 def test_damping_ratio_follows_the_loss_factor_of_the_beam():

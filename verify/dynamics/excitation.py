@@ -1,0 +1,157 @@
+"""Harmonic forces with a polynomial envelope, and the exact response of complex modal rows to them."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from verify.arrays import Array, ComplexArray
+from verify.errors import InputError, ResonanceError
+from verify.linear.field import phasor
+from verify.linear.time_basis import Ratio, TimeBasis
+from verify.problem.beam import PointForce
+
+RESONANCE = 1e-9
+"""Relative distance to an undamped resonance within which a drive is refused."""
+CONSTANT = np.array([1.0])
+SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
+"""3 p^2 - 2 p^3: from 0 to 1 with zero slope at both ends."""
+SLOW = 0.5
+"""|i omega - lambda| T below which a row's forced part is a power series from rest: the closed form cancels there."""
+SERIES = 12
+"""Further powers of that series: SLOW^12 / 12! is rounding."""
+MOST_PERIODS = 1e12
+"""Periods after which a phase is uncertain by 1e-3 rad."""
+DECAYED = 40.0
+"""Nepers after which a free mode is negligible."""
+LARGE = 1e100
+"""Radians in a run beyond which a mode counts as undamped."""
+
+
+class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Complex modal rows: z' = lambda z + c psi(x) f, with the contribution Re(psi(x) z) to the deflection."""
+
+    rates: ComplexArray
+    """lambda, (n,), 1/s; of a mode -sigma + i omega_d."""
+    participations: ComplexArray
+    """c, (n,), s/kg of unit modal mass; of a mode -i / omega_d."""
+    loads: ComplexArray
+    """psi at the forces times their phasors, (n,), N/sqrt(kg)."""
+
+    def state(self, z: ComplexArray) -> tuple[Array, Array]:
+        """(q, dq/dt) of modes, (n,) each."""
+        return z.real, (self.rates * z).real
+
+    def of_state(self, q: Array, rates: Array) -> ComplexArray:
+        """The z of modes with this state, (n,): Re z = q, Re(lambda z) = dq/dt."""
+        return np.asarray(q + 1j * (self.rates.real * q - rates) / self.rates.imag)
+
+    def after(self, z: ComplexArray, t: Any) -> ComplexArray:
+        """Free rows at the times t after z, (*shape of t, n)."""
+        return np.asarray(np.exp(np.multiply.outer(t, self.rates)) * z)
+
+
+class Forced(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """The forced part z = sum_d (t/T)^d (A_d e^{i omega s} + conj(B_d) e^{-i omega s}) of all rows, s = t + origin."""
+
+    forward: ComplexArray
+    """A, (n, degree + 1)."""
+    backward: ComplexArray
+    """B, (n, degree + 1): conjugated, so that the deflection is Re((psi A + conj(psi) B) (t/T)^d e^{i omega s})."""
+    omega: float
+    origin: float
+    unit_s: float
+    """T."""
+
+    def at(self, t: float) -> ComplexArray:
+        """The state z of every row at time t, (n,)."""
+        powers = (t / self.unit_s) ** np.arange(self.forward.shape[1]) * np.exp(1j * self.omega * (t + self.origin))
+        return np.asarray(self.forward @ powers + np.conj(self.backward @ powers))
+
+    def drive_shapes(self, psi: Array | ComplexArray) -> ComplexArray:
+        """Shapes of the forced deflection, one for each power of t, (degree + 1, len(x)), from `psi` (n, len(x))."""
+        if not np.iscomplexobj(psi):
+            return np.asarray((self.forward + self.backward).T @ psi)
+        return np.asarray(self.forward.T @ psi + self.backward.T @ psi.conj())
+
+
+def modal_rows(basis: TimeBasis, forces: Sequence[PointForce], damping: Ratio) -> Rows:
+    """The modes of a basis with the ratio `damping`, one or (n,), under the forces."""
+    loads = sum((phasor(f) * basis.loads(f.position) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
+    damped = basis.omegas * np.sqrt(1.0 - np.square(damping))
+    return Rows(
+        rates=np.asarray(-damping * basis.omegas + 1j * damped),
+        participations=np.asarray(-1j / damped),
+        loads=np.asarray(loads, dtype=complex),
+    )
+
+
+NO_ROWS = Rows(
+    rates=np.empty(0, dtype=complex), participations=np.empty(0, dtype=complex), loads=np.empty(0, dtype=complex)
+)
+
+
+def forced_response(rows: Rows, omega: float, envelope: Array, unit_s: float, origin: float = 0.0) -> Forced:
+    """The forced part under Re(F sum_d envelope_d (t/T)^d e^{i omega (t + origin)}), 0 <= t <= T where it grows.
+
+    Half of the force drives e^{i omega t}, half e^{-i omega t}; each amplitude follows from the highest power down,
+    (i omega - lambda) A_d + (d + 1)/T A_{d+1} = c F envelope_d / 2, exact for any polynomial.
+    """
+    half = 0.5 * rows.loads[:, None] * envelope
+    pairs = ((rows.rates, rows.participations), (rows.rates.conj(), rows.participations.conj()))
+    parts = [_amplitudes(1j * omega - rate, c[:, None] * half, unit_s) for rate, c in pairs]
+    width = max(part.shape[1] for part in parts)
+    forward, backward = (np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts)
+    return Forced(forward=forward, backward=backward, omega=omega, origin=origin, unit_s=unit_s)
+
+
+def _amplitudes(stiff: ComplexArray, load: ComplexArray, unit_s: float) -> ComplexArray:
+    """Powers of t/T of a in a' + stiff a = load, (n, powers).
+
+    The particular polynomial, or, where an envelope grows and `stiff` is small, the series of the solution from rest:
+    near a resonance the polynomial is large and would cancel against the free part, to no digit at all on it.
+    """
+    slow = (abs(stiff) * unit_s < SLOW) & (load.shape[1] > 1)
+    a, safe = np.zeros_like(load), np.where(slow, 1.0, stiff)
+    for d in range(load.shape[1] - 1, -1, -1):
+        higher = (d + 1) / unit_s * a[:, d + 1] if d + 1 < load.shape[1] else 0.0
+        a[:, d] = (load[:, d] - higher) / safe
+    if slow.any():
+        a, load = (np.pad(part, ((0, 0), (0, SERIES))) for part in (a, load))
+        a[slow] = 0.0
+        for d in range(load.shape[1] - 1):
+            a[slow, d + 1] = unit_s * (load[slow, d] - stiff[slow] * a[slow, d]) / (d + 1)
+    return a
+
+
+def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) -> None:
+    """Raise InputError where an undamped mode is driven at its own frequency."""
+    if not frequency_hz:
+        return
+    ratio = np.abs(2.0 * np.pi * frequency_hz / basis.omegas - 1.0)
+    nearest = int(ratio.argmin())
+    if ratio[nearest] < RESONANCE and not np.broadcast_to(damping, ratio.shape)[nearest]:
+        raise ResonanceError(
+            f"frequency_hz = {frequency_hz!r} lies {ratio[nearest]:.1e} (relative) from the undamped resonance of mode "
+            f"{nearest + 1} of the {basis.model} model: give the beam a loss_factor or choose another frequency"
+        )
+
+
+def check_phase(name: str, hertz: float, duration: float, since: float = 0.0) -> None:
+    """Raise InputError where an oscillation lasts until its phase is unknown."""
+    if hertz * (since + duration) > MOST_PERIODS:
+        before = f" after {since!r} s" if since else ""
+        raise InputError(
+            f"duration = {duration!r} s{before} is more than {MOST_PERIODS:.0e} periods of {name}, at {hertz:.4g} Hz, "
+            "whose phase is not known to 1e-3 rad by then: shorten it"
+        )
+
+
+def check_free_phases(basis: TimeBasis, damping: Ratio, duration: float) -> None:
+    """The same for every free mode that does not decay first."""
+    lasting = (damping * MOST_PERIODS * 2.0 * np.pi < DECAYED) | (basis.omegas >= LARGE / duration)
+    if lasting.any():
+        check_phase(
+            "the highest mode that does not decay first", float(basis.omegas[lasting].max()) / (2.0 * np.pi), duration
+        )

@@ -1,0 +1,258 @@
+"""Free vibration of a beam from an initial shape and velocity, exact in the modes of its model."""
+
+from collections.abc import Callable, Sequence
+from math import sqrt
+from typing import TypeAlias
+
+import numpy as np
+from msgspec import Struct
+
+from verify.arrays import Array
+from verify.dynamics.excitation import check_free_phases, modal_rows
+from verify.dynamics.linear_system import basis_of
+from verify.dynamics.result import EndState
+from verify.errors import InputError, shown
+from verify.linear.numerics import extremes
+from verify.linear.positions import Numbers, real_array, vector_on
+from verify.linear.time_basis import Ratio, TimeBasis, damping_in
+from verify.problem.beam import Beam
+from verify.validation import check_number, check_whole
+
+Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
+"""A mode's number, a function of x (m), or places and values with straight lines between them."""
+GAUSS = 6
+"""Points in each piece of the shapes' polynomials: squares of cubics are integrated exactly."""
+MOST_SAMPLES = 1_000_000
+NEAR = 1e-6
+"""Relative to the length, half the interval over which a body turns with a function of x, away from corners; relative
+to the largest value, what a shape may have at a supported end."""
+CORNERED = 0.05
+"""Share of the upper half of the modes in the elastic energy above which the shape has corners."""
+CORNERS = "energies: the initial shape has corners, its elastic energy grows with the number of modes"
+
+
+class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
+    """A beam that vibrates freely from an initial shape and velocity."""
+
+    model: str
+    """Its name."""
+    count: int | None
+    """Elements or segments; None for the exact beam."""
+    damping: Ratio
+    """Ratio zeta of every mode, or (m,), of each where springs, ground or an axial force have no loss."""
+    times: Array
+    """(n,), seconds from the release."""
+    points: Array
+    """(p,), m: places of the deflection."""
+    deflection: Array
+    """(n, p), m."""
+    velocity: Array
+    """(n, p), m/s."""
+    kinetic: Array
+    """(n,), J."""
+    elastic: Array
+    """(n,), J. It grows with the number of modes where the shape has corners (`notes`)."""
+    frequencies_hz: Array
+    """(m,), of the model's modes, undamped, ascending."""
+    amplitudes: Array
+    """(m,), sqrt(kg) m: share q of every mode in the initial shape, w = sum q phi, phi as in `Modes`."""
+    truncation: float
+    """What the modes leave of the initial shape, rms over rms (weighted by mass and rotary inertia); 0 without one."""
+    end: EndState
+    """State from which `simulate` continues (`continue_from`)."""
+    notes: tuple[str, ...]
+    """Method of the modes; corners of the initial shape."""
+
+
+def free_vibration(
+    beam: Beam,
+    shape: Shape | None,
+    duration: float,
+    *,
+    amplitude: float | None = None,
+    velocity: Shape | None = None,
+    model: str = "segment",
+    count: int | None = None,
+    modes: int | None = None,
+    modal_damping: float | None = None,
+    at: Numbers = (),
+    samples: int = 201,
+) -> FreeVibration:
+    """A beam released at t = 0 from a shape (m) with a velocity (m/s), without forces.
+
+    The shape's share in each mode is phi^T M w, least squares weighted by mass and rotary inertia; then every mode is
+    q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
+    Vibrations, 1967, ch. 5). Bodies turn as the shape does at their place, at a corner by the mean of both sides.
+
+    Parameters
+    ----------
+    beam : Beam
+        Without rigid-body motions.
+    shape, velocity : callable, pair, int or None
+        Each a function of x, a pair (x, values) with straight lines between the places from 0 to L, or None for zero.
+        `shape` may be a mode number with `amplitude`; it is 0 at pinned and clamped ends.
+    duration : float
+        Seconds.
+    amplitude : float, optional
+        Largest deflection of that mode, m, positive where it first moves off its left end.
+    model, count, modes : str, int, int
+        Model, its number of segments or elements, and the modes of the exact beam (400 unless given).
+    modal_damping : float, optional
+        Damping ratio of every mode; unless given that of the beam's loss factor at each mode.
+    at : float or sequence
+        Places of deflection and velocity, (p,), m.
+    samples : int
+        Number of times from 0 to `duration`.
+
+    Raises
+    ------
+    InputError
+        For bad arguments, and for a beam with rigid-body motions.
+    """
+    check_number("duration", duration, "seconds", above=0)
+    zeta, field = (
+        (0.5 * beam.loss_factor, "half of beam.loss_factor")
+        if modal_damping is None
+        else (modal_damping, "modal_damping")
+    )
+    check_number(field, zeta, "ratio of every mode", at_least=0, below=1)
+    check_whole("samples", samples, 2)
+    if samples > MOST_SAMPLES:
+        raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
+    points = vector_on("at", at, beam.length)
+    basis = basis_of(beam, model, count, modes)
+    damping = damping_in(basis, modal_damping)
+    check_free_phases(basis, damping, duration)
+    q, rates, truncation = _start(basis, shape, amplitude, velocity)
+    rows, times = modal_rows(basis, (), damping), np.linspace(0.0, duration, samples)
+    z0, shapes, parts = rows.of_state(q, rates), basis.shapes(points, 0), []
+    for block in np.array_split(times, 1 + times.size * q.size // 10_000_000):  # memory
+        z = rows.after(z0, block)
+        now, speed = z.real, (rows.rates * z).real
+        energies = 0.5 * (speed**2).sum(axis=1), 0.5 * now**2 @ basis.omegas**2
+        parts.append((now @ shapes, speed @ shapes, *energies))
+    modal = q**2 * basis.omegas**2
+    corners = modal[len(q) // 2 :].sum() > CORNERED * modal.sum()
+    deflection, rate, kinetic, elastic = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return FreeVibration(
+        model=basis.model,
+        count=basis.count,
+        damping=damping,
+        times=times,
+        points=points,
+        deflection=deflection,
+        velocity=rate,
+        kinetic=kinetic,
+        elastic=elastic,
+        frequencies_hz=basis.omegas / (2.0 * np.pi),
+        amplitudes=q,
+        truncation=truncation,
+        end=EndState(beam=beam, model=basis.model, count=basis.count, time=float(duration), q=now[-1], rates=speed[-1]),
+        notes=(f"modes: {basis.method}", *((CORNERS,) if corners else ())),
+    )
+
+
+def _start(
+    basis: TimeBasis, shape: Shape | None, amplitude: float | None, velocity: Shape | None
+) -> tuple[Array, Array, float]:
+    """(q, dq/dt) of every mode at the start, and what they leave of the shape. Raises InputError."""
+    if shape is None and velocity is None:
+        raise InputError("shape is None and so is velocity: give one of them, or both, else nothing moves")
+    numbered = isinstance(shape, int) and not isinstance(shape, bool)
+    if amplitude is not None and not numbered:
+        raise InputError(f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out")
+    rest = np.zeros(len(basis.omegas)), 0.0
+    rates = rest[0] if velocity is None else _projected(basis, "velocity", velocity)[0]
+    if numbered:
+        return _single_mode(basis, shape, amplitude), rates, 0.0
+    q, truncation = rest if shape is None else _projected(basis, "shape", shape)
+    return q, rates, truncation
+
+
+def _single_mode(basis: TimeBasis, mode: object, amplitude: float | None) -> Array:
+    """One mode with its largest deflection `amplitude`, m. Raises InputError."""
+    check_whole("shape", mode, 1)
+    assert isinstance(mode, int)
+    if mode > len(basis.omegas):
+        raise InputError(f"shape = {mode}: the {basis.model} model has {len(basis.omegas)} modes, raise count or modes")
+    if amplitude is None:
+        raise InputError(f"amplitude is missing: give mode {mode} its largest deflection in metres")
+    check_number(
+        "amplitude", amplitude, "metres", at_least=-1e100 * basis.beam.length, at_most=1e100 * basis.beam.length
+    )
+    x = np.linspace(0.0, basis.beam.length, 20 * mode + 41)
+    least, largest = extremes(lambda x: np.asarray(basis.shapes(x, 0)[mode - 1]), x)
+    size, values = max(largest, -least), basis.shapes(x, 0)[mode - 1]
+    first = values[np.argmax(abs(values) > 1e-3 * size)]
+    q = np.zeros(len(basis.omegas))
+    q[mode - 1] = amplitude * np.sign(first) / size
+    return q
+
+
+def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]:
+    """Share of every mode in a shape, (m,), and what they leave of it. Raises InputError."""
+    beam = basis.beam
+    function, breaks = _function(name, given, beam.length)
+    if name == "shape":
+        ends = np.array([0.0, beam.length])
+        largest = abs(function(np.linspace(0.0, beam.length, 33))).max()
+        for support, place, value in zip(beam.supports, ends, function(ends), strict=True):
+            if support in ("pinned", "clamped") and abs(value) > NEAR * largest:
+                raise InputError(
+                    f"shape = {float(value)!r} m at x = {float(place)!r} m, where the beam is {support}: let it be 0 "
+                    "there, or give the beam another support"
+                )
+    # Gauss points between the edges of the shapes, the steps of the beam and the corners of the given shape
+    steps = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
+    pieces = basis.edges if basis.count is not None else np.append(basis.edges[:-1:3], beam.length)
+    edges = np.union1d(np.union1d(pieces, steps), breaks)
+    edges = edges[np.append(True, np.diff(edges) > 1e-12 * beam.length)]
+    abscissae, weights = np.polynomial.legendre.leggauss(GAUSS)
+    half = 0.5 * np.diff(edges)[:, None]
+    x = (edges[:-1, None] + half * (1.0 + abscissae)).ravel()
+    masses = np.array([piece.mass_per_length for piece in beam.pieces])
+    weight = (half * weights).ravel() * masses[np.clip(np.searchsorted(steps, x, side="right") - 1, 0, len(masses) - 1)]
+    shapes, values = basis.shapes(x, 0), function(x)
+    if beam.mass:
+        places, inertias = np.array([m.position for m in beam.mass]), np.array([m.rotary_inertia for m in beam.mass])
+        # a chord over a body: at a corner the mean of both sides
+        left, right = np.maximum(places - NEAR * beam.length, 0.0), np.minimum(places + NEAR * beam.length, beam.length)
+        turns = (function(right) - function(left)) / (right - left)
+        shapes = np.hstack([shapes, basis.shapes(places, 0), basis.body_turns()])
+        values = np.concatenate([values, function(places), turns])
+        weight = np.concatenate([weight, [m.mass for m in beam.mass], inertias])
+    weighted = shapes * weight
+    q = np.linalg.solve(weighted @ shapes.T, weighted @ values)
+    size = float(weight @ values**2)
+    return q, sqrt(float(weight @ (values - q @ shapes) ** 2) / size) if size > 0.0 else 0.0
+
+
+def _function(name: str, given: Shape, length: float) -> tuple[Callable[[Array], Array], Array]:
+    """The shape as a function of places (n,) and the places of its corners, m. Raises InputError."""
+    if callable(given):
+
+        def values(x: Array) -> Array:
+            try:
+                result: object = given(x)
+            except (TypeError, ValueError):  # a function of one number
+                result = [given(float(one)) for one in x]
+            found = real_array(f"{name}(x)", result, "SI")
+            if found.shape not in ((), x.shape) or not np.isfinite(found).all():
+                raise InputError(
+                    f"{name}(x) returns {shown(result)} for {len(x)} places: return as many finite numbers"
+                )
+            return np.broadcast_to(found, x.shape)
+
+        return values, np.empty(0)
+    if not isinstance(given, list | tuple | np.ndarray) or len(given) != 2:
+        raise InputError(
+            f"{name} = {shown(given)}: give a function of x, a pair (x, values), or a mode's number with its amplitude"
+        )
+    x, y = real_array(f"{name}[0]", given[0], "metres"), real_array(f"{name}[1]", given[1], "SI")
+    if x.ndim != 1 or x.shape != y.shape or len(x) < 2 or not np.isfinite(y).all():
+        raise InputError(f"{name} has x of the shape {x.shape} and values of {y.shape}: give as many finite ones")
+    if not (np.diff(x) > 0).all() or abs(x[0]) > 1e-9 * length or abs(x[-1] - length) > 1e-9 * length:
+        raise InputError(
+            f"{name}[0] runs from {float(x[0])!r} to {float(x[-1])!r}: let x ascend from 0 to {length!r} m"
+        )
+    return lambda at: np.asarray(np.interp(at, x, y)), x

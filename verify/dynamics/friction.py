@@ -1,0 +1,224 @@
+"""Compiled friction laws: the force on a slider in one step, with its own response and the surface's solved exactly.
+
+The relative speed r = v - s of a point begins the step at r0 and changes at -(a + ease f'), where `a` is the gain of the
+surface over a slider without friction, per step, and f the friction force on the slider: r' = ease f - a, in units of
+one step, with `ease` = dt/m + 2 w, w the mean response of the surface to a unit force.
+"""
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.dynamics import layout as lay
+from verify.jit import inline, jit
+
+SPANS = 12
+"""Spans between events in one step of Coulomb's law."""
+BRIEF = 0.01
+"""Nondimensional step below which the closed form of the tanh law would cancel."""
+FLAT = 20.0
+"""From there on tanh is 1 to the last digit."""
+
+
+@jit
+def tanh_change(r: float, a: float, b: float, steepness: float) -> float:
+    """What friction adds to r in a unit of time in which r' = -b tanh(K r) - a, in closed form for any K and b.
+
+    With rho = K r and alpha = a/b: for alpha < 1 rho tends to rest = -artanh alpha, and with eta = |rho - rest|
+    ln sinh eta - s alpha eta falls by (1 - alpha^2) tau; solved for ln sinh eta, in which the slope lies between
+    1 - alpha and 1 + alpha. For alpha > 1, alpha delta - ln cosh delta falls by (alpha^2 - 1) tau with
+    delta = rho + artanh(1/alpha), by Newton's method on the change.
+    """
+    if b <= 0.0:
+        return 0.0
+    alpha, tau = a / b, steepness * b
+    side = -1.0 if alpha < 0.0 else 1.0  # mirrored, so that the surface accelerates forward
+    alpha, rho = side * alpha, side * steepness * r
+    if (1.0 + alpha) * tau < BRIEF:  # four stages, off by less than 3e-11 tau
+        first = np.tanh(rho)
+        second = np.tanh(rho - 0.5 * tau * (first + alpha))
+        third = np.tanh(rho - 0.5 * tau * (second + alpha))
+        fourth = np.tanh(rho - tau * (third + alpha))
+        return float(-side * tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0 / steepness)
+    if rho > FLAT and rho - (alpha + 1.0) * tau > FLAT:
+        return -side * b
+    if rho < -FLAT and rho - (alpha - 1.0) * tau < -FLAT:
+        return side * b
+    if abs(alpha - 1.0) < 1e-7:
+        alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)  # 1e-7 of b in this step; the formulas part there
+    if alpha < 1.0:
+        rest = -np.arctanh(alpha)
+        sign, eta = 1.0 if rho > rest else -1.0, abs(rho - rest)
+        change = 0.0
+        if eta > 0.0:
+            lean = sign * alpha
+            start = np.log(np.sinh(eta)) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
+            goal = start - lean * eta - (1.0 - alpha * alpha) * tau
+            level = min(goal + lean * eta, start)
+            here = 0.0
+            for _ in range(80):
+                here = np.arcsinh(np.exp(level)) if level < FLAT else level + np.log(2.0)
+                step = (level - lean * here - goal) / (1.0 - lean * np.tanh(here))
+                level -= step
+                if abs(step) <= 1e-8:  # the next would be its square
+                    break
+            here = np.arcsinh(np.exp(level)) if level < FLAT else level + np.log(2.0)
+            change = sign * here + rest - rho
+    else:
+        grip = np.tanh(rho)
+        lean = (alpha * grip + 1.0) / (alpha + grip)  # tanh delta
+        change = -(alpha + np.tanh(rho - 0.5 * (alpha + grip) * tau)) * tau
+        for _ in range(80):
+            if abs(change) < 4.0:
+                grown = np.expm1(change)
+                sine, cosine = 0.5 * (grown + grown / (grown + 1.0)), 0.5 * grown * grown / (grown + 1.0)
+                inner = cosine + lean * sine
+                value, end = np.log1p(inner), (lean * (1.0 + cosine) + sine) / (1.0 + inner)
+            else:
+                delta = rho + np.arctanh(1.0 / alpha)
+                value, end = ln_cosh(delta + change) - ln_cosh(delta), np.tanh(delta + change)
+            step = (alpha * change - value + (alpha * alpha - 1.0) * tau) / (alpha - end)
+            change -= step
+            if abs(step) <= 1e-8 * (abs(change) + 1e-8):
+                break
+    added = min(max(change + alpha * tau, -tau), tau)  # rounding gives no more than friction has
+    return float(side * added / steepness)
+
+
+@inline
+def ln_cosh(x: float) -> float:
+    """Ln(2 cosh x), without overflow."""
+    return float(abs(x) + np.log1p(np.exp(-2.0 * abs(x))))
+
+
+@inline
+def tanh_force(r: float, a: float, ease: float, most: float, steepness: float) -> float:
+    """Mean friction in the step by the tanh law: the closed form, or the mean over a given sweep without response."""
+    if ease * most * steepness > 1e-9:
+        return float(tanh_change(r, a, ease * most, steepness) / ease)
+    half, middle = 0.5 * steepness * abs(a), steepness * (r - 0.5 * a)
+    if half < 0.1:
+        t = np.tanh(middle)
+        return float(-most * (t - half * half / 3.0 * t * (1.0 - t * t)))
+    return float(-most * (ln_cosh(middle + half) - ln_cosh(middle - half)) / (2.0 * half))
+
+
+@jit
+def coulomb_span(
+    r: float, a0: float, a1: float, kinetic: float, static: float, dt: float, stuck: bool
+) -> tuple[float, float, bool, float]:
+    """Until the friction force changes: (time used, r at its end, whether stuck then, kind of event or 0).
+
+    `a0` and `a1` are the acceleration of the surface relative to a slider free of friction, at the start and the
+    end of dt, linear between. A slider at rest on the surface stays while |a| <= static; one that slips does so
+    under `kinetic` until r = 0, where it sticks if it can.
+    """
+    rate = (a1 - a0) / dt
+    if stuck and abs(a0) > static * (1.0 + 1e-12):
+        return 0.0, 0.0, False, lay.SLIPS
+    if stuck:
+        for bound in (static, -static):
+            beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
+            if beyond > 0.0 and rate != 0.0:
+                return min(max((bound - a0) / rate, 0.0), dt), 0.0, False, lay.SLIPS
+        return dt, 0.0, True, 0.0
+    side = np.sign(r) if r != 0.0 else -np.sign(a0 if a0 != 0.0 else rate)
+    slowing, used = kinetic * side + a0, dt  # r(t) = r - slowing t - rate t^2 / 2
+    if r == 0.0:  # leaves zero now; it comes back where slowing + rate t / 2 = 0
+        back = -2.0 * slowing / rate if rate != 0.0 else dt
+        used = back if 0.0 < back < dt else dt
+    elif slowing * slowing + 2.0 * rate * r >= 0.0:
+        root = np.sqrt(slowing * slowing + 2.0 * rate * r)
+        q = slowing + root if slowing >= 0.0 else slowing - root
+        first, second = (2.0 * r / q if q != 0.0 else dt), (-q / rate if rate != 0.0 else dt)
+        used = first if 0.0 < first < used else used
+        used = second if 0.0 < second < used else used
+    if used >= dt:
+        return dt, r - slowing * dt - 0.5 * rate * dt * dt, False, 0.0
+    sticks = abs(a0 + rate * used) <= static
+    return used, 0.0, sticks, lay.STICKS if sticks else lay.TURNS
+
+
+@inline
+def coulomb_force(
+    i: int, r: float, a0: float, a1: float, ease: float, kinetic: float, static: float, stuck: bool, spans: Array
+) -> float:
+    """Mean friction in the step by Coulomb's law, from event to event.
+
+    Sets row i of `spans` (points, 4 + 2 SPANS): 1 where it sticks all the step, 0.5 where from an event in it to its end, the relative displacement over dt, r at the
+    end, the number of events, and of each the share of the step and its kind.
+    """
+    force, used, moved, n = 0.0, 0.0, 0.0, 0
+    if abs(r) <= 1e-9 * ease * kinetic and abs(a0) <= ease * static:
+        r, stuck = 0.0, True  # put on a surface at rest, to rounding
+    for _ in range(SPANS):
+        slips, before, start = not stuck, r, a0 + (a1 - a0) * used
+        span, r, stuck, event = coulomb_span(r, start, a1, ease * kinetic, ease * static, 1.0 - used, stuck)
+        if slips:  # r is a parabola
+            side = np.sign(before) if before != 0.0 else np.sign(r)
+            force -= side * kinetic * span
+            moved += 0.5 * span * (before + r) + (a1 - a0) * span * span * span / 12.0
+        elif ease > 0.0:
+            force += (start + 0.5 * (a1 - a0) * span) * span / ease
+        used += span
+        if event != 0.0:
+            spans[i, 4 + 2 * n], spans[i, 5 + 2 * n] = used, event
+            n += 1
+        if used >= 1.0 or (span <= 0.0 and event == 0.0):
+            break
+    sticks = 1.0 if n == 0 else 0.5  # within the step
+    spans[i, 0], spans[i, 1], spans[i, 2], spans[i, 3] = sticks if stuck else 0.0, moved, r, n
+    return float(min(max(force, -max(static, kinetic)), max(static, kinetic)))
+
+
+@inline
+def held_force(
+    i: int, needed: float, kinetic: float, static: float, last: float, ease: float, spans: Array
+) -> float:
+    """Mean friction in the step of a point that sticks to a surface with a response, from the force that it `needed`.
+
+    A force that is constant in the step lets the surface move less evenly than the true one, so that means decide. It
+    slips where the line through the last mean and this one passes the static limit. `spans` as in `coulomb_force`.
+    """
+    size, sign = abs(needed), 1.0 if needed > 0.0 else -1.0
+    spans[i, 0], spans[i, 1], spans[i, 2], spans[i, 3] = 1.0, 0.0, 0.0, 0.0
+    if size <= static:
+        return needed
+    stays = min(max((static - sign * last) / (size - sign * last) - 0.5, 0.0), 1.0)
+    mean = stays * 0.5 * (0.5 * (sign * last + size) + static) + (1.0 - stays) * kinetic
+    spans[i, 0], spans[i, 2], spans[i, 3] = 0.0, -sign * (size - mean) * ease, 1.0
+    spans[i, 1] = 0.5 * (1.0 - stays) * spans[i, 2]
+    spans[i, 4], spans[i, 5] = stays, lay.SLIPS
+    return float(sign * mean)
+
+
+@inline
+def elastic_force(
+    trial: float, stiffness: float, limit: float, kinetic: float, steepness: float
+) -> tuple[float, float]:
+    """(Friction of an elastic tangential contact, 1 where it sticks) by return mapping of a trial force.
+
+    `stiffness` is what a displacement of the step adds to the trial, N per m/s of slip. Coulomb: the trial up to the
+    limit. Tanh: spring and slip in series, F = trial - stiffness artanh(F/limit)/K.
+    """
+    if kinetic <= 0.0:
+        return 0.0, 0.0
+    if steepness == 0.0:
+        if abs(trial) < limit:
+            return trial, 1.0
+        return float(np.sign(trial) * kinetic), 0.0
+    slip = 0.0
+    low, high = (0.0, trial / stiffness) if trial > 0.0 else (trial / stiffness, 0.0)
+    for _ in range(60):
+        t = np.tanh(steepness * slip)
+        miss = kinetic * t + stiffness * slip - trial
+        if miss > 0.0:
+            high = slip
+        else:
+            low = slip
+        after = slip - miss / (kinetic * steepness * (1.0 - t * t) + stiffness)
+        if not low < after < high:
+            after = 0.5 * (low + high)
+        if abs(after - slip) <= 1e-14 * (abs(slip) + 1e-12):
+            break
+        slip = after
+    return float(kinetic * np.tanh(steepness * slip)), 0.0

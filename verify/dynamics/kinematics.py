@@ -1,0 +1,246 @@
+"""Compiled kinematics: rows and drive in time, the surface under contact points, shapes of all rows at them."""
+
+import numpy as np
+
+from verify.arrays import Array, Indices
+from verify.dynamics import layout as lay
+from verify.jit import FAST, inline
+
+START, HALF, MIDDLE, END = range(4)
+"""Instants of a step. HALF is mid-step; MIDDLE has the deflection of mid-step and the MEAN velocity over the step,
+displacement/dt, which is exact for every row."""
+VALUE, RATE = range(2)
+
+
+@inline(fastmath=FAST)
+def rotate_half(rows: Array) -> None:
+    """Advance every free row by half a step, exactly."""
+    for j in range(rows.shape[1]):
+        real = rows[lay.Z_RE, j] * rows[lay.HALF_RE, j] - rows[lay.Z_IM, j] * rows[lay.HALF_IM, j]
+        rows[lay.Z_IM, j] = rows[lay.Z_RE, j] * rows[lay.HALF_IM, j] + rows[lay.Z_IM, j] * rows[lay.HALF_RE, j]
+        rows[lay.Z_RE, j] = real
+
+
+@inline(fastmath=FAST)
+def set_factors(when: int, time: float, n_complex: int, rows: Array, drive: Array, factors: Array) -> None:
+    """Factors of all columns and their rates at a time of the stage; `factors` (4, 2, columns)."""
+    n = rows.shape[1]
+    for j in range(n):
+        factors[when, VALUE, j] = rows[lay.Z_RE, j]
+        factors[when, RATE, j] = (
+            rows[lay.RATE_RE, j] * rows[lay.Z_RE, j] - rows[lay.RATE_IM, j] * rows[lay.Z_IM, j]
+        )
+    for k in range(n_complex):
+        j = n - n_complex + k
+        factors[when, VALUE, n + k] = -rows[lay.Z_IM, j]
+        factors[when, RATE, n + k] = (
+            -rows[lay.RATE_RE, j] * rows[lay.Z_IM, j] - rows[lay.RATE_IM, j] * rows[lay.Z_RE, j]
+        )
+    omega, unit = drive[lay.OMEGA], drive[lay.UNIT]
+    angle = omega * (drive[lay.ORIGIN] + time)
+    c, s = np.cos(angle), np.sin(angle)
+    power, growth, first = 1.0, 0.0, n + n_complex
+    for d in range((factors.shape[2] - first) // 2):
+        j = first + 2 * d
+        factors[when, VALUE, j], factors[when, VALUE, j + 1] = power * c, -power * s
+        factors[when, RATE, j] = growth * c - power * omega * s
+        factors[when, RATE, j + 1] = -growth * s - power * omega * c
+        growth = (d + 1) * power / unit
+        power = power * time / unit
+
+
+@inline(fastmath=FAST)
+def set_mean_rates(dt: float, factors: Array) -> None:
+    """Factors of MIDDLE."""
+    for j in range(factors.shape[2]):
+        factors[MIDDLE, VALUE, j] = factors[HALF, VALUE, j]
+        factors[MIDDLE, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
+
+
+@inline(fastmath=FAST)
+def filter_rates(dt: float, n_complex: int, rows: Array, factors: Array) -> None:
+    """Mean rates over the step in place of those at its end where a row is not resolved."""
+    n = rows.shape[1]
+    for j in range(n + n_complex):
+        if rows[lay.COARSE, j if j < n else j - n_complex] > 0.0:
+            factors[END, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
+
+
+@inline(fastmath=FAST)
+def shift_factors(factors: Array) -> None:
+    """The end of a step is the start of the next."""
+    for j in range(factors.shape[2]):
+        factors[START, VALUE, j], factors[START, RATE, j] = factors[END, VALUE, j], factors[END, RATE, j]
+
+
+@inline
+def find_pieces(ahead: float, edges: Array, sliders: Array, points: Array, indices: Indices) -> bool:
+    """Set the piece under every point `ahead` seconds on; whether all are on the pieces."""
+    last = len(edges) - 2
+    for i in range(points.shape[0]):
+        b, piece = indices[i, lay.OF_SLIDER], indices[i, lay.PIECE]
+        x = sliders[b, lay.X] + ahead * sliders[b, lay.V] * sliders[b, lay.FREE] + points[i, lay.OFFSET]
+        while piece > 0 and x < edges[piece]:
+            piece -= 1
+        while piece < last and x > edges[piece + 1]:
+            piece += 1
+        if x < edges[piece] or x > edges[piece + 1]:
+            return False
+        indices[i, lay.PIECE] = piece
+    return True
+
+
+@inline(fastmath=FAST)
+def set_polynomials(when: int, piece: int, table: Array, factors: Array, local: Array) -> None:
+    """Polynomials of deflection and velocity on one piece; `local` (pieces, 2, degree + 1)."""
+    for d in range(table.shape[1]):
+        value, rate = 0.0, 0.0
+        for j in range(table.shape[2]):
+            value += table[piece, d, j] * factors[when, VALUE, j]
+            rate += table[piece, d, j] * factors[when, RATE, j]
+        local[piece, VALUE, d], local[piece, RATE, d] = value, rate
+
+
+@inline
+def touch(
+    piece: int, xi: float, length: float, lever: float, local: Array
+) -> tuple[float, float, float, float, float, float]:
+    """Material under a point at xi: (its own xi, w, w', w'', dw/dt, dw'/dt), by metres and seconds.
+
+    The material over x is at X = x + lever w'(X) of the mid-line and moves with (-lever dw'/dt, dw/dt).
+    """
+    value, first = 0.0, 0.0
+    for d in range(local.shape[2] - 1, 0, -1):
+        value = value * xi + local[piece, VALUE, d]
+        first = first * xi + value
+    at = xi + lever * first / (length * length)
+    level, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[2] - 1, -1, -1):
+        bend = bend * at + slope
+        slope = slope * at + level
+        level = level * at + local[piece, VALUE, d]
+        turn = turn * at + rise
+        rise = rise * at + local[piece, RATE, d]
+    return at, level, slope / length, 2.0 * bend / (length * length), rise, turn / length
+
+
+@inline
+def look(
+    when: int,
+    mark: int,
+    dt: float,
+    gravity: float,
+    codes: Indices,
+    table: Array,
+    edges: Array,
+    factors: Array,
+    local: Array,
+    stamp: Indices,
+    sliders: Array,
+    feet: Array,
+    points: Array,
+    contacts: Array,
+    indices: Indices,
+) -> None:
+    """Set the surface under every point at an instant of the step; `stamp` (pieces,) marks polynomials that are ready.
+
+    Sliders are at their place of MIDDLE for feet, at that of START otherwise, with the speed gained in the last step
+    for the next.
+    """
+    spring, ahead = codes[lay.LAW] == lay.SPRING, 0.0 if when == START else dt if when == END else 0.5 * dt
+    for i in range(points.shape[0]):
+        b, piece = indices[i, lay.OF_SLIDER], indices[i, lay.PIECE]
+        if stamp[piece] != mark:
+            set_polynomials(when, piece, table, factors, local)
+            stamp[piece] = mark
+        lever, length, v = points[i, lay.LEVER], edges[piece + 1] - edges[piece], sliders[b, lay.V]
+        x = sliders[b, lay.X] + points[i, lay.OFFSET]
+        if not spring:
+            x += ahead * sliders[b, lay.FREE] * (v + 0.5 * sliders[b, lay.GAINED] * ahead / dt)
+            v += sliders[b, lay.GAINED] * ahead / dt
+        above = (x - edges[piece]) / length
+        at, level, slope, bend, rise, turn = touch(piece, above, length, lever, local)
+        stretch = np.sqrt(1.0 + slope * slope)
+        along = (rise * slope - lever * turn) / stretch
+        if codes[lay.FOLLOWING] > 0 and when != MIDDLE:
+            tilt, drift = rise * (turn + 2.0 * bend * v) - gravity * slope, -slope * rise
+            if when == START:
+                if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
+                    sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
+                    sliders[b, lay.X] += 0.5 * dt * (drift - contacts[i, lay.DRIFT_END])
+                sliders[b, lay.TILT], sliders[b, lay.DRIFT] = 0.0, 0.0
+            share = 4.0 / 6.0 if when == HALF else 1.0 / 6.0
+            sliders[b, lay.TILT] += share * tilt
+            sliders[b, lay.DRIFT] += share * drift
+            contacts[i, lay.TILT_END], contacts[i, lay.DRIFT_END] = tilt, drift
+        on = v - slope * rise if codes[lay.FOLLOWING] > 0 else v
+        climb = rise + slope * (on + lever * (turn + bend * on))
+        if when == START:
+            contacts[i, lay.START], contacts[i, lay.RISE], contacts[i, lay.COVARIANCE] = along, rise, slope
+            if codes[lay.LAW] == lay.GIVEN:
+                contacts[i, lay.RISE_RATE] = climb
+        elif when == END:
+            # of the product of rise and slope: their covariance and the mean slope, order dt^2 both
+            first = contacts[i, lay.COVARIANCE]
+            contacts[i, lay.COVARIANCE] = (
+                (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0
+                + contacts[i, lay.LIFT] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
+            )
+            contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
+            contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
+            contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
+        elif when == MIDDLE:
+            v *= sliders[b, lay.FREE]
+            image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
+            contacts[i, lay.MEAN], contacts[i, lay.AT], contacts[i, lay.ABOVE] = along, at, above
+            contacts[i, lay.SLOPE], contacts[i, lay.LIFT] = slope, rise + slope * lever * turn
+            if spring:
+                lift = image * (rise + slope * (v + lever * (turn + bend * v)))
+                contacts[i, lay.LIFT] = lift
+                contacts[i, lay.RAMP] = image * slope * (v + lever * bend * v)
+                contacts[i, lay.WAS_DEPTH] = contacts[i, lay.DEPTH]
+                depth = image * level - feet[k, lay.HEIGHT] - points[i, lay.ARM] * feet[k, lay.PITCH]
+                contacts[i, lay.DEPTH] = points[i, lay.INSET] + face * depth
+                contacts[i, lay.CLOSING] = face * (lift - feet[k, lay.CLIMB] - points[i, lay.ARM] * feet[k, lay.TURN])
+                contacts[i, lay.RISE] = along - contacts[i, lay.BEFORE]
+
+
+@inline(fastmath=FAST)
+def set_shapes(
+    dt: float, rows: Array, n_complex: int, table: Array, edges: Array, points: Array, contacts: Array,
+    indices: Indices, shapes: Array,
+) -> None:  # fmt: skip
+    """Shapes of all rows at every point in mid-step, tangential and normal, and their mean responses.
+
+    `shapes` (4, points, columns): a tangential force acts on -lever times the slope of the material and on w' times its
+    rise, a normal one on the depth of the point, square to the surface: on the rise there, and by w' lever on the turn
+    over the point. The other two are G/dt times these, times the weight: a force f at point j changes the mean speed at
+    point i by the product of shape i and response j.
+    """
+    n = rows.shape[1]
+    for i in range(points.shape[0]):
+        piece, at, above, slope = (
+            indices[i, lay.PIECE],
+            contacts[i, lay.AT],
+            contacts[i, lay.ABOVE],
+            contacts[i, lay.SLOPE],
+        )
+        length = edges[piece + 1] - edges[piece]
+        lever, stretch, side = points[i, lay.LEVER], np.sqrt(1.0 + slope * slope), points[i, lay.FACE] * points[i, lay.IMAGE]
+        lean, weight = slope * lever / length, points[i, lay.WEIGHT] / dt
+        for j in range(n + n_complex):
+            value, first, here, turn = 0.0, 0.0, 0.0, 0.0
+            for d in range(table.shape[1] - 1, -1, -1):
+                first = first * at + value
+                value = value * at + table[piece, d, j]
+                turn = turn * above + here
+                here = here * above + table[piece, d, j]
+            shapes[0, i, j] = (slope * value - lever * first / length) / stretch
+            shapes[1, i, j] = side * (value + lean * turn)
+        for s in range(2):
+            for j in range(n - n_complex):
+                shapes[2 + s, i, j] = weight * rows[lay.GAIN_RE, j] * shapes[s, i, j]
+            for j in range(n - n_complex, n):
+                k, real, imaginary = j + n_complex, rows[lay.GAIN_RE, j], rows[lay.GAIN_IM, j]
+                shapes[2 + s, i, j] = weight * (real * shapes[s, i, j] - imaginary * shapes[s, i, k])
+                shapes[2 + s, i, k] = -weight * (real * shapes[s, i, k] + imaginary * shapes[s, i, j])

@@ -1,0 +1,277 @@
+"""A driven linear beam in time as complex modal rows and rows of the drive, stage by stage."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+from msgspec.structs import replace
+
+from verify.arrays import Array, ComplexArray
+from verify.dynamics.excitation import CONSTANT, NO_ROWS, Forced, Rows, forced_response, modal_rows
+from verify.linear.positions import SLACK
+from verify.linear.registry import MODELS
+from verify.linear.surface import LEFT_BEAM, ContactRange
+from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
+from verify.problem.beam import Beam, PointForce
+
+if TYPE_CHECKING:
+    from verify.linear.field import HarmonicField
+
+EXACT_DEGREE = 8
+"""Degree of the polynomials for the exact steady field, 0.3 rad of its waves a piece: rounding."""
+
+
+class Steps(msgspec.Struct, frozen=True):
+    """Equal steps of a stretch of time."""
+
+    n: int
+    dt: float
+    every: int
+    """Steps from sample to sample."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return self.n * self.dt
+
+
+def cut(duration: float, longest: float, samples: int) -> Steps:
+    """Equal steps no longer than `longest`, a whole number of them from sample to sample."""
+    every = max(int(np.ceil(duration / longest / samples * (1.0 - 1e-12))), 1)
+    return Steps(every * samples, duration / (every * samples), every)
+
+
+class Growth(msgspec.Struct, frozen=True, eq=False):
+    """A stretch of time in which the forces' amplitude is one polynomial of (t / duration)."""
+
+    steps: Steps
+    coefficients: Array
+
+
+class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A stretch of time in which the forces keep one envelope; its own time begins at 0."""
+
+    rows: Rows
+    forced: Forced | None
+    """None where the drive's rows are a steady field."""
+    shapes: Callable[[Array, int], Any]
+    """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 where no mode is free."""
+    field: Callable[[Array, int, Any], ComplexArray]
+    """(x, derivative, psi) -> shapes of the drive, one for each power of t, (degree + 1, len(x)), m."""
+    edges: Array
+    """(pieces + 1,), m: between them all shapes are polynomials of `degree`."""
+    degree: int
+    omega: float
+    origin: float
+    """Seconds before the stage begins."""
+    unit_s: float
+    envelope: Array
+    """Amplitude of the forces as a polynomial in t / unit_s."""
+    steps: Steps
+    complex_rows: int = 0
+    """Rows with a complex psi, the last ones."""
+    ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
+    """What a slider did that is beyond the first edge, and beyond the last."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return self.steps.duration
+
+    @property
+    def sample_times(self) -> Array:
+        """Times of the samples, (n,), seconds from the start of the stage, which is not among them."""
+        return self.steps.every * self.steps.dt * np.arange(1.0, self.steps.n // self.steps.every + 1)
+
+    def columns(self, x: Array, derivative: int = 0) -> Array:
+        """All shapes at x, (columns, len(x)): real parts of psi, imaginary parts of the complex rows, the drive's.
+
+        The drive has two for each power of t, the real and the imaginary part.
+        """
+        psi = self.shapes(x, derivative)
+        imaginary = psi[len(psi) - self.complex_rows :].imag
+        return np.concatenate([psi.real, imaginary, interleaved(self.field(x, derivative, psi).T).T])
+
+    def factors(self, z: ComplexArray, t: Array) -> Array:
+        """Factors of the columns for free rows z, (len(t), n), at the times t: (len(t), columns)."""
+        imaginary = z[:, z.shape[1] - self.complex_rows :].imag
+        return np.concatenate([z.real, -imaginary, self.drive_factors(t)], axis=1)
+
+    def table(self, first: int, last: int) -> Array:
+        """Polynomials of pieces first..last-1, (pieces, degree + 1, columns)."""
+        return taylor_table(self.columns, self.edges, first, last, self.degree)
+
+    def drive_shapes(self, x: Array, derivative: int) -> ComplexArray:
+        """Shapes of the drive, one for each power of t, (degree + 1, len(x)), m per metre^derivative."""
+        return self.field(x, derivative, self.shapes(x, derivative))
+
+    def drive_factors(self, t: Array) -> Array:
+        """Factors of the drive's columns, (len(t), 2 (degree + 1)): real part and minus the imaginary part."""
+        powers = 1 if self.forced is None else self.forced.forward.shape[1]
+        factors = (t[:, None] / self.unit_s) ** np.arange(powers) * np.exp(1j * self.omega * (t[:, None] + self.origin))
+        return interleaved(factors.conj())
+
+    def rates_at_start(self, z: ComplexArray) -> Array:
+        """Time derivatives of the factors at time 0 for free rows z, (columns,)."""
+        rates, drive = (
+            self.rows.rates * z,
+            np.zeros(1 if self.forced is None else self.forced.forward.shape[1], complex),
+        )
+        drive[0] = 1j * self.omega
+        drive[1:2] = 1.0 / self.unit_s
+        drive *= np.exp(1j * self.omega * self.origin)
+        return np.concatenate(
+            [rates.real, -rates[len(rates) - self.complex_rows :].imag, interleaved(drive[None].conj())[0]]
+        )
+
+    def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
+        """Closed form, (len(t), len(x)), m: free rows from z at t = 0, and the drive."""
+        return np.asarray(self.factors(self.rows.after(z, t), t) @ self.columns(x))
+
+    def free(self, z: ComplexArray) -> ComplexArray:
+        """The free part at the start of a motion that begins with z, (n,)."""
+        return z - self.forced.at(0.0) if self.forced else z
+
+    def whole(self, z: ComplexArray, t: float) -> ComplexArray:
+        """All of the motion at time t where its free part is z, (n,)."""
+        return z + self.forced.at(t) if self.forced else z
+
+    def beyond(self, first: float, last: float) -> str:
+        """What a slider with points from `first` to `last`, m, did that is beyond an edge."""
+        return self.ends[0 if self.edges[0] - first > last - self.edges[-1] else 1]
+
+    def within(self, contact: ContactRange) -> "Stage":
+        """The same for a slider that stays in a range of the beam: the pieces end there."""
+        if contact.ends == self.ends:  # the whole beam
+            return self
+        near = SLACK * float(self.edges[-1])
+        inner = self.edges[(self.edges > contact.start + near) & (self.edges < contact.end - near)]
+        return replace(self, edges=np.concatenate([[contact.start], inner, [contact.end]]), ends=contact.ends)
+
+    def stepped(self, longest: float, closer: int = 1) -> "Stage":
+        """The same in steps no longer than `longest`, with `closer` times as many samples."""
+        return replace(self, steps=cut(self.duration, longest, closer * (self.steps.n // self.steps.every)))
+
+
+def interleaved(amplitudes: ComplexArray) -> Array:
+    """Real and imaginary parts in turns, (n, k) complex -> (n, 2 k)."""
+    return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), 2 * amplitudes.shape[1])
+
+
+def basis_of(beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline") -> TimeBasis:
+    """The free modes of a model by name. Raises InputError."""
+    return MODELS.named(model).build(beam, count).time_basis(modes=modes, line=line)
+
+
+def stages_from_rest(
+    basis: TimeBasis,
+    forces: Sequence[PointForce],
+    omega: float,
+    damping: Ratio,
+    pieces: Sequence[Growth],
+    origin: float,
+) -> list[Stage]:
+    """One stage for every piece of the forces' envelope, with the steady response of truncated modes."""
+    rows, stages = modal_rows(basis, forces, damping), []
+    tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail else None
+    if tail:  # its third derivative jumps where a force acts
+        basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
+    for piece in pieces:
+        forced = forced_response(rows, omega, piece.coefficients, piece.steps.duration, origin)
+        stages.append(
+            Stage(
+                rows=rows,
+                forced=forced,
+                shapes=basis.shapes,
+                field=_forced_field(forced, tail, piece.coefficients),
+                edges=_to_the_end(basis.edges, basis.beam),
+                degree=basis.degree,
+                omega=omega,
+                origin=origin,
+                unit_s=piece.steps.duration,
+                envelope=piece.coefficients,
+                steps=piece.steps,
+            )
+        )
+        origin += piece.steps.duration
+    return stages
+
+
+def _forced_field(
+    forced: Forced, tail: Callable[[Array, int], ComplexArray] | None, envelope: Array
+) -> Callable[[Array, int, Any], ComplexArray]:
+    """`Stage.field` of the forced rows and of the truncated modes, which follow the envelope at once."""
+    growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
+
+    def field(x: Array, derivative: int, psi: Any) -> ComplexArray:
+        shapes = forced.drive_shapes(psi)
+        return shapes + np.outer(growth, tail(x, derivative)) if tail else shapes
+
+    return field
+
+
+def steady_stage(
+    harmonic: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio
+) -> Stage:
+    """A beam in its steady state; with a basis, its modes are at rest at first and respond to contact forces."""
+    edges, degree = steady_edges(harmonic)
+    if basis:
+        edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
+
+    def field(x: Array, derivative: int, psi: Any) -> ComplexArray:
+        # w'''' = k^4 w between the forces of a uniform exact beam, whose field has four derivatives
+        higher, rest = divmod(derivative, 4) if harmonic.count is None and harmonic.beam.uniform else (0, derivative)
+        return np.asarray(harmonic.shapes(x, rest) * harmonic.wavenumber ** (4 * higher))[None, :]
+
+    return Stage(
+        rows=modal_rows(basis, (), damping) if basis else NO_ROWS,
+        forced=None,
+        shapes=basis.shapes if basis else lambda x, derivative: np.empty((0, len(x))),
+        field=field,
+        edges=_to_the_end(edges, harmonic.beam),
+        degree=degree,
+        omega=harmonic.omega,
+        origin=origin,
+        unit_s=1.0,
+        envelope=CONSTANT,
+        steps=steps,
+    )
+
+
+def _to_the_end(edges: Array, beam: Beam) -> Array:
+    """Edges of which the last is the beam's end to the last digit."""
+    return np.append(edges[:-1], beam.length)
+
+
+def steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
+    """Edges of the polynomial pieces of a steady field, m, and their degree."""
+    beam = harmonic.beam
+    if harmonic.count is not None:
+        from verify.linear.mesh import divide
+
+        parts: Any = divide(beam, harmonic.count)
+        return np.asarray(parts.nodes * parts.unit), 3
+    softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
+    cells = int(np.ceil(beam.length * abs(harmonic.wavenumber) * softest**0.25 / 0.3)) + 1
+    steps = np.cumsum([piece.length for piece in beam.pieces[:-1]])
+    attached = [*(m.position for m in beam.mass), *(s.position for s in beam.spring)]
+    places = [*(f.position for f in harmonic.forces), *steps, *attached]
+    return np.union1d(np.linspace(0.0, beam.length, cells + 1), places), EXACT_DEGREE
+
+
+def damped_field(
+    model: str,
+    count: int | None,
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    damping: float | None,
+) -> "HarmonicField":
+    """The steady field of a model with this damping ratio, the beam's own damping for None. Raises InputError."""
+    kind, modal_damping = MODELS.named(model), 0.0
+    if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
+        # the exact beam has no modes to damp: a loss factor of twice the ratio stands for it
+        modal_damping = damping if kind.sized else 0.0
+        beam = replace(beam, loss_factor=0.0 if kind.sized else 2.0 * damping)
+    return kind.build(beam, count).harmonic(tuple(forces), frequency_hz, modal_damping=modal_damping)

@@ -1,0 +1,298 @@
+"""The compiled contact engine, stage by stage: rows and tables of a stage, chunks of the loop, raw samples."""
+
+from collections.abc import Callable, Sequence
+from time import thread_time
+
+import msgspec
+import numpy as np
+
+from verify.arrays import Array, ComplexArray, Indices
+from verify.dynamics import layout as lay
+from verify.dynamics.linear_system import Stage, interleaved
+
+CHUNK = 20_000
+"""Steps between two checks for an interrupt."""
+EVENTS = 20_000
+"""Capacity of the event log."""
+SPANS = 12
+"""Spans between events in a step, as in `friction`."""
+RESOLVED = 1.5
+"""Radians and nepers per step of a row beyond which rates are means over the step."""
+REACH = 8
+"""Pieces of a table on each side of the points."""
+
+
+class Contacts(msgspec.Struct, eq=False, kw_only=True):
+    """Sliders with their points on a beam, as arrays in the columns of `layout`; advanced in place by `run_stages`.
+
+    `contact_assembly` fills them in; a run continues from copies of `sliders`, `feet` and `contacts`.
+    """
+
+    start: float
+    """Position of the first slider at the start, m; distances and edges count from it, so that nanometres are exact."""
+    sliders: Array
+    """(sliders, SLIDER)"""
+    feet: Array
+    """(feet, FOOT); (0, FOOT) for points without feet."""
+    points: Array
+    """(points, POINT), in the order of the sliders; OFFSET from `start`, also of a second slider's points."""
+    contacts: Array
+    """(points, CONTACT)"""
+    indices: Indices
+    """(points, 3)"""
+    law: int
+    """GIVEN, BILATERAL or SPRING, of all points."""
+    two_way: bool
+    presses: bool
+    """Whether normal forces act on the beam of a two-way run."""
+    following: bool = False
+    gravity: float = 0.0
+    """m/s^2, along the slope for kinematics "following"."""
+    moving_load: bool = False
+    """Whether the run goes on without contact after a point has left the beam: a prescribed speed without friction."""
+    restitution: float | None = None
+    """Of rigid contact (`impact`): one point with a foot, one-way; None for the laws above."""
+
+
+class Recorded(msgspec.Struct, eq=False, kw_only=True):
+    """Raw samples, events and sums of a run; the sample before the first step is not among them."""
+
+    samples: Array
+    """(n, sliders, KEPT)"""
+    heights: Array
+    """(n, feet, 2): height and pitch."""
+    pressures: Array
+    """(n, points): normal forces."""
+    deflections: Array
+    """(n, places)"""
+    events: Array
+    """(m, 4): time, kind, point, distance travelled."""
+    n_events: int
+    """Events altogether, also beyond the capacity of `events`."""
+    sums: Array
+    """(sliders, SUMS)"""
+    balance: Array
+    """(BALANCE,)"""
+    n_steps: int
+    loop_s: float
+    """Processor time of the compiled loop."""
+    set_up_s: float
+    """Processor time of tables and arrays."""
+    stopped: str
+    """"end", "left the beam" and the like (`Stage.beyond`), "diverged", "interrupted" or "chatters"."""
+    z: ComplexArray
+    """All of the motion of every row at the end, (n,)."""
+    first: Array
+    """(sliders, KEPT), before the first step: speed; of points without feet the friction law and the surface speed."""
+
+
+def run_stages(
+    stages: Sequence[Stage],
+    z: ComplexArray,
+    contacts: Contacts,
+    places: Array,
+    *,
+    accounts: bool = False,
+    progress: Callable[[int], None] = lambda steps: None,
+) -> Recorded:
+    """Advance a beam and its sliders through all stages.
+
+    Parameters
+    ----------
+    stages : sequence of Stage
+        Their `steps` set step, number of steps and sampling.
+    z : (n,) complex
+        Free part of the rows at the start of the first stage.
+    contacts : Contacts
+        Advanced in place; sums start at zero.
+    places : (p,) array
+        Positions of the deflection samples, m.
+    accounts : bool
+        Whether the work of the drive and the loss of the modes are integrated.
+    progress : callable
+        Called with the number of steps done.
+    """
+    run = _Run(stages, contacts, places, accounts)
+    stopped = "end"
+    for i, stage in enumerate(stages):
+        z = z if i == 0 else stage.free(z)
+        stopped = run.stage(stage, z, progress)
+        z = stage.whole(run.z, run.time(stage))
+        if stopped != "end":
+            break
+    run.store(stages[-1].steps.dt)
+    n = int(run.tally[lay.SAMPLES])
+    n_events = int(run.tally[lay.EVENTS])
+    return Recorded(
+        samples=run.samples[:n],
+        heights=run.heights[:n],
+        pressures=run.pressures[:n],
+        deflections=run.deflections[:n],
+        events=run.events[: min(n_events, EVENTS)],
+        n_events=n_events,
+        sums=run.sums,
+        balance=run.balance,
+        n_steps=run.n_steps,
+        loop_s=run.loop_s,
+        set_up_s=run.set_up_s,
+        stopped=stopped,
+        z=z,
+        first=run.first,
+    )
+
+
+class _Run:
+    """State and records of a run."""
+
+    def __init__(self, stages: Sequence[Stage], contacts: Contacts, places: Array, accounts: bool) -> None:
+        samples = sum(stage.steps.n // stage.steps.every for stage in stages)
+        n, n_sliders, n_feet = len(contacts.points), len(contacts.sliders), len(contacts.feet)
+        self.contacts, self.places = contacts, places
+        self.samples = np.zeros((samples, n_sliders, lay.KEPT))
+        self.heights, self.pressures = np.zeros((samples, n_feet, 2)), np.zeros((samples, n))
+        self.deflections, self.events = np.zeros((samples, len(places))), np.zeros((EVENTS, 4))
+        self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
+        self.balance, self.tally = np.zeros(lay.BALANCE), np.zeros(3, dtype=np.int64)
+        self.spans, self.block = np.zeros((n, 4 + 2 * SPANS)), np.zeros((n, n + 1))
+        self.first = np.zeros((n_sliders, lay.KEPT))
+        self.couplings = np.zeros((2, n, n))
+        self.feet_of = np.zeros(n_feet, dtype=np.int64)
+        self.feet_of[contacts.indices[:, lay.OF_FOOT][: n * bool(n_feet)]] = contacts.indices[:, lay.OF_SLIDER]
+        self.accounts, self.n_steps, self.loop_s, self.set_up_s = accounts, 0, 0.0, 0.0
+        self.z: ComplexArray = np.empty(0, dtype=complex)
+
+    def time(self, stage: Stage) -> float:
+        """Seconds of the stage so far."""
+        return float(self.tally[lay.STEP] * stage.steps.dt)
+
+    def stage(self, stage: Stage, z: ComplexArray, progress: Callable[[int], None]) -> str:
+        """One stage from free rows z in chunks; why it ended."""
+        from verify.dynamics.integrator import advance
+
+        began, contacts, n = thread_time(), self.contacts, len(z)
+        rows, drive = rows_of(stage, z), np.array([stage.omega, stage.origin, stage.unit_s], dtype=float)
+        places = np.ascontiguousarray(stage.columns(self.places).T) if len(self.places) else np.zeros((0, 0))
+        columns = stage.columns(stage.edges[:1]).shape[0]
+        own = n + (n if np.iscomplexobj(stage.shapes(stage.edges[:1], 0)) else 0)
+        forced, loads = np.zeros((n, columns - own)), np.array([stage.rows.loads.real, stage.rows.loads.imag])
+        growth = np.zeros(0)
+        if self.accounts and stage.forced is not None:
+            forced[:] = interleaved(stage.forced.forward + stage.forced.backward)
+            growth = np.array(stage.envelope, dtype=float)
+        codes = np.zeros(lay.CODES, dtype=np.int64)
+        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = contacts.law, contacts.two_way, contacts.two_way and contacts.presses
+        codes[[lay.FOLLOWING, lay.COMPLEX, lay.ACCOUNTS]] = contacts.following, own - n, self.accounts
+        factors, two_way = np.zeros((4, 2, columns)), contacts.two_way
+        shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
+        self.tally[lay.STEP], first = 0, self._around(stage)
+        why, steps = "end", self.n_steps
+        try:
+            while first is not None and self.tally[lay.STEP] < stage.steps.n:
+                edges = stage.edges[first[0] : first[1] + 1] - contacts.start
+                table = stage.table(*first)
+                local = np.zeros((len(table), 2, stage.degree + 1))
+                stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
+                contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self._positions())
+                self.set_up_s += thread_time() - began
+                arrays = (
+                    contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet, contacts.points,
+                    contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes, response,
+                    self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples, self.heights,
+                    self.pressures, self.deflections, self.events, self.tally, self.sums, self.before, self.balance,
+                )  # fmt: skip
+                if self.n_steps == 0:
+                    advance(0, 1, stage.steps.dt, *arrays)
+                    self._sample_first()
+                while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
+                    began = thread_time()
+                    n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
+                    reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
+                    self.loop_s += thread_time() - began
+                    self.n_steps = steps + int(self.tally[lay.STEP])
+                    progress(self.n_steps)
+                if reason == lay.NOT_FINITE:
+                    why = "diverged"
+                    break
+                began, last = thread_time(), first
+                first = self._around(stage)
+                if reason == lay.OFF_PIECES and first == last:
+                    first = None
+        except KeyboardInterrupt:  # the loop advances all arrays together
+            why = "interrupted"
+        self.z = rows[lay.Z_RE] + 1j * rows[lay.Z_IM]
+        if why == "end" and self.tally[lay.STEP] < stage.steps.n:
+            if contacts.moving_load:
+                self._go_on(stage)
+            else:
+                x = contacts.start + self._positions()
+                why = stage.beyond(float(x.min()), float(x.max()))
+        return why
+
+    def _sample_first(self) -> None:
+        """The state before the first step; a slider in contact with feet has friction from the first step on."""
+        sliders, contacts = self.contacts.sliders, self.contacts.contacts
+        self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
+        self.first[:, lay.KEPT_TOUCH] = 1.0
+        if self.contacts.law == lay.SPRING:
+            load = self.contacts.points[:, lay.STIFF] * np.maximum(contacts[:, lay.DEPTH], 0.0)
+            self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
+            self.first[:, lay.KEPT_SURFACE] = np.nan
+            return
+        load, slip, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.V] - contacts[:, lay.START], sliders[:, lay.STEEPNESS]
+        law = np.where(steepness > 0.0, np.tanh(steepness * slip), np.sign(slip))
+        self.first[:, lay.KEPT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
+        self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
+
+    def store(self, dt: float) -> None:
+        """Energy of the normal springs at the end of the last step, with the depths of its middle drawn on."""
+        p, c, feet = self.contacts.points, self.contacts.contacts, self.contacts.feet
+        if len(feet):
+            foot = feet[self.contacts.indices[:, lay.OF_FOOT]]
+            climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
+            depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
+            np.add.at(self.sums[:, lay.STORED], self.contacts.indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2)
+
+    def _positions(self) -> Array:
+        """Points from the start of the first slider, (points,), m, half a step on for feet."""
+        contacts = self.contacts
+        x, owner = contacts.sliders[:, lay.X], contacts.indices[:, lay.OF_SLIDER]
+        return np.asarray(x[owner] + contacts.points[:, lay.OFFSET])
+
+    def _around(self, stage: Stage) -> tuple[int, int] | None:
+        """The pieces around all points, first and end, or None where a point is off the beam."""
+        edges, x = stage.edges - self.contacts.start, self._positions()
+        if x.min() < edges[0] or x.max() > edges[-1]:
+            return None
+        pieces = len(edges) - 1
+        low, high = np.clip(np.searchsorted(edges, [x.min(), x.max()], side="right") - 1, 0, pieces - 1)
+        return max(int(low) - REACH, 0), min(int(high) + 1 + REACH, pieces)
+
+    def _go_on(self, stage: Stage) -> None:
+        """The beam alone, after a moving load has left it, to the end of the stage."""
+        begun, dt = int(self.tally[lay.STEP]), stage.steps.dt
+        rest = np.arange(begun // stage.steps.every + 1, stage.steps.n // stage.steps.every + 1) * stage.steps.every
+        row = int(self.tally[lay.SAMPLES])
+        free = stage.rows.after(self.z, (rest - begun) * dt)
+        shapes, x = stage.shapes(self.places, 0), self.contacts.sliders[:, lay.X]
+        drive = stage.drive_factors(rest * dt) @ interleaved(stage.drive_shapes(self.places, 0).T).T
+        self.deflections[row : row + len(rest)] = (free @ shapes).real + drive
+        speed = self.contacts.sliders[:, lay.V]
+        self.samples[row : row + len(rest), :, lay.KEPT_X] = x + np.multiply.outer((rest - begun) * dt, speed)
+        self.samples[row : row + len(rest), :, lay.KEPT_V] = speed
+        self.contacts.sliders[:, lay.X] += (stage.steps.n - begun) * dt * speed
+        self.z = stage.rows.after(self.z, (stage.steps.n - begun) * dt)
+        self.tally[lay.STEP], self.tally[lay.SAMPLES] = stage.steps.n, row + len(rest)
+
+
+def rows_of(stage: Stage, z: ComplexArray) -> Array:
+    """The rows of a stage in state z as the kernels read them, (ROW, n)."""
+    rate, dt = stage.rows.rates, stage.steps.dt
+    grown = np.expm1(rate * dt)
+    gain = stage.rows.participations * np.where(rate == 0.0, dt, grown / np.where(rate == 0.0, 1.0, rate))
+    coarse = abs(rate) * dt > RESOLVED
+    end = np.where(coarse, gain / dt, stage.rows.participations * grown)
+    half, rows = np.exp(0.5 * rate * dt), np.empty((lay.ROW, len(z)))
+    for first, value in ((lay.Z_RE, z), (lay.RATE_RE, rate), (lay.HALF_RE, half), (lay.GAIN_RE, gain), (lay.END_RE, end)):
+        rows[first], rows[first + 1] = value.real, value.imag
+    rows[lay.COARSE] = coarse
+    return rows

@@ -1,0 +1,118 @@
+"""Sliders on a pure travelling wave w = A cos(omega t - k x), integrated in time: the closed forms' own conditions."""
+
+from math import cos, isfinite, pi
+
+import numpy as np
+from msgspec.structs import replace
+
+from verify.arrays import Array, ComplexArray
+from verify.dynamics import layout as lay
+from verify.dynamics.contact_assembly import assemble
+from verify.dynamics.excitation import CONSTANT, NO_ROWS
+from verify.dynamics.linear_system import EXACT_DEGREE, Stage, Steps, cut
+from verify.dynamics.stepping import run_stages
+from verify.errors import InputError
+from verify.exact.closed_forms import check_uniform
+from verify.motor.steady_state import Means
+from verify.problem.beam import Beam
+from verify.problem.slider import Contact, Foot, Slider
+from verify.validation import check_number, check_whole
+
+STEPS = 1024
+"""Steps of a point in a period."""
+
+
+def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 0.0) -> Stage:
+    """One period of the wave as a slider of mean speed `mean`, m/s, meets it. Raises InputError for a stepped beam."""
+    check_uniform(beam)
+    omega = 2.0 * pi * frequency_hz
+    k = float(np.sqrt(omega / beam.wave_constant))
+
+    return Stage(
+        rows=NO_ROWS,
+        forced=None,
+        shapes=lambda x, derivative: np.empty((0, len(x))),
+        field=lambda x, derivative, psi: (amplitude * (-1j * k) ** derivative * np.exp(-1j * k * x))[None],
+        edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2),
+        degree=EXACT_DEGREE,
+        omega=omega,
+        origin=0.0,
+        unit_s=1.0,
+        envelope=CONSTANT,
+        steps=Steps(STEPS, 2.0 * pi / (omega - k * mean) / STEPS, STEPS),
+    )
+
+
+def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: float) -> float:
+    """Mean speed along +x, m/s, of the periodic motion of a slider that never loses contact, tanh friction.
+
+    Root of the change of its speed over a period of the wave as the slider meets it. Raises InputError without one.
+    """
+    from scipy.optimize import brentq
+
+    check_number("amplitude", amplitude, "metres", above=0)
+    slider.check_stays()
+    slider, start, mean = replace(slider, coupling="one-way"), slider.start_on(beam), 0.0
+    no_rows: ComplexArray = np.empty(0, dtype=complex)
+
+    def period(speed: float, stage: Stage) -> tuple[float, float]:
+        """(displacement, change of speed) over a period."""
+        contacts = assemble(beam, (slider,), (start,), (None,), (False,))
+        contacts.sliders[0, lay.V] = speed
+        run_stages([stage], no_rows, contacts, np.empty(0))
+        travelled, reached = contacts.sliders[0, [lay.X, lay.V]]
+        if not isfinite(reached):
+            raise InputError(f"amplitude = {amplitude!r} m: the slider leaves so steep a wave, lower it")
+        return float(travelled), float(reached) - speed
+
+    for _ in range(3):
+        stage = wave_stage(beam, amplitude, frequency_hz, mean)
+        k = np.sqrt(stage.omega / beam.wave_constant)
+        reach = 2.0 * k * stage.omega * amplitude * (beam.surface_distance + amplitude)
+        if not period(-reach, stage)[1] > 0.0 > period(reach, stage)[1]:
+            raise InputError(f"amplitude = {amplitude!r} m: no periodic motion, raise mu or slope")
+        speed = brentq(lambda v, on=stage: period(v, on)[1], -reach, reach, xtol=1e-15 * reach, rtol=1e-14)
+        mean = period(float(speed), stage)[0] / stage.duration
+    return mean
+
+
+def foot_on_wave(
+    beam: Beam,
+    frequency_hz: float,
+    *,
+    speed_ratio: float,
+    contact_half_angle: float,
+    epsilon: float = 0.0,
+    mu: float = 0.2,
+    points: int = 61,
+    steps_per_period: int = 256,
+    amplitude: float = 1e-9,
+) -> tuple[Means, float]:
+    """(means over the third period, crest speed, m/s) of a rigid foot, one wavelength long, on a layer of springs.
+
+    It moves against the wave at `speed_ratio` times the crest speed, at the height at which a half angle of every crest
+    is in contact. `epsilon` = 2 mu kappa/(kappa_t k h) is its tangential compliance; Coulomb's law. Raises InputError.
+    """
+    check_number("contact_half_angle", contact_half_angle, "radians of the wave", above=0, below=pi)
+    check_number("speed_ratio", speed_ratio, "over the crest speed")
+    check_number("epsilon", epsilon, "2 mu kappa / (kappa_t k h)", at_least=0)
+    check_whole("points", points, 2)
+    check_whole("steps_per_period", steps_per_period, 4)
+    wave, periods = wave_stage(beam, amplitude, frequency_hz), 3  # compliance forgets its start within two
+    k = float(np.sqrt(wave.omega / beam.wave_constant))
+    length, thickness = 2.0 * pi / k, 2.0 * beam.surface_distance
+    steps = cut(periods * wave.duration, wave.duration / steps_per_period * (1.0 + 1e-9), periods)
+    edges: Array = np.linspace(-0.01 * length, 1.01 * length, int(np.ceil(2.0 * pi / 0.3)) + 2)
+    stage = replace(wave, edges=edges, steps=steps)
+    crest = beam.surface_distance * k * stage.omega * amplitude
+    along = 2.0 * mu / (epsilon * k * thickness) if epsilon else None
+    contact = Contact(layer_stiffness=1.0, layer_tangential_stiffness=along)
+    foot = Foot(length=length, points=points, offset=0.5 * length, pitches=False)
+    slider = Slider(mass=1.0, mu=mu, law="coulomb", contact=contact, foot=(foot,))
+    contacts = assemble(beam, (replace(slider, coupling="one-way"),), (0.0,), (-speed_ratio * crest,), (True,))
+    contacts.feet[:, lay.INVERSE_FOOT_MASS] = 0.0
+    contacts.feet[:, lay.HEIGHT] = amplitude * cos(contact_half_angle)
+    last = run_stages([stage], np.empty(0, dtype=complex), contacts, np.empty(0)).samples[-1, 0]
+    read = lay.KEPT_FRICTION, lay.KEPT_NORMAL, lay.KEPT_TOUCH, lay.KEPT_STUCK
+    works = last[[lay.KEPT_ALONG, lay.KEPT_LOSS]] * periods / stage.duration
+    return Means(*map(float, last[list(read)]), *map(float, works)), crest
