@@ -4,7 +4,7 @@ Rigid links cannot stretch, so that bending draws the tip in and accelerates the
 relative size (kL)^2 <theta^2>, which grows with the square of the force. Links that stretch by EA/l have part of it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil, pi, sqrt
 from typing import NamedTuple
@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array
+from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
-from verify.chain.motion import ChainMotion, ElasticMotion, Method, check_moved, from_rest, simulate
+from verify.chain.motion import ChainMotion, ElasticMotion, Method, Progress, check_moved, from_rest, simulate
 from verify.chain.statics import Bent, bend
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, axial_stiffness, build_system, link_at
 from verify.errors import InputError
@@ -23,8 +24,6 @@ from verify.segments.chain import link_inertia
 from verify.validation import check_number, check_whole
 
 CHAINS: dict[Inertia, Links] = {"full": "rigid", "transverse": "rigid", "elastic": "stretching"}
-Progress = Callable[[float], None]
-"""Called with the completed fraction of a motion, 0 to 1."""
 CANTILEVER = Beam(
     length=1.0, width=1.2, thickness=0.01, youngs_modulus=1e7, density=1000.0, supports=("clamped", "free")
 )
@@ -36,11 +35,6 @@ NODE = 1e-9
 
 def silent(part: float) -> None:
     """Show no progress."""
-
-
-def straight(system: ChainSystem) -> ChainState:
-    """The straight chain at rest."""
-    return ChainState(np.zeros(system.n_links), np.zeros(system.n_links))
 
 
 def cantilever_tip(load: float, count: int, wall: Wall = "gregory") -> Bent:
@@ -69,7 +63,7 @@ def hanging_frequency(mode: int, count: int) -> float:
     unit, zero = np.full(count, 1.0 / count), np.zeros(count)
     links = {"lengths": unit, "masses": unit, "inertias": link_inertia(unit, unit)}
     system = ChainSystem(**links, stiffness=zero, dashpots=zero, gravity=(1.0, 0.0))
-    return float(linearise(system, straight(system)).frequencies()[mode - 1])
+    return float(linearise(system, at_rest(system)).frequencies()[mode - 1])
 
 
 def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregory") -> float:
@@ -80,7 +74,7 @@ def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregor
     """
     check_whole("segments", count, mode)
     system = replace(build_system(CANTILEVER, count, wall=wall), rotation=Rotation(rate=speed * OMEGA))
-    return float(linearise(system, straight(system)).frequencies()[mode - 1]) / OMEGA
+    return float(linearise(system, at_rest(system)).frequencies()[mode - 1]) / OMEGA
 
 
 def _sine_shape(beam: Beam, count: int, amplitude: float, immovable: bool) -> tuple[ChainSystem, ChainState, float]:
@@ -91,8 +85,8 @@ def _sine_shape(beam: Beam, count: int, amplitude: float, immovable: bool) -> tu
     check_number("amplitude", amplitude / beam.length, "of the length at mid-span", above=0, at_most=0.1)
     system = build_system(beam, count, immovable=immovable)
     rise = np.diff(amplitude * np.sin(pi * np.arange(count + 1) / count)) / system.lengths
-    start = ChainState(np.diff(np.arcsin(rise), prepend=0.0), np.zeros(count))
-    return system, start, float(linearise(system, straight(system)).frequencies()[0])
+    start = at_rest(system, np.diff(np.arcsin(rise), prepend=0.0))
+    return system, start, float(linearise(system, at_rest(system)).frequencies()[0])
 
 
 def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress: Progress = silent) -> float:
@@ -150,7 +144,7 @@ def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progr
         loads=(load,),
     )
     times = np.linspace(0.0, 1.0 / OMEGA, 17)
-    motion = simulate(system, straight(system), times, tolerance=tolerance, progress=progress)
+    motion = simulate(system, at_rest(system), times, tolerance=tolerance, progress=progress)
     check_moved(motion)
     return float(abs(motion.residual()).max() / motion.dissipated[-1])
 
@@ -183,7 +177,7 @@ def linear_deflection(system: ChainSystem, times: Array, x: float) -> Array:
     from scipy.linalg import eigh
 
     check_number("x", x, "metres, on the chain", at_least=0, at_most=system.length)
-    linear = linearise(system, straight(system))
+    linear = linearise(system, at_rest(system))
     basis = linear.independent()
     values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
     modes, omega = basis @ vectors, np.sqrt(np.maximum(values, 0.0))

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from verify import options
 from verify.errors import InputError
+from verify.problem.beam import PointForce
 from verify.quantities.base import Place, Scene, quantity
 from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall
 from verify.quantities.slider import SliderOptions, TimeOptions, motion_arguments
@@ -23,7 +24,6 @@ TipComponent = Annotated[Literal["deflection", "shortening"], Meta(description="
 HubSpeed = Annotated[float, Meta(ge=0, le=1e3, description="of the hub, in sqrt(EI / (rho A L^4))")]
 Gyrations = Annotated[float, Meta(gt=0, description="at mid-span, in radii of gyration h / sqrt(12)")]
 Step = Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive")]
-Force = Annotated[float, Meta(gt=0, description="N, of every force")]
 Inertia = Annotated[
     options.Inertia, Meta(description="transverse: rigid, none along x; elastic: links stretch by EA / l")
 ]
@@ -95,58 +95,48 @@ def contact_line_error(scene: Scene, *, segments: Links, mode: Mode, x: Place) -
     return contact_line_error(scene.beam, mode, segments, x)
 
 
-def _from_rest(scene: Scene, time: TimeOptions) -> dict[str, Any]:
-    """Arguments of a simulation from rest, undamped, without soft start. Raises InputError for a [motion] of others."""
+def _drive(scene: Scene, time: TimeOptions) -> tuple[tuple[PointForce, ...], float, float]:
+    """(forces, Hz, s) of a motion from rest, undamped, without soft start. Raises InputError for another [motion]."""
     if scene.motion is None and time.soft_start_periods is None:
         time = replace(time, soft_start_periods=0.0)
     request = motion_arguments(scene, time)
     for name, needed in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
         if (request[name] or 0.0) != needed:
             raise InputError(f"{name} = {request[name]!r}: a chain starts from rest and is undamped, give {needed!r}")
-    return request
+    return request["forces"], request["frequency_hz"], request["duration"]
+
+
+class FromRest(msgspec.Struct, frozen=True, kw_only=True):
+    """The nonlinear chain from rest under the scene's forces."""
+
+    segments: Links
+    time: Seconds = 1e-3
+    force: ForceAmplitude | None = None
 
 
 @quantity("chain.transient_deflection", unit="m")
-def transient_deflection(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    segments: Links,
-    time: Seconds,
-    x: Place,
-    force: ForceAmplitude | None = None,
-) -> float:
+def transient_deflection(scene: Scene, cache: "SolutionCache", run: FromRest, *, x: Place) -> float:
     """Deflection of the chain at x after a time from rest under the scene's forces."""
     from verify.chain.benchmarks import transient
 
-    request = _from_rest(scene, TimeOptions(model="analytic", time=time, force=force))
-    forces, hertz = request["forces"], request["frequency_hz"]
-    motion = transient(scene.beam, forces, hertz, [time], segments, progress=cache.progress)
+    forces, hertz, time = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
+    motion = transient(scene.beam, forces, hertz, [time], run.segments, progress=cache.progress)
     return float(motion.deflection([x])[0, 0])
 
 
 @quantity("chain.axial_departure", unit="1")
 def axial_departure(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    segments: Links,
-    force: Force,
-    time: Seconds = 1e-3,
-    inertia: Inertia = "full",
-    of: Reading = "end",
+    scene: Scene, cache: "SolutionCache", run: FromRest, *, inertia: Inertia = "full", of: Reading = "end"
 ) -> float:
     """Deflection of the nonlinear chain at mid-span less the linear one's from rest, over the rms of the latter."""
     from verify.chain.benchmarks import departure
 
-    request = _from_rest(scene, TimeOptions(model="analytic", time=time, force=force))
-    forces, hertz = request["forces"], request["frequency_hz"]
-    found = departure(scene.beam, forces, hertz, time, segments, inertia=inertia, progress=cache.progress)
-    return float(getattr(found, of))
+    drive = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
+    return float(getattr(departure(scene.beam, *drive, run.segments, inertia=inertia, progress=cache.progress), of))
 
 
-class ChainRideOptions(msgspec.Struct, frozen=True, kw_only=True):
-    """Time integration of the nonlinear chain from rest."""
+class Ride(msgspec.Struct, frozen=True, kw_only=True):
+    """Time integration of the scene's slider on the nonlinear chain, from rest."""
 
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
@@ -154,39 +144,37 @@ class ChainRideOptions(msgspec.Struct, frozen=True, kw_only=True):
     soft_start_periods: SoftStart | None = None
 
     def run(self, scene: Scene, cache: "SolutionCache", options: SliderOptions) -> "ChainRide":
-        """The scene's slider on the chain. Raises InputError."""
+        """The motion of the slider. Raises InputError."""
         from verify.chain.ride import ride_from_rest
 
         if scene.motion is None:
             raise InputError("motion is missing: a slider on a chain takes [motion] with its duration")
-        slider = options.of(scene)
         time = TimeOptions(model="analytic", force=self.force, soft_start_periods=self.soft_start_periods)
-        request = _from_rest(scene, time)
-        forces, hertz, seconds = request["forces"], request["frequency_hz"], request["duration"]
+        slider, (forces, hertz, duration) = options.of(scene), _drive(scene, time)
         step = options.step or 1.0 / (scene.motion.steps_per_period * hertz)
-        of = (scene.beam, forces, hertz, slider, self.segments, seconds)
-        key: Any = ("chain", *of, step, self.links)
+        case = (scene.beam, forces, hertz, slider, self.segments, duration)
+        key: Any = ("chain", *case, step, self.links)
         if key not in cache.motors:
-            cache.motors[key] = ride_from_rest(*of, step=step, links=self.links, progress=cache.progress)
-        found: ChainRide = cache.motors[key]
-        return found
+            cache.motors[key] = ride_from_rest(*case, step=step, links=self.links, progress=cache.progress)
+        motion: ChainRide = cache.motors[key]
+        return motion
 
 
 @quantity("chain.slider_displacement", unit="m")
-def slider_displacement(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, slider: SliderOptions) -> float:
+def slider_displacement(scene: Scene, cache: "SolutionCache", ride: Ride, slider: SliderOptions) -> float:
     """Displacement of the scene's slider along +x on the chain."""
-    return by.run(scene, cache, slider).displacement
+    return ride.run(scene, cache, slider).displacement
 
 
 @quantity("chain.slider_mean_speed", unit="m/s")
-def slider_mean_speed(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, slider: SliderOptions) -> float:
+def slider_mean_speed(scene: Scene, cache: "SolutionCache", ride: Ride, slider: SliderOptions) -> float:
     """Displacement of the slider on the chain over time."""
-    return by.run(scene, cache, slider).mean_speed
+    return ride.run(scene, cache, slider).mean_speed
 
 
 @quantity("chain.slider_imbalance", unit="1")
-def slider_imbalance(scene: Scene, cache: "SolutionCache", by: ChainRideOptions, slider: SliderOptions) -> float:
+def slider_imbalance(scene: Scene, cache: "SolutionCache", ride: Ride, slider: SliderOptions) -> float:
     """Residual of the slider's energy balance on the chain over its friction loss."""
-    ledger = by.run(scene, cache, slider).ledger
+    ledger = ride.run(scene, cache, slider).ledger
     assert ledger is not None
     return abs(ledger.residual) / ledger.rubbed

@@ -21,12 +21,11 @@ if TYPE_CHECKING:
     from verify.scene.model import Scene
 
 Forces: TypeAlias = tuple[Annotated[float, Meta(gt=0)], ...]
-NAMES: "dict[Inertia, str]" = {
-    "full": "rigid links",
-    "transverse": "without axial inertia",
-    "elastic": "stretching links",
+CHAINS: "dict[Inertia, tuple[str, str]]" = {
+    "full": ("rigid links", "#2f80ed"),
+    "transverse": ("without axial inertia", "#8f5bd1"),
+    "elastic": ("stretching links", "#cc3f76"),
 }
-COLORS = {"full": "#2f80ed", "transverse": "#8f5bd1", "elastic": "#cc3f76"}
 CAPTION = (
     "Over the rms deflection of the linear chain: solid at the end of the run, dashed rms over the run. Grey: (kL)² "
     "⟨θ²⟩, the size of the neglected term."
@@ -69,7 +68,7 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
         for force in sorted(self.forces):
             progress(f"chains under {force:g} N")
             forces, size = [replace(one, amplitude=force) for one in scene.forces], 0.0
-            for inertia, name in NAMES.items():
+            for inertia, (name, _) in CHAINS.items():
                 found = departure(scene.beam, forces, hertz, self.duration, self.count, x=self.x, inertia=inertia)
                 size = size or axial_inertia_size(scene.beam, hertz, found.slope**2)
                 rows.append((force, size, size <= NONLINEAR, name, found.end, found.rms))
@@ -79,16 +78,15 @@ class AxialInertia(Study, frozen=True, kw_only=True, forbid_unknown_fields=True)
         columns += [Column("departure at the end", format=".2e"), Column("departure, rms", format=".2e")]
 
         def draw(ax: "Axes") -> None:
-            for (inertia, color), name in zip(COLORS.items(), NAMES.values(), strict=True):
+            for name, color in CHAINS.values():
                 force, size, _, _, end, rms = zip(*(row for row in rows if row[3] == name), strict=True)
-                if inertia == "full":
-                    ax.loglog(force, size, color="#7d8590", linewidth=4.0, label="(kL)² ⟨θ²⟩")
                 ax.loglog(force, end, "-o", color=color, label=name)
                 ax.loglog(force, rms, "--o", color=color)
+            ax.loglog(force, size, color="#7d8590", linewidth=4.0, zorder=0, label="(kL)² ⟨θ²⟩")
             ax.set(xlabel="force, N", ylabel="relative departure")
             ax.legend()
 
-        force, *_, end, _ = rows[-len(NAMES)]
+        force, *_, end, _ = rows[-len(CHAINS)]
         return Result(
             summary=f"Rigid links depart from the linear chain by {100 * end:.3g} % at {force:g} N ({where}).",
             tables=[Table(f"Departure from the linear chain, {where}", columns, rows)],
