@@ -87,7 +87,7 @@ def from_tip(links: Array, pull: float, w: Array, out: Array) -> None:
         mx, my, p1, p2, ss = links[i, MASS_X], links[i, MASS_Y], w[i, FORCE_X], w[i, FORCE_Y], hs * hs
         # the recursion is as long as its latency: three fused products, a division, another product
         own = links[i, INERTIA] + links[i, SKEW] * ss
-        g = 1.0 / (own + b11 * ss - b12 * (2.0 * hs * hc) + b22 * (hc * hc))
+        g = 1.0 / ((own + b11 * ss) + (b22 * (hc * hc) - b12 * (2.0 * hs * hc)))
         u1, u2 = b12 * hc - (b11 + 0.5 * mx) * hs, (b22 + 0.5 * my) * hc - b12 * hs
         free = g * (w[i, TORQUE] + hc * (0.5 * p2 - f2) - hs * (0.5 * p1 - f1))
         unit = g * (hs * r1 - hc * r2)

@@ -117,9 +117,10 @@ def step_stages(
 ) -> None:  # fmt: skip
     """The result of a step into `new`, derivatives of stages 1 to s and at the result into k[1:]."""
     for s in range(1, c.size + 1):
+        first = h * a[s, 0]
         for i in range(y.size):
-            new[i] = y[i]
-        for j in range(s):
+            new[i] = y[i] + first * k[0, i]
+        for j in range(1, s):
             weight = h * a[s, j]
             if weight != 0.0:
                 for i in range(y.size):
