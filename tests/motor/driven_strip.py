@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from reference.motor import Waves, waves_of
 
 from verify.analytic_modes import ExactModel
+from verify.dynamics.simulate import simulate
 from verify.motor.run import run_motor
 from verify.problem.beam import Beam, PointForce
 
@@ -34,7 +35,11 @@ def drive(amplitude, backward=0.0):
 
 
 def on_strip(slider, amplitude=1e-6, backward=0.0, periods=5, steps=None, **asked):
-    """A motor on the steady exact strip, from MIDDLE on unless the slider says where; `steps` per period."""
+    """A motor on the steady exact strip, from MIDDLE unless the slider has a position; `steps` per period.
+
+    Rigid contact runs by `run_motor`.
+    """
     slider = replace(slider, position=MIDDLE) if slider.position is None else slider
     given = {"model": "analytic", "samples": 11, "step": PERIOD / steps if steps else None, **asked}
-    return run_motor(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)
+    verb = run_motor if slider.contact.hard else simulate
+    return verb(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)

@@ -44,7 +44,7 @@ from verify.problem.slider import Slider
 
 SAMPLED = (
     "times", "deflection", "travelled", "speed", "friction", "normal_force", "surface_speed", "contact_share",
-    "stuck_share", "height", "pitch", "pressures",
+    "stuck_share", "friction_loss", "tangential_work", "height", "pitch", "pressures",
 )  # fmt: skip
 """Fields of a motion with a row for each sample."""
 Progress = Callable[[float], None]
@@ -279,6 +279,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             surface_speed=along(lay.KEPT_SURFACE),
             contact_share=along(lay.KEPT_TOUCH),
             stuck_share=along(lay.KEPT_STUCK),
+            friction_loss=along(lay.KEPT_LOSS),
+            tangential_work=along(lay.KEPT_ALONG),
             height=heights[:, :, 0],
             pitch=heights[:, :, 1],
             pressures=pressures,
