@@ -41,5 +41,8 @@ def on_strip(slider, amplitude=1e-6, backward=0.0, periods=5, steps=None, **aske
     """
     slider = replace(slider, position=MIDDLE) if slider.position is None else slider
     given = {"model": "analytic", "samples": 11, "step": PERIOD / steps if steps else None, **asked}
-    verb = run_motor if slider.contact.hard else simulate
-    return verb(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)
+    if not slider.contact.hard:
+        return simulate(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)
+    names = {"prescribed_speed": "held_speed", "fixed_position": "frozen"}
+    given = {names.get(name, name): value for name, value in given.items()}
+    return run_motor(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)
