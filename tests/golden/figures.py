@@ -208,9 +208,11 @@ def motors_of(beam: Beam) -> Iterator[tuple[str, Any]]:
         "hard": Slider(**body, contact=Contact(restitution=0.3), coupling="one-way"),
     }
     for name, slider in sliders.items():
-        run = run_motor(beam, forces, DRIVEN_HZ, 3e-3, slider=slider, model="fem", count=23, samples=7)
+        run = simulate(beam, forces, DRIVEN_HZ, 3e-3, slider=slider, model="fem", count=23, samples=7)
         yield name, [run.travelled[1:], run.speed[1:], run.friction[1:], run.normal_force[1:]]
-    held = run_motor(beam, forces, DRIVEN_HZ, 3e-3, slider=sliders["give"], model="fem", count=23, held_speed=0.011)
+    held = simulate(
+        beam, forces, DRIVEN_HZ, 3e-3, slider=sliders["give"], model="fem", count=23, prescribed_speed=0.011
+    )
     yield "held-speed", [held.friction[1::40], held.normal_force[1::40]]
     plain = replace(beam, loss_factor=0.0)
     chain = run_motor(plain, forces, DRIVEN_HZ, 3e-3, slider=sliders["springs"], model="chain", count=19, start="rest",

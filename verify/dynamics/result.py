@@ -81,6 +81,10 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Work of friction on the beam; one-way coupling does not charge the beam with it."""
     normal_on_beam: float
     """Work of the normal forces on the beam, likewise."""
+    initial: float
+    """Energy of the modes of the beam at the start: of its static deflection, or of the motion before."""
+    created: float
+    """Sum of the positive works of friction in single steps, in which it returns what it has dissipated before."""
     residual: float
     """Works less gains and losses: the error of the time integration."""
 

@@ -9,11 +9,11 @@ from reference.slider import hermite_modes, ridden
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from verify import simulate
+from verify import HermiteModel, simulate
+from verify.dynamics.coupling import couple
+from verify.dynamics.result import Motion
 from verify.errors import InputError
-from verify.motion.contact import FELT
 from verify.motor.travelling_wave import terminal_speed
-from verify.motion.result import Motion
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.slider import Slider, changed
@@ -31,7 +31,7 @@ KINDS = {
     "one-way following": {"coupling": "one-way", "kinematics": "following", "speed": 1.3},
     "massless": {"normal": "massless"},
     "massless following": {"normal": "massless", "kinematics": "following"},
-    "held": {},
+    "held": {"preload": 2.31},
     "held, fast": {"speed": 3.0},
     "held, following, fast": {"kinematics": "following", "speed": -2.1},
 }
@@ -68,27 +68,29 @@ def test_beam_and_slider_move_as_one_system_of_equations(kind):
     assert motion.deflection[-1, 0] == pytest.approx(expected, rel=1e-6)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+LINES = {"work_in": "drive_work", "damped": "damping_loss", "contact_on_beam": "friction_on_beam",
+         "normal_on_beam": "normal_on_beam", "rubbed": "friction_loss"}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.startswith("one-way")])
 def test_each_line_of_the_energy_balance_equals_its_integral(kind):
-    found, ledger = reference(kind).ledger, run(replace(HEAVY, **KINDS[kind]), 960).ledger
+    found, energy = reference(kind).ledger, run(replace(HEAVY, **KINDS[kind]), 960).energy
     size = max(abs(one) for one in found.values())
-    for line, expected in found.items():
-        assert getattr(ledger, line) == pytest.approx(expected, rel=2e-4, abs=1e-6 * size), line
-    assert abs(ledger.residual) < 3e-6 * size
+    for line, name in LINES.items():
+        assert getattr(energy, name) == pytest.approx(found[line], rel=3e-4, abs=1e-6 * size), name
+    assert abs(energy.residual) < 3e-6 * size
 
 
 @pytest.mark.parametrize("law", ["tanh", "coulomb"])
-@pytest.mark.parametrize(("kind", "order"), [("one-way", 3.4), ("massless", 1.7), ("held", 1.6)])
-def test_energy_balance_closes_with_the_order_of_the_coupling(kind, order, law):
-    """Two-way the beam's motion has a kink where friction reverses: order 2."""
+@pytest.mark.parametrize("kind", ["one-way", "massless", "held"])
+def test_energy_balance_closes_and_friction_dissipates(kind, law):
     slider = changed(replace(HEAVY, **KINDS[kind]), law=law, mu=0.05)
-    ledgers = [run(slider, steps).ledger for steps in (120, 240, 480)]
-    parts = [abs(one.residual) / one.work_in for one in ledgers]
+    energies = [run(slider, steps).energy for steps in (120, 240, 480)]
+    parts = [abs(one.residual) / one.drive_work for one in energies]
     assert parts[-1] < 4e-6
-    assert np.log2(parts[0] / parts[2]) / 2 > order or parts[-1] < 1e-12
-    for one in ledgers:
-        assert one.rubbed > 0.0
-        assert one.contact_on_beam + one.slider + one.rubbed == pytest.approx(0.0, abs=1e-11 * one.rubbed)
+    assert np.log2(parts[0] / parts[2]) / 2 > 1.6 or parts[-1] < 1e-9
+    for one in energies:
+        assert one.friction_loss > 0.0
 
 
 @pytest.mark.parametrize("law", ["tanh", "coulomb"])
@@ -122,17 +124,43 @@ def test_a_sticking_slider_moves_with_the_surface():
         assert motion.speed[1:] == pytest.approx(motion.surface_speed[1:], abs=2e-3 * abs(motion.surface_speed).max())
 
 
-def test_two_way_coupling_vanishes_with_the_mass_and_auto_chooses_by_size():
-    lost = []
+def test_two_way_coupling_vanishes_with_the_mass_as_its_size_does():
+    lost, sizes = [], []
     for mass in (0.004, 0.0004, 0.00004):
-        both = [run(replace(HEAVY, mass=mass, preload=0.0, normal="massless", coupling=one)).displacement
+        both = [run(replace(HEAVY, mass=mass, preload=0.0, normal="massless", coupling=one))
                 for one in ("two-way", "one-way")]  # fmt: skip
-        lost.append(both[0] / both[1] - 1)
+        lost.append(both[0].displacement / both[1].displacement - 1)
+        sizes.append([both[1].coupling.friction_size, both[1].coupling.normal_size])
     assert np.array(lost[:-1]) / lost[1:] == pytest.approx(10.0, rel=0.1)
-    chosen = [run(replace(HEAVY, mass=mass, preload=0.0, coupling="auto")).coupling for mass in (0.04, 1e-8)]
-    assert [one.two_way for one in chosen] == [True, False]
-    assert chosen[0].relative_size > FELT > chosen[1].relative_size
-    assert chosen[0].normal_size == pytest.approx(4e6 * chosen[1].normal_size, rel=1e-9)
+    assert np.array(sizes[:-1]) / sizes[1:] == pytest.approx(10.0, rel=1e-9)
+
+
+def test_the_coupling_size_is_that_of_the_section_under_the_slider():
+    """Full friction is a couple (h/2) mu N, which moves the surface h/2 off: h^2, and h over the drive's speed."""
+    sections = (Section(length=0.17, thickness=0.0013), Section(length=0.09, thickness=0.0026),
+                Section(length=0.17, thickness=0.0013))  # fmt: skip
+    beam, slider = replace(STRIP, section=sections), replace(HEAVY, position=0.21, coupling="one-way")
+    motion = simulate(beam, FORCES, HERTZ, 1e-3, slider=slider, model="fem", count=40, start="steady", samples=2)
+    field = HermiteModel(beam, 40)
+    turned = field.harmonic(couple(beam, 0.21, HERTZ), HERTZ).slope([0.21])[0]
+    driven = field.harmonic(FORCES, HERTZ).slope([0.21])[0]
+    expected = slider.mu * slider.load * 0.0013 * abs(turned) / abs(driven)
+    assert motion.coupling.friction_size == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", [{"law": "coulomb"}, {"slope": 1e4}])
+@pytest.mark.parametrize("amplitude", [0.0, 0.2])
+def test_a_slider_that_sticks_on_a_sagged_beam_keeps_its_normal_force(law, amplitude):
+    """Statics say 0.981 N; driven an independent solution says at least 0.822 N and friction of at most 0.028 N."""
+    beam = Beam(
+        length=0.5, width=0.02, thickness=0.002, youngs_modulus=206e9, density=7850.0, supports=("clamped", "free")
+    )
+    force = PointForce(position=0.3, amplitude=amplitude)
+    slider = Slider(mass=0.1, mu=0.05, position=0.4, **law)
+    motion = simulate(beam, force, 37.0, 0.2, slider=slider, model="fem", count=8, soft_start_periods=1.0, samples=401)
+    assert motion.normal_force.min() == pytest.approx(0.822 if amplitude else 0.981, abs=2e-3)
+    assert motion.largest_friction < 0.0285
+    assert motion.energy.friction_loss >= 0.0
 
 
 def test_a_continued_run_of_a_held_slider_equals_one_run():
@@ -165,6 +193,28 @@ def test_a_moving_force_bends_the_beam_as_fryba_states():
     static = 0.37 * 0.83**3 / (48 * beam.bending_stiffness)
     assert motion.deflection[deepest, 0] == pytest.approx(-1.7054451 * static, rel=6e-6)
     assert motion.position[deepest] / 0.83 == pytest.approx(2 / 3, abs=1e-3)
+
+
+def test_the_beam_vibrates_on_after_a_moving_load_has_left():
+    beam = Beam(length=0.83, width=0.024, thickness=0.0021, youngs_modulus=113e9, density=4430.0)
+    speed = 0.5 * np.pi / 0.83 * beam.wave_constant
+    load = Slider(mass=1e-9, preload=0.37, mu=0.0, position=0.0)
+    leaves, asked = 0.83 / speed, {"model": "analytic", "modes": 20, "at": [0.415], "step": 2e-5}
+    motion = simulate(beam, (), 40.0, 1.5 * leaves, slider=load, prescribed_speed=speed, samples=1501, **asked)
+    assert motion.statistics.finished
+    own = (np.pi / 0.83) ** 2 * beam.wave_constant
+    k, t, w = np.pi / 0.83 * np.arange(1, 21), motion.times[motion.times > 1.001 * leaves], 0.0
+    for j, one in enumerate(k, 1):  # Fryba's series to the end of the load, then free
+        natural, driven_ = one**2 * beam.wave_constant, one * speed
+        scale = -2 * 0.37 / (beam.mass_per_length * 0.83) * np.sin(one * 0.415)
+        if j == 2:  # at resonance at half the critical speed, a node at mid-span
+            continue
+        q = (np.sin(driven_ * leaves) - driven_ / natural * np.sin(natural * leaves)) / (natural**2 - driven_**2)
+        qd = driven_ * (np.cos(driven_ * leaves) - np.cos(natural * leaves)) / (natural**2 - driven_**2)
+        since = t - leaves
+        w = w + scale * (q * np.cos(natural * since) + qd / natural * np.sin(natural * since))
+    assert own > 0.0
+    assert motion.deflection[-len(t) :, 0] == pytest.approx(w, abs=1e-3 * abs(w).max())
 
 
 def test_a_moving_mass_bends_the_beam_by_all_convective_terms():
@@ -206,30 +256,28 @@ def test_default_steps_resolve_a_step_load_and_report_their_convergence():
     forces = (PointForce(position=0.0116, amplitude=1.0), PointForce(position=0.4884, amplitude=1.0, phase_deg=90.0))
     slider = Slider(mass=1.02e-3, mu=0.2, slope=100.0, normal="massless", coupling="one-way")
     chosen, fine, coarse = (
-        simulate(PAPER, forces, 4276.0, 1e-3, count=392, slider=slider, samples=2, ledger=False, step=step)
+        simulate(PAPER, forces, 4276.0, 1e-3, count=392, slider=slider, samples=2, step=step)
         for step in (None, 5e-8, 1 / (64 * 4276.0))
     )
     assert chosen.displacement == pytest.approx(fine.displacement, rel=2e-3)
-    assert abs(coarse.displacement / fine.displacement - 1) > 0.05
+    assert coarse.displacement == pytest.approx(fine.displacement, rel=0.01)
     assert any(note.startswith("step:") for note in coarse.notes)
     refined = run(HEAVY, step=None)
-    assert refined.statistics.moved is not None
-    assert refined.statistics.moved < 0.01
+    assert refined.statistics.step_change < 0.01
     assert refined.displacement == pytest.approx(reference("held").displacement, rel=0.01)
     assert len(refined.times) == 11
 
 
 @pytest.mark.parametrize("law", [{"slope": 3e4}, {"law": "coulomb"}])
-def test_a_run_in_which_the_contact_makes_energy_is_refused(law):
-    """Sticking in steps of more than half a turn of the fastest modes; a quarter of the step is sound."""
+def test_friction_dissipates_at_coarse_steps_too(law):
+    """Steps of more than half a turn of the fastest modes."""
     beam = Beam(length=0.37, width=0.02, thickness=0.0043, youngs_modulus=70e9, density=2700.0)
     forces = (PointForce(position=0.05, amplitude=0.007), PointForce(position=0.31, amplitude=0.005, phase_deg=70.0))
-    slider = Slider(mass=0.44, mu=0.6, position=0.14, preload=0.3, coupling="two-way", **law)
+    slider = Slider(mass=0.44, mu=0.6, position=0.14, preload=0.3, **law)
     asked = {"count": 40, "slider": slider, "samples": 5}
-    with pytest.raises(InputError, match="the contact gave the beam"):
-        simulate(beam, forces, 900.0, 5 / 900, step=1 / (64 * 900.0), **asked)
-    ledger = simulate(beam, forces, 900.0, 5 / 900, step=1 / (256 * 900.0), **asked).ledger
-    assert ledger.contact_on_beam + ledger.normal_on_beam < ledger.work_in
+    energy = simulate(beam, forces, 900.0, 5 / 900, step=1 / (64 * 900.0), **asked).energy
+    assert energy.friction_loss >= 0.0
+    assert energy.friction_on_beam + energy.normal_on_beam < energy.drive_work
 
 
 def test_the_slider_stops_at_the_end_of_its_section_and_of_the_beam():

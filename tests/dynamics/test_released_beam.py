@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from reference.slider import hermite_modes
 
-from verify.dynamics.free_vibration import free_vibration
+from verify.dynamics.free_vibration import CORNERS, free_vibration
 from verify.errors import InputError
-from verify.dynamics.free_vibration import CORNERS
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointMass
 
