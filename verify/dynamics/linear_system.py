@@ -174,7 +174,7 @@ def stages_from_rest(
 ) -> list[Stage]:
     """One stage for every piece of the forces' envelope, with the steady response of truncated modes."""
     rows, stages = modal_rows(basis, forces, damping), []
-    tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail else None
+    tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail and forces else None
     if tail:  # its third derivative jumps where a force acts
         basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
     for piece in pieces:

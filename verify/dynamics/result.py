@@ -81,6 +81,10 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Work of friction on the beam; one-way coupling does not charge the beam with it."""
     normal_on_beam: float
     """Work of the normal forces on the beam, likewise."""
+    initial: float
+    """Energy of the modes of the beam at the start: of its static deflection, or of the motion before."""
+    created: float
+    """Sum of the positive works of friction in single steps, in which it returns what it has dissipated before."""
     residual: float
     """Works less gains and losses: the error of the time integration."""
 
@@ -175,6 +179,10 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     """Share of points and time in contact, 0 to 1."""
     stuck_share: Array
     """Share of points and time that stick, 0 to 1."""
+    friction_loss: Array
+    """Energy lost in friction and tangential compliance over the interval before, J."""
+    tangential_work: Array
+    """Work of the surface's motion along the beam on the slider over the interval before, J."""
     height: Array
     """(n, feet), m."""
     pitch: Array

@@ -44,7 +44,7 @@ from verify.problem.slider import Slider
 
 SAMPLED = (
     "times", "deflection", "travelled", "speed", "friction", "normal_force", "surface_speed", "contact_share",
-    "stuck_share", "height", "pitch", "pressures",
+    "stuck_share", "friction_loss", "tangential_work", "height", "pitch", "pressures",
 )  # fmt: skip
 """Fields of a motion with a row for each sample."""
 Progress = Callable[[float], None]
@@ -166,7 +166,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """
         request = self.request
         if request.feet or not request.two_way or request.step is not None:
-            return self.run(self.stages, progress)
+            return self._checked(self.run(self.stages, progress))
         coarse, fine, closer = doubled(self.run, self.stages, progress)
         if fine.statistics.interrupted:
             return fine
@@ -180,13 +180,19 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             wall_s=wall,
             loop_s=coarse.statistics.loop_s + fine.statistics.loop_s,
         )
-        return replace(fine, statistics=statistics, notes=(*fine.notes, *notes), **kept)
+        return self._checked(replace(fine, statistics=statistics, notes=(*fine.notes, *notes), **kept))
+
+    def _checked(self, motion: Motion) -> Motion:
+        """A motion with a note on its energy balance. Raises InputError where that does not close."""
+        if motion.statistics.interrupted or motion.energy is None:
+            return motion
+        dt, request = motion.statistics.step_s, self.request
+        notes = check_energy(motion.energy, dt, request.frequency_hz, request.feet)
+        return replace(motion, notes=(*motion.notes, *notes))
 
     def run(self, stages: list[Stage], progress: Progress) -> Motion:
-        """One run through these stages. Raises InputError where the energy balance does not close."""
+        """One run through these stages. Raises InputError."""
         began, request, contacts = perf_counter(), self.request, self._contacts()
-        if contacts.restitution is not None:
-            raise InputError("slider.contact.stiffness is missing: rigid contact with impacts runs by run_motor")
         z = self._initial(contacts)
         kinetic, elastic = _kinetic(request.sliders, contacts), _elastic(contacts)
         beam = _beam_energy(self.basis, stages[0], z, 0.0)
@@ -203,6 +209,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             _kinetic(request.sliders, contacts) - kinetic,
             float(recorded.sums[:, lay.STORED].sum()) - elastic,
             *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam).tolist(),
+            float(beam.sum()),
         )
         statistics = Statistics(
             steps=recorded.n_steps,
@@ -214,15 +221,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             unconverged=int(recorded.balance[lay.UNCONVERGED]),
             stopped=recorded.stopped,
         )
-        motion = self._motion(
+        return self._motion(
             stages, contacts, recorded, first, statistics, _balance(recorded, gains, contacts, accounts)
         )
-        if statistics.interrupted:
-            return motion
-        assert motion.energy is not None
-        created, dt = float(recorded.balance[lay.GAINED_ENERGY]), statistics.step_s
-        notes = check_energy(motion.energy, created, dt, request.frequency_hz, request.feet)
-        return replace(motion, notes=(*motion.notes, *notes))
 
     def _motion(
         self,
@@ -276,6 +277,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             surface_speed=along(lay.KEPT_SURFACE),
             contact_share=along(lay.KEPT_TOUCH),
             stuck_share=along(lay.KEPT_STUCK),
+            friction_loss=along(lay.KEPT_LOSS),
+            tangential_work=along(lay.KEPT_ALONG),
             height=heights[:, :, 0],
             pitch=heights[:, :, 1],
             pressures=pressures,
@@ -345,7 +348,7 @@ def _beam_energy(basis: TimeBasis | None, stage: Stage, z: ComplexArray, t: floa
 
 def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, rest: bool) -> EnergyBalance:
     """Works, losses and gains; the residual is that of the sliders or, from rest, of the beam, whichever is larger."""
-    s, (slider, stored, kinetic, elastic) = recorded.sums.sum(axis=0), gains
+    s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
     load = s[lay.PULLED] + s[lay.PRESSED]
     residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
@@ -368,6 +371,8 @@ def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, r
         contact_loss=float(s[lay.DAMPED]),
         friction_on_beam=float(s[lay.ON_BEAM]),
         normal_on_beam=float(s[lay.LIFTED_BEAM]),
+        initial=initial,
+        created=float(recorded.balance[lay.GAINED_ENERGY]),
         residual=float(residual),
     )
 

@@ -129,17 +129,16 @@ def change(coarse: Motion, fine: Motion) -> float:
     return max(one / of if of else 0.0 if not one else inf for one, of in pairs)
 
 
-def check_energy(energy: EnergyBalance, created: float, dt: float, frequency_hz: float, feet: bool) -> tuple[str, ...]:
-    """Raise InputError where contact creates energy or the balance does not close, by 1 % of the energy exchanged.
+def check_energy(energy: EnergyBalance, dt: float, frequency_hz: float, feet: bool) -> tuple[str, ...]:
+    """Raise InputError where friction creates energy or the balance does not close, by 1 % of the energy exchanged.
 
-    `created` is the sum of positive works of friction in all steps, J: friction dissipates. The balance of feet, whose
-    springs are of order 2 in the step, is stated in a note.
+    The balance of feet, whose springs are of order 2 in the step, is stated in a note.
     """
     works = (energy.drive_work, energy.tangential_work, energy.normal_work, energy.load_work, energy.elastic)
-    exchanged = max(abs(work) for work in works) + energy.friction_loss + abs(energy.slider)
+    exchanged = max(abs(work) for work in works) + abs(energy.friction_loss) + abs(energy.slider) + energy.initial
     if not np.isfinite(exchanged):
         raise InputError(f"step = {dt:.3g} s: the energy overflows; give smaller forces or a lighter slider")
-    missed = max(created, 0.0 if feet else abs(energy.residual))
+    missed = max(-energy.friction_loss, 0.0 if feet else abs(energy.residual))
     if missed > MOST_GAIN * exchanged > 0.0:
         raise InputError(
             f"step = {dt:.3g} s: the energy balance misses {missed:.3g} J of {exchanged:.3g} J exchanged; give a step "

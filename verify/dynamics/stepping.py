@@ -200,18 +200,22 @@ class _Run:
                     self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples, self.heights,
                     self.pressures, self.deflections, self.events, self.tally, self.sums, self.before, self.balance,
                 )  # fmt: skip
-                if self.n_steps == 0:
+                rigid = contacts.restitution is not None
+                if self.n_steps == 0 and not rigid:
                     advance(0, 1, stage.steps.dt, *arrays)
                     self._sample_first()
                 while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
                     began = thread_time()
                     n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
-                    reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
+                    if rigid:
+                        reason = self._impacts(n_steps, stage, codes, drive, rows, table, edges, factors, places)
+                    else:
+                        reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
                     self.loop_s += thread_time() - began
                     self.n_steps = steps + int(self.tally[lay.STEP])
                     progress(self.n_steps)
-                if reason == lay.NOT_FINITE:
-                    why = "diverged"
+                if reason in (lay.NOT_FINITE, lay.CHATTERS):
+                    why = "diverged" if reason == lay.NOT_FINITE else "chatters"
                     break
                 began, last = thread_time(), first
                 first = self._around(stage)
@@ -227,6 +231,24 @@ class _Run:
                 x = contacts.start + self._positions()
                 why = stage.beyond(float(x.min()), float(x.max()))
         return why
+
+    def _impacts(
+        self, n_steps: int, stage: Stage, codes: Indices, drive: Array, rows: Array, table: Array, edges: Array,
+        factors: Array, places: Array,
+    ) -> int:  # fmt: skip
+        """Steps of a rigid contact."""
+        from verify.dynamics.impact import advance_impacts
+
+        contacts, steps = self.contacts, stage.steps
+        columns, seen = np.zeros((3, table.shape[2])), np.zeros(5)
+        return int(
+            advance_impacts(
+                n_steps, steps.every, steps.dt, float(contacts.restitution or 0.0), codes, drive, rows, table, edges,
+                contacts.sliders, contacts.feet, contacts.points, contacts.contacts, contacts.indices, factors, columns,
+                seen, self.spans, places, self.samples, self.heights, self.pressures, self.deflections, self.events,
+                self.tally, self.sums, self.before,
+            )
+        )  # fmt: skip
 
     def _sample_first(self) -> None:
         """The state before the first step; a slider in contact with feet has friction from the first step on."""

@@ -1,0 +1,229 @@
+"""Compiled rigid contact of one point: flights, impacts with restitution, riding until it lifts off.
+
+The surface does not respond to the point, so that its motion is known at every instant: landings and lift-offs are
+bracketed and bisected wherever they fall in a step. Friction is that of `friction`, of impulses at an impact.
+"""
+
+import numpy as np
+
+from verify.arrays import Array, Indices
+from verify.dynamics import layout as lay
+from verify.dynamics.friction import coulomb_force, tanh_force
+from verify.dynamics.integrator import sample
+from verify.dynamics.kinematics import RATE, START, VALUE, find_pieces, rotate_half, set_factors
+from verify.jit import FAST, inline, jit
+
+BISECTIONS = 100
+IMPACTS = 100_000
+"""Landings, lift-offs and pieces of a step, at most."""
+REST = 1e-6
+"""Of a step: a flight that would be shorter is none."""
+ROUNDING = 4e-15
+"""Of the height of the surface and of its speed times the time: what rounding may add to a flight's height."""
+LOW = 1e4
+"""Of that rounding: a higher flight is one whatever it loses."""
+LEVEL, CLIMB, RAMP, ACCELERATION, ALONG = range(5)
+"""`seen`: height of the surface, its rate under the moving point, the part by slopes, the acceleration of a point that
+rides on it, tangential speed of the material."""
+
+
+@inline(fastmath=FAST)
+def see(
+    time: float, since: float, x: float, v: float, n_complex: int, rows: Array, drive: Array, table: Array, edges: Array,
+    lever: float, columns: Array, seen: Array,
+) -> None:  # fmt: skip
+    """Set the surface under x at a time of the stage, `since` seconds after the state of the rows."""
+    piece, n, omega, unit = 0, rows.shape[1], drive[lay.OMEGA], drive[lay.UNIT]
+    while piece < len(edges) - 2 and x > edges[piece + 1]:
+        piece += 1
+    for j in range(n + n_complex):
+        k = j if j < n else j - n_complex
+        grown = np.exp(rows[lay.RATE_RE, k] * since)
+        c, s = grown * np.cos(rows[lay.RATE_IM, k] * since), grown * np.sin(rows[lay.RATE_IM, k] * since)
+        real = rows[lay.Z_RE, k] * c - rows[lay.Z_IM, k] * s
+        imaginary = rows[lay.Z_RE, k] * s + rows[lay.Z_IM, k] * c
+        for d in range(3):
+            columns[d, j] = real if j < n else -imaginary
+            real, imaginary = (
+                rows[lay.RATE_RE, k] * real - rows[lay.RATE_IM, k] * imaginary,
+                rows[lay.RATE_RE, k] * imaginary + rows[lay.RATE_IM, k] * real,
+            )
+    angle, first = omega * (drive[lay.ORIGIN] + time), n + n_complex
+    c, s, power, rate, bend = np.cos(angle), np.sin(angle), 1.0, 0.0, 0.0
+    for d in range((columns.shape[1] - first) // 2):
+        j = first + 2 * d
+        columns[0, j], columns[0, j + 1] = power * c, -power * s
+        columns[1, j], columns[1, j + 1] = rate * c - power * omega * s, -rate * s - power * omega * c
+        fall = bend - omega * omega * power
+        columns[2, j], columns[2, j + 1] = fall * c - 2.0 * rate * omega * s, -fall * s - 2.0 * rate * omega * c
+        bend = (d + 1) * rate / unit
+        rate = (d + 1) * power / unit
+        power = power * time / unit
+    length, degree = edges[piece + 1] - edges[piece], table.shape[1]
+    at = (x - edges[piece]) / length
+    for attempt in range(2):  # the material under x first, then what it does
+        w, slope, curve, rise, turn, fall, lean = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for d in range(degree - 1, -1, -1):
+            value, speed, acceleration = 0.0, 0.0, 0.0
+            for j in range(columns.shape[1]):
+                value += table[piece, d, j] * columns[0, j]
+                speed += table[piece, d, j] * columns[1, j]
+                acceleration += table[piece, d, j] * columns[2, j]
+            curve = curve * at + slope
+            slope = slope * at + w
+            w = w * at + value
+            turn = turn * at + rise
+            rise = rise * at + speed
+            lean = lean * at + fall
+            fall = fall * at + acceleration
+        slope, curve, turn, lean = slope / length, 2.0 * curve / (length * length), turn / length, lean / length
+        if attempt == 0:
+            at += lever * slope / length
+    passed = v + lever * (turn + curve * v)
+    seen[LEVEL], seen[CLIMB], seen[RAMP] = w, rise + slope * passed, slope * (v + lever * curve * v)
+    seen[ACCELERATION] = fall + lever * slope * lean + (2.0 * turn + curve * passed) * passed
+    seen[ALONG] = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
+
+
+@jit
+def advance_impacts(
+    n_steps: int, every: int, dt: float, restitution: float, codes: Indices, drive: Array, rows: Array, table: Array,
+    edges: Array, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices, factors: Array,
+    columns: Array, seen: Array, spans: Array, places: Array, samples: Array, heights: Array, pressures: Array,
+    deflections: Array, events: Array, tally: Indices, sums: Array, before: Array,
+) -> int:  # fmt: skip
+    """Advance a rigid point by up to n_steps from step tally[STEP]; why it returns.
+
+    `contacts[0, DEPTH]` is 1 while it rides and -1 while it flies; at 0 it is set down on the surface. `columns` (3,
+    columns) and `seen` (5,) are working space.
+    """
+    slider, foot, touch, total, n_complex = sliders[0], feet[0], contacts[0], sums[0], codes[lay.COMPLEX]
+    mass, lever, free, inverse = 1.0 / foot[lay.INVERSE_FOOT_MASS], points[0, lay.LEVER], slider[lay.FREE], slider[lay.INVERSE_MASS]
+    press, along, mu, steepness = -foot[lay.PRESS] / mass, slider[lay.PULL] * inverse, slider[lay.MU], slider[lay.STEEPNESS]
+    for _ in range(n_steps):
+        time, done, origin = tally[lay.STEP] * dt, 0.0, drive[lay.ORIGIN]
+        for _ in range(IMPACTS):
+            left = dt - done
+            if left <= 1e-15 * dt:
+                break
+            if touch[lay.DEPTH] == 0.0:
+                see(time, done, slider[lay.X], free * slider[lay.V], n_complex, rows, drive, table, edges, lever, columns, seen)
+                foot[lay.HEIGHT], foot[lay.CLIMB] = seen[LEVEL], seen[CLIMB]
+                touch[lay.DEPTH] = 1.0 if press + seen[ACCELERATION] > 0.0 else -1.0
+            riding, low, high, x, v = touch[lay.DEPTH] > 0.0, 0.0, left, slider[lay.X], slider[lay.V]
+            ended = False
+            for trial in range(2 + BISECTIONS):  # both halves of what is left, then bisection
+                s = left * 0.5 * (trial + 1) if trial < 2 else 0.5 * (low + high)
+                if (trial == 1 and ended) or (trial > 1 and not low < s < high):
+                    continue
+                pull = 0.0 if riding else along
+                see(time + done + s, done + s, x + free * (v + 0.5 * pull * s) * s, free * (v + pull * s), n_complex, rows,
+                    drive, table, edges, lever, columns, seen)  # fmt: skip
+                margin = foot[lay.HEIGHT] + (foot[lay.CLIMB] - 0.5 * press * s) * s - seen[LEVEL]
+                margin = press + seen[ACCELERATION] if riding else margin
+                if margin < 0.0:
+                    high, ended = s, True
+                else:
+                    low = s
+                if trial == 1 and not ended:
+                    break
+            s = high
+            if not riding:
+                moved, rise = (v + 0.5 * along * s) * s, (foot[lay.CLIMB] - 0.5 * press * s) * s
+                slider[lay.X], slider[lay.V] = x + free * moved, v + along * s
+                foot[lay.HEIGHT] += rise
+                foot[lay.CLIMB] -= press * s
+                total[lay.PULLED] += slider[lay.PULL] * moved * (inverse > 0.0)
+                total[lay.PRESSED] -= mass * press * rise
+                touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.STUCK] = 0.0, 0.0, 0.0
+                push, force, share, speed, uphill, into, across = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            else:
+                see(time + done, done, x, free * v, n_complex, rows, drive, table, edges, lever, columns, seen)
+                speed = seen[ALONG]
+                middle = x + free * 0.5 * v * s
+                see(time + done + 0.5 * s, done + 0.5 * s, middle, free * v, n_complex, rows, drive, table, edges, lever, columns, seen)
+                push, share, uphill = mass * max(press + seen[ACCELERATION], 0.0), s, seen[RAMP]
+                see(time + done + s, done + s, x + free * v * s, free * v, n_complex, rows, drive, table, edges, lever, columns, seen)
+            ease, gain = inverse, 0.0
+            if not riding and ended:  # landing: restitution across, friction of the impulse along
+                see(time + done + s, done + s, slider[lay.X], free * slider[lay.V], n_complex, rows, drive, table, edges, lever, columns, seen)
+                foot[lay.HEIGHT] = seen[LEVEL]
+                into = max(seen[CLIMB] - foot[lay.CLIMB], 0.0)
+                push, share, speed, uphill = mass * (1.0 + restitution) * into, 1.0, seen[ALONG], seen[RAMP]
+                foot[lay.CLIMB] += push / mass
+                total[lay.DAMPED] += 0.5 * push * into * (1.0 - restitution)
+            if share > 0.0:
+                v = slider[lay.V]
+                if riding:
+                    ease, gain = s * inverse, seen[ALONG] - speed - s * along
+                start = v - speed
+                if steepness > 0.0:
+                    force = tanh_force(start, gain, ease, mu * push, steepness)
+                    touch[lay.STUCK] = 0.0
+                else:
+                    stuck = riding and touch[lay.STUCK] > 0.0
+                    shift = start if stuck else 0.0
+                    force = coulomb_force(0, start, gain - shift, gain - shift, ease, mu * push,
+                                          slider[lay.MU_STATIC] * push, stuck, spans)  # fmt: skip
+                    touch[lay.STUCK] = spans[0, 0] if riding else 0.0
+                after = v + share * inverse * force + (s * along if riding else 0.0)
+                mean, surface = 0.5 * (v + after), 0.5 * (speed + seen[ALONG])
+                slider[lay.V] = after
+                if riding:
+                    slider[lay.X] = x + free * mean * s
+                    see(time + done + s, done + s, slider[lay.X], free * after, n_complex, rows, drive, table, edges, lever, columns, seen)
+                    rise = seen[LEVEL] - foot[lay.HEIGHT]
+                    across = 0.5 * mass * (seen[CLIMB] ** 2 - foot[lay.CLIMB] ** 2) + mass * press * rise
+                    foot[lay.HEIGHT], foot[lay.CLIMB] = seen[LEVEL], seen[CLIMB]
+                    total[lay.PRESSED] -= mass * press * rise
+                    total[lay.TOUCH_TIME] += s
+                    total[lay.STICK_TIME] += s if touch[lay.STUCK] > 0.0 else 0.0
+                    touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.SURFACE] = push, force, surface
+                    total[lay.HARDEST] = max(total[lay.HARDEST], abs(force))
+                    total[lay.SURFACE_TIME] += s * surface
+                else:
+                    across = push * seen[CLIMB]
+                total[lay.UPHILL] += share * push * uphill
+                total[lay.ACROSS] += across - share * push * uphill
+                total[lay.LIFTED_BEAM] -= across - share * push * uphill
+                total[lay.ALONG] += share * force * surface
+                total[lay.DISSIPATED] += share * force * (surface - mean)
+                total[lay.FRICTION_TIME] += share * force
+                total[lay.NORMAL_TIME] += share * push
+                pull = slider[lay.PULL] * (s if riding else 0.0)
+                total[lay.PULLED] += mean * (pull if inverse > 0.0 else -share * force)
+            done += s
+            kind = 0.0
+            if riding and ended and s < left:
+                kind, touch[lay.DEPTH] = lay.LEAVES, -1.0
+            elif not riding and ended:
+                kind = lay.LANDS
+                away, presses = restitution * into, press + seen[ACCELERATION]
+                if presses > 0.0:  # a flight too short for the step, or low and fed by rounding
+                    height = away * away / (2.0 * presses)
+                    known = ROUNDING * (abs(seen[LEVEL]) + abs(seen[CLIMB]) * (time + dt))
+                    fed = (1.0 - restitution**2) * height <= known and height <= LOW * known
+                    if 2.0 * away <= REST * dt * presses or fed:
+                        touch[lay.DEPTH], foot[lay.CLIMB] = 1.0, seen[CLIMB]
+            if kind > 0.0:
+                row = tally[lay.EVENTS]
+                if row < events.shape[0]:
+                    events[row, 0], events[row, 1], events[row, 2], events[row, 3] = origin + time + done, kind, 0.0, slider[lay.X]
+                tally[lay.EVENTS] += 1
+        if dt - done > 1e-15 * dt:
+            return lay.CHATTERS
+        rotate_half(rows)
+        rotate_half(rows)
+        tally[lay.STEP] += 1
+        if not np.isfinite(slider[lay.V] + foot[lay.HEIGHT]):
+            return lay.NOT_FINITE
+        if tally[lay.STEP] % every == 0:
+            last = factors.shape[0] - 1
+            set_factors(last, time + dt, n_complex, rows, drive, factors)
+            for j in range(factors.shape[2]):
+                factors[START, VALUE, j], factors[START, RATE, j] = factors[last, VALUE, j], factors[last, RATE, j]
+            sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
+                   pressures, deflections, sums, before, tally)  # fmt: skip
+        if not find_pieces(0.0, edges, sliders, points, indices):
+            return lay.OFF_PIECES
+    return lay.DONE
