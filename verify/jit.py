@@ -17,7 +17,15 @@ from numba import config, njit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
-_SOURCES = sorted({*_PACKAGE.glob("*/*kernels.py"), *_PACKAGE.glob("*/*records.py"), *_PACKAGE.glob("dynamics/*.py"), Path(__file__)})
+_ENGINE = ("layout", "kinematics", "friction", "contact_solver", "integrator", "impact")
+_SOURCES = sorted(
+    {
+        *(_PACKAGE / f"dynamics/{name}.py" for name in _ENGINE),
+        *_PACKAGE.glob("*/*kernels.py"),
+        *_PACKAGE.glob("*/*records.py"),
+        Path(__file__),
+    }
+)
 _DIGEST = sha256(b"".join(source.read_bytes() for source in _SOURCES)).hexdigest()[:16]
 _CACHE = Path(config.CACHE_DIR or _PACKAGE / "__pycache__") / f"kernels-{_DIGEST}"  # type: ignore[attr-defined]
 FAST = {"reassoc", "contract", "nsz"}

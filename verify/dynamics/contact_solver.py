@@ -72,7 +72,7 @@ def set_end_couplings(
                 turn = turn * above + here
                 here = here * above + table[piece, d, j]
             rate, moved = value + lean * turn, v * first
-            row, other = (j, j + n_complex) if j < n else (j - n_complex, j - n_complex)
+            row = j if j < n else j - n_complex
             # real part of z: rate Re(lambda G b) + moved Re(G b); imaginary part, factor -Im z, likewise
             real = rate * rows[lay.END_RE, row] + moved * rows[lay.GAIN_RE, row]
             imaginary = rate * rows[lay.END_IM, row] + moved * rows[lay.GAIN_IM, row]
@@ -103,7 +103,9 @@ def normal_force(
             own = couplings[1, i, i]
             for k in range(points.shape[0]):
                 climb -= couplings[0, i, k] * contacts[k, lay.FRICTION] + couplings[1, i, k] * contacts[k, lay.NORMAL]
-        return float((points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.RISE_RATE])) / (1.0 + inertia * own))
+        return float(
+            (points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.RISE_RATE])) / (1.0 + inertia * own)
+        )
     depth, was, k = contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH], indices[i, lay.OF_FOOT]
     if depth <= 0.0:
         return 0.0
@@ -144,7 +146,9 @@ def friction_force(
         since = 0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was)
         full = 1.0 + 0.5 * stiff * since * ease
         trial = stiff * (contacts[i, lay.STRETCH] - since * slip) / full
-        force, spans[i, 0] = elastic_force(trial, stiff * since / full, static if stuck else kinetic, kinetic, steepness)
+        force, spans[i, 0] = elastic_force(
+            trial, stiff * since / full, static if stuck else kinetic, kinetic, steepness
+        )
     elif kinetic <= 0.0:
         force = 0.0
     else:
@@ -172,7 +176,7 @@ def friction_force(
         wide = np.sqrt(bound * bound + 2.0 * max(contacts[i, lay.LOSS], 0.0) / (dt * ease))
         force = min(max(force, bound - wide), bound + wide)
     contacts[i, lay.SLIP] = slip + 0.5 * ease * force
-    return force
+    return float(force)
 
 
 @inline
@@ -210,7 +214,9 @@ def solve(
                 continue
             b, k = indices[i, lay.OF_SLIDER], indices[i, lay.OF_FOOT]
             if sweeps == 1 or law == lay.BILATERAL or points[i, lay.DASHPOT] > 0.0:
-                normal = normal_force(i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings)
+                normal = normal_force(
+                    i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
+                )
                 more = normal - contacts[i, lay.NORMAL]
                 contacts[i, lay.NORMAL] = normal
                 if presses and more != 0.0:
@@ -254,7 +260,7 @@ def solve_block(
     dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array,
     response: Array, spans: Array, block: Array,
 ) -> float:  # fmt: skip
-    """Friction of all rigid points together, by their mean slips: Newton's method on active sets; the last change, N."""
+    """Friction of all rigid points together, by their mean slips: Newton's method on active sets; last change."""
     n, two_way, changed = points.shape[0], codes[lay.TWO_WAY] > 0, 0.0
     for _ in range(4 * n + 20):
         for i in range(n):  # row i: what the law asks of all changes of force

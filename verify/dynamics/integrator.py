@@ -36,8 +36,8 @@ def add_powers(
 ) -> None:  # fmt: skip
     """Add the drive's power and the modes' loss, with a weight in seconds, to the balance.
 
-    `forced` (n, drive columns) are the forced parts of the rows over the drive's factors, `loads` (2, n) the generalised
-    force phasors, `growth` their envelope.
+    `forced` (n, drive columns) are the forced parts of the rows over the drive's factors, `loads` (2, n) the
+    generalised force phasors, `growth` their envelope.
     """
     angle, part, grown = drive[lay.OMEGA] * (drive[lay.ORIGIN] + time), time / drive[lay.UNIT], 0.0
     c, s, n, first = np.cos(angle), np.sin(angle), rows.shape[1], factors.shape[2] - forced.shape[1]
@@ -56,7 +56,8 @@ def add_powers(
 
 @inline
 def move(
-    dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices, spans: Array
+    dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
+    spans: Array,
 ) -> None:  # fmt: skip
     """Sliders and feet to the end of the step; a slider with one rigid point follows its law within the step."""
     spring = codes[lay.LAW] == lay.SPRING
@@ -138,7 +139,11 @@ def add_sums(
                     contacts[i, lay.CLOSING] += answer
                     contacts[i, lay.LIFT] = lift
             touching += 1 if push > 0.0 or not spring else 0
-            total, normal, surface = total + force, normal + push, surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0)
+            total, normal, surface = (
+                total + force,
+                normal + push,
+                surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0),
+            )
             sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
             sums[b, lay.ALONG] += dt * force * contacts[i, lay.SURFACE]
             sums[b, lay.DISSIPATED] -= dt * force * contacts[i, lay.SLIP]
@@ -187,7 +192,7 @@ def write_events(
         for e in range(n):
             if codes[lay.LAW] != lay.SPRING:
                 share, kind = spans[i, 4 + 2 * e], spans[i, 5 + 2 * e]
-            if kind == 0.0 or kind == lay.TURNS:
+            if kind in (0.0, lay.TURNS):
                 continue
             row = tally[lay.EVENTS]
             if row < events.shape[0]:

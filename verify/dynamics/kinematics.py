@@ -27,9 +27,7 @@ def set_factors(when: int, time: float, n_complex: int, rows: Array, drive: Arra
     n = rows.shape[1]
     for j in range(n):
         factors[when, VALUE, j] = rows[lay.Z_RE, j]
-        factors[when, RATE, j] = (
-            rows[lay.RATE_RE, j] * rows[lay.Z_RE, j] - rows[lay.RATE_IM, j] * rows[lay.Z_IM, j]
-        )
+        factors[when, RATE, j] = rows[lay.RATE_RE, j] * rows[lay.Z_RE, j] - rows[lay.RATE_IM, j] * rows[lay.Z_IM, j]
     for k in range(n_complex):
         j = n - n_complex + k
         factors[when, VALUE, n + k] = -rows[lay.Z_IM, j]
@@ -182,10 +180,9 @@ def look(
         elif when == END:
             # of the product of rise and slope: their covariance and the mean slope, order dt^2 both
             first = contacts[i, lay.COVARIANCE]
-            contacts[i, lay.COVARIANCE] = (
-                (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0
-                + contacts[i, lay.LIFT] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
-            )
+            contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0 + contacts[
+                i, lay.LIFT
+            ] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
             contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
             contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
             contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
@@ -226,7 +223,11 @@ def set_shapes(
             contacts[i, lay.SLOPE],
         )
         length = edges[piece + 1] - edges[piece]
-        lever, stretch, side = points[i, lay.LEVER], np.sqrt(1.0 + slope * slope), points[i, lay.FACE] * points[i, lay.IMAGE]
+        lever, stretch, side = (
+            points[i, lay.LEVER],
+            np.sqrt(1.0 + slope * slope),
+            points[i, lay.FACE] * points[i, lay.IMAGE],
+        )
         lean, weight = slope * lever / length, points[i, lay.WEIGHT] / dt
         for j in range(n + n_complex):
             value, first, here, turn = 0.0, 0.0, 0.0, 0.0
