@@ -1,5 +1,7 @@
 """The contact engine: friction dissipates, a sticking mass has its own reaction, rows of any linear system."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -49,7 +51,7 @@ def test_friction_of_a_clamped_mass_dissipates_at_coarse_steps(
 @pytest.mark.parametrize("law", [{"law": "coulomb"}, {"law": "coulomb", "mu_static": 0.08}, {"law": "tanh"}])
 @pytest.mark.parametrize(("amplitude", "least"), [(0.2, 0.8223), (0.0, 0.981)])
 def test_a_sticking_mass_on_a_sagged_beam_has_its_own_reaction(
-    law: dict[str, object], amplitude: float, least: float
+    law: dict[str, Any], amplitude: float, least: float
 ) -> None:
     forces = [PointForce(position=0.3, amplitude=amplitude)]
     slider = Slider(mass=0.1, mu=0.05, position=0.4, coupling="two-way", **law)

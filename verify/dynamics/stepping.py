@@ -202,7 +202,8 @@ class _Run:
                     contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
                     contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
                     response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
-                    self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before, self.balance,
+                    self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
+                    self.balance,
                 )  # fmt: skip
                 rigid = contacts.restitution is not None
                 if self.n_steps == 0 and not rigid:
