@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from verify.contact import belt, bouncing, foot, landing, layer
+from verify.dynamics import belt as dynamic_belt
 from verify.errors import InputError
-from verify.motion import rigid_surface
 
 ANGLES, SPEEDS, GIVES = st.floats(0.05, 3.0), st.floats(-0.9, 1.3), st.floats(0.01, 20.0)
 
@@ -248,7 +248,7 @@ def test_stick_and_slip_times_equal_the_integrated_motion_and_compiled_friction(
     slip, stick = run.t_events[0][-1], (static / stiffness - run.y_events[0][-1][0]) / speed
     assert belt.stick_slip_times(*case) == pytest.approx((stick, slip), rel=1e-8)
     if kinetic:
-        assert rigid_surface.stick_slip_times(*case) == pytest.approx(belt.stick_slip_times(*case), rel=2e-6)
+        assert dynamic_belt.stick_slip_times(*case) == pytest.approx(belt.stick_slip_times(*case), rel=2e-6)
 
 
 @pytest.mark.parametrize(

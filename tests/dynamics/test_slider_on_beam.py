@@ -262,7 +262,7 @@ def test_default_steps_resolve_a_step_load_and_report_their_convergence():
     assert chosen.displacement == pytest.approx(fine.displacement, rel=2e-3)
     assert coarse.displacement == pytest.approx(fine.displacement, rel=0.01)
     assert any(note.startswith("step:") for note in coarse.notes)
-    refined = run(HEAVY, step=None)
+    refined = run(replace(HEAVY, **KINDS["held"]), step=None)
     assert refined.statistics.step_change < 0.01
     assert refined.displacement == pytest.approx(reference("held").displacement, rel=0.01)
     assert len(refined.times) == 11
@@ -276,7 +276,7 @@ def test_friction_dissipates_at_coarse_steps_too(law):
     slider = Slider(mass=0.44, mu=0.6, position=0.14, preload=0.3, **law)
     asked = {"count": 40, "slider": slider, "samples": 5}
     energy = simulate(beam, forces, 900.0, 5 / 900, step=1 / (64 * 900.0), **asked).energy
-    assert energy.friction_loss >= 0.0
+    assert energy.friction_loss >= -1e-20
     assert energy.friction_on_beam + energy.normal_on_beam < energy.drive_work
 
 

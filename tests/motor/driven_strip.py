@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from reference.motor import Waves, waves_of
 
 from verify.analytic_modes import ExactModel
-from verify.motor.run import run_motor
+from verify.dynamics.simulate import simulate
 from verify.problem.beam import Beam, PointForce
 
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -34,7 +34,7 @@ def drive(amplitude, backward=0.0):
 
 
 def on_strip(slider, amplitude=1e-6, backward=0.0, periods=5, steps=None, **asked):
-    """A motor on the steady exact strip, from MIDDLE on unless the slider says where; `steps` per period."""
+    """A motor on the steady exact strip, from MIDDLE unless the slider has a position; `steps` per period."""
     slider = replace(slider, position=MIDDLE) if slider.position is None else slider
     given = {"model": "analytic", "samples": 11, "step": PERIOD / steps if steps else None, **asked}
-    return run_motor(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)
+    return simulate(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)

@@ -9,10 +9,9 @@ import reference.motor as by
 from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive, on_strip
 from msgspec.structs import replace
 
-from verify import Contact, Foot, PointForce, Slider, run_motor
+from verify import Contact, Foot, PointForce, Slider, simulate
 from verify.contact import foot as short
 from verify.contact import layer
-from verify.motor.outcome import layer_epsilon
 
 HEIGHT = 1e-8
 """Of the wave, metres: w_t w' is 2e-5 of the speed of its crests."""
@@ -47,7 +46,7 @@ def errors(case, steps):
     feet = (Foot(length=spans * LENGTH, points=n, pitches=pitches),)
     contact = Contact(stiffness=foot.stiffness, damping=damping)
     slider = put(mass=foot.mass, preload=foot.load, contact=contact, foot=feet)
-    run = on_strip(slider, 1e-6, 0.1, PERIODS, steps, held_speed=foot.speed, samples=PERIODS + 1)
+    run = on_strip(slider, 1e-6, 0.1, PERIODS, steps, prescribed_speed=foot.speed, samples=PERIODS + 1)
     motion = max(
         np.abs(run.height[1:, 0] - rows[:, 0]).max() / 1e-6,
         np.abs(run.pitch[1:, 0] - rows[:, 2]).max() * spans * LENGTH / 1e-6,
@@ -75,7 +74,7 @@ def slid(phi, r, epsilon=0.0, n=61, steps=127, periods=3, slider=None, **asked):
     contact = Contact(layer_stiffness=KAPPA, layer_tangential_stiffness=give)
     feet = (Foot(length=LENGTH, points=n, pitches=False, mass=0.05),)
     given = {"mass": 0.05, "speed": -r * CRESTS, **(slider or {})}
-    asked = {"held_speed": -r * CRESTS, "frozen": True, "samples": periods + 1, **asked}
+    asked = {"prescribed_speed": -r * CRESTS, "fixed_position": True, "samples": periods + 1, **asked}
     return on_strip(
         put(preload=load, foot=feet, contact=contact, **given), HEIGHT, periods=periods, steps=steps, **asked
     ), load
@@ -95,7 +94,7 @@ def test_a_foot_of_many_points_is_a_driving_layer(phi, r, epsilon):
     assert found == pytest.approx(layer.force(phi, r, epsilon), abs=2e-3)
     assert found == pytest.approx(by.row_of_springs(801, r, epsilon, 1024, height=cos(phi)), abs=3e-3)
     assert run.contact_share[-1] == pytest.approx(phi / pi, abs=2e-3)
-    assert run.motor_margins.epsilon == pytest.approx(epsilon, rel=1e-12)
+    assert run.margins.presliding == pytest.approx(epsilon, rel=1e-12)
     assert run.height[-1, 0] / HEIGHT == pytest.approx(cos(phi), abs=2e-3)
 
 
@@ -103,10 +102,10 @@ def test_a_foot_of_many_points_is_a_driving_layer(phi, r, epsilon):
 def test_power_and_efficiency_are_the_layers(phi, r):
     run, load = slid(phi, r, steps=509)
     unit = PERIOD * MU * load * CRESTS
-    given, force, share = run.carried[-1] / unit, layer.force(phi, r), layer.efficiency(phi, r)
+    given, force, share = run.tangential_work[-1] / unit, layer.force(phi, r), layer.efficiency(phi, r)
     assert given == pytest.approx(r * force / share, abs=1e-3)
-    assert -run.friction[-1] * r * CRESTS * PERIOD / run.carried[-1] == pytest.approx(share, abs=1e-3)
-    assert run.rubbed[-1] / unit == pytest.approx(given - r * force, abs=1e-3)
+    assert -run.friction[-1] * r * CRESTS * PERIOD / run.tangential_work[-1] == pytest.approx(share, abs=1e-3)
+    assert run.friction_loss[-1] / unit == pytest.approx(given - r * force, abs=1e-3)
 
 
 def test_a_layer_that_gives_way_is_of_second_order_in_the_step():
@@ -133,7 +132,7 @@ def test_a_free_slider_comes_to_the_no_load_speed_of_the_layer(phi, epsilon):
     """From 3 % above and below, of 4 kg so that a period does not tell."""
     wanted = layer.no_load_speed(phi, epsilon)
     for start in (0.97, 1.03):
-        given = {"slider": {"mass": 4.0, "speed": -start * wanted * CRESTS}, "held_speed": None, "periods": 200}
+        given = {"slider": {"mass": 4.0, "speed": -start * wanted * CRESTS}, "prescribed_speed": None, "periods": 200}
         assert -slid(phi, 0.0, epsilon, **given)[0].speed[-1] / CRESTS == pytest.approx(wanted, abs=2e-3)
 
 
@@ -144,7 +143,9 @@ def test_a_short_foot_drives_by_its_length(waves):
     foot = Foot(length=waves * LENGTH * n / (n - 1.0), points=n, pitches=False, mass=2e-6) if waves else Foot(mass=2e-6)
     slider = put(preload=0.01, contact=Contact(stiffness=3e9, damping=40.0), foot=(foot,))
     for r in (0.0, 0.3) if waves else (0.0,):
-        run = on_strip(slider, HEIGHT, periods=2, steps=16000, held_speed=-r * CRESTS, frozen=True, samples=3)
+        run = on_strip(
+            slider, HEIGHT, periods=2, steps=16000, prescribed_speed=-r * CRESTS, fixed_position=True, samples=3
+        )
         wanted = short.short_foot_force(span, r) if waves else 0.0
         assert -run.friction[-1] / (MU * 0.01) == pytest.approx(wanted, abs=0.02)
 
@@ -155,8 +156,11 @@ def test_epsilon_is_that_of_the_foot_which_slips_least_before_it_gives_way():
     feet = (Foot(length=0.021, points=3, offset=-0.03), Foot(length=0.007, points=3, offset=0.02))
     slider = Slider(mass=0.01, mu=0.23, law="coulomb", preload=0.4, contact=contact, foot=feet)
     expected = 2.0 * 0.23 * 3.1e5 / (7.7e6 * 0.007 * 91.0 * 0.0013)
-    assert layer_epsilon(slider, 91.0, 0.0013) == pytest.approx(expected, rel=1e-14)
-    assert layer_epsilon(replace(slider, foot=feet[::-1]), 91.0, 0.0013) == pytest.approx(expected, rel=1e-14)
+    for own in (slider, replace(slider, foot=feet[::-1])):
+        run = moved(own, seconds=2e-5, step=1e-7)
+        k = np.sqrt(2.0 * np.pi * HERTZ / run.end.beam.wave_constant)
+        thickness = 2.0 * run.end.beam.surface_distance
+        assert run.margins.presliding == pytest.approx(expected * 91.0 * 0.0013 / (k * thickness), rel=1e-12)
 
 
 FORCES = [PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0)]
@@ -175,7 +179,7 @@ SLIDER = Slider(
 
 def moved(slider, seconds=4e-3, forces=FORCES, beam=STRIP, **given):
     kept = {"model": "segment", "count": 49, "samples": 18, **given}
-    return run_motor(beam, forces, HERTZ, seconds, slider=slider, **kept)
+    return simulate(beam, forces, HERTZ, seconds, slider=slider, **kept)
 
 
 def test_feet_on_both_faces_are_driven_the_same_way_and_do_not_bend_the_beam():
@@ -190,8 +194,8 @@ def test_feet_on_both_faces_are_driven_the_same_way_and_do_not_bend_the_beam():
         )
     )
     assert np.sign(upper.speed[-1]) == np.sign(clasp.speed[-1]) == np.sign(lower.speed[-1]) != 0.0
-    assert clasp.motor_margins.sag < 1e-12
-    assert upper.motor_margins.sag > 0.1
+    assert clasp.margins.static_deflection < 1e-12
+    assert upper.margins.static_deflection > 0.1
     assert clasp.normal_force[-9:].mean() == pytest.approx(23.0, rel=0.2)
 
 
@@ -211,7 +215,7 @@ def test_feet_of_a_clasp_that_are_not_above_each_other_bend_the_beam_by_their_co
         for x in slider.start_on(STRIP) + foot.offset + by.cells(foot.length, foot.points)
     ]
     expected = max(abs(sum(pinned_sag(x, *one) for one in loads)) for x, _ in loads)
-    assert moved(slider, seconds=2e-4).motor_margins.sag == pytest.approx(expected, rel=1e-3)
+    assert moved(slider, seconds=2e-4).margins.static_deflection == pytest.approx(expected, rel=1e-3)
 
 
 def test_weight_presses_an_upper_foot_on_a_lower_one_off_and_sinks_into_springs_on_both_sides():

@@ -9,8 +9,8 @@ from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
 from msgspec.structs import replace
 
 from verify.contact import bouncing, landing
-from verify.motor import records
-from verify.motor.records import LANDS, LEAVES
+from verify.dynamics import layout as records
+from verify.dynamics.layout import LANDS, LEAVES
 from verify.problem.slider import Contact, Slider
 
 GRAVITY, MASS = 9.81e-3, 2.3e-3
@@ -25,7 +25,7 @@ def point(contact, **given):
 def shaken(ratio, contact, periods=12, steps=64, **asked):
     """(run, phases of landings, of leavings) held over a place that shakes as A sin theta, A = ratio g/omega^2."""
     amplitude = ratio * GRAVITY / OMEGA**2
-    run = on_strip(point(contact), amplitude, periods=periods, steps=steps, **{"held_speed": 0.0, **asked})
+    run = on_strip(point(contact), amplitude, periods=periods, steps=steps, **{"prescribed_speed": 0.0, **asked})
     phases = run.events[:, 0] * OMEGA + 0.5 * pi - drive(amplitude)[1].k * MIDDLE
     phases -= 2.0 * pi * np.floor(phases[:1] / (2.0 * pi))
     return run, phases[run.events[:, 1] == LANDS], phases[run.events[:, 1] == LEAVES]
@@ -54,7 +54,7 @@ def test_a_thousand_bounces_die_away_and_the_point_leaves_at_the_same_phase():
     assert run.statistics.stopped == "end"
     assert len(lands) > 7000
     assert leaves - 2.0 * pi * np.arange(10) == pytest.approx(np.full(10, asin(1.0 / 1.01)), abs=1e-6)
-    assert abs(run.ledger.residual) < 1e-8 * run.ledger.impacts
+    assert abs(run.energy.residual) < 1e-8 * run.energy.contact_loss
 
 
 @pytest.mark.parametrize("restitution", [1.0, 1.0 - 1e-12])
@@ -63,7 +63,7 @@ def test_bounces_without_loss_never_come_to_rest(restitution):
     assert lands[:5] == pytest.approx([one.phase for one in by.bounces(1.9, restitution, 12)][:5], abs=2e-7)
     assert len(lands) > 20
     assert len(leaves) == 1
-    assert run.ledger.impacts == pytest.approx(0.0, abs=1e-20)
+    assert run.energy.contact_loss == pytest.approx(0.0, abs=1e-20)
 
 
 @pytest.mark.parametrize(("ratio", "restitution"), [(1.9, 0.4), (2.3, 0.5), (1.7, 0.0)])
@@ -73,33 +73,33 @@ def test_impacts_lose_the_kinetic_energy_that_restitution_leaves_out(ratio, rest
     speed = ratio * GRAVITY / OMEGA
     landed = by.bounces(ratio, restitution, 12)[: len(lands)]
     lost = sum(0.5 * MASS * (1.0 - restitution**2) * (one.closing * speed) ** 2 for one in landed)
-    assert run.ledger.impacts == pytest.approx(lost, rel=1e-6)
-    assert abs(run.ledger.residual) < 1e-10 * run.ledger.impacts
+    assert run.energy.contact_loss == pytest.approx(lost, rel=1e-6)
+    assert abs(run.energy.residual) < 1e-10 * run.energy.contact_loss
 
 
 @pytest.mark.parametrize(("ratio", "restitution"), [(1.9, 0.4), (1.5, 0.0), (0.7, 0.3)])
 def test_the_work_that_holds_a_speed_is_mu_n_times_the_way(ratio, restitution):
     held = -3e-6
     contact = Contact(restitution=restitution)
-    run, *_ = shaken(ratio, contact, 6, 640, held_speed=held, frozen=True, samples=2)
-    assert run.ledger.pulled == pytest.approx(-0.2 * run.normal_force[-1] * 6.0 * PERIOD * held, rel=1e-9)
-    assert abs(run.ledger.residual) < 1e-6 * run.ledger.rubbed
+    run, *_ = shaken(ratio, contact, 6, 640, prescribed_speed=held, fixed_position=True, samples=2)
+    assert run.energy.load_work == pytest.approx(-0.2 * run.normal_force[-1] * 6.0 * PERIOD * held, rel=1e-9)
+    assert abs(run.energy.residual) < 1e-6 * run.energy.friction_loss
 
 
 def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
     """(phases of landings, the bounce, run) of a point that has left in step, but for `off` of its speed."""
     amplitude, bounce = ratio * GRAVITY / OMEGA**2, bouncing.bounce_in_step(ratio, restitution)
     slider = point(Contact(restitution=restitution), mu=mu)
-    before = on_strip(slider, amplitude, periods=1, steps=64, held_speed=0.0)
+    before = on_strip(slider, amplitude, periods=1, steps=64, prescribed_speed=0.0)
     lead = (0.5 * pi - drive(amplitude)[1].k * MIDDLE) % (2.0 * pi)
     flown, speed = (lead - bounce.phase) % (2.0 * pi), (1.0 + off) * bounce.speed
     feet = np.zeros((1, 4))
     feet[0, 0] = amplitude * (sin(bounce.phase) + speed * flown - 0.5 * flown**2 / ratio)
     feet[0, 1] = amplitude * OMEGA * (speed - flown / ratio)
-    touch = before.state.touch.copy()
+    touch = before.end.contact.points.copy()
     touch[0, records.DEPTH] = -1.0  # in the air
-    went = replace(before, state=replace(before.state, feet=feet, touch=touch))
-    asked = {"held_speed": held, "samples": periods + 1, "continue_from": went}
+    went = replace(before, end=replace(before.end, contact=replace(before.end.contact, feet=feet, points=touch)))
+    asked = {"prescribed_speed": held, "samples": periods + 1, "continue_from": went}
     run = on_strip(slider, amplitude, periods=periods, steps=64, **asked)
     return run.events[run.events[:, 1] == LANDS, 0] * OMEGA + lead, bounce, run
 
@@ -135,7 +135,7 @@ def test_a_bouncing_point_gains_mu_of_every_impact_until_it_runs_as_the_surface_
     gained = -np.diff(run.speed)
     assert gained[gained > 0.999 * blow] == pytest.approx(blow, rel=1e-6)
     assert np.count_nonzero(gained > 0.999 * blow) == int(abs(last) / blow) > 3
-    assert abs(run.ledger.residual) < 1e-9 * run.ledger.impacts
+    assert abs(run.energy.residual) < 1e-9 * run.energy.contact_loss
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5])
@@ -155,7 +155,7 @@ def test_a_stiff_spring_with_a_dashpot_tends_to_a_hard_contact_of_its_restitutio
 @pytest.mark.parametrize("ratio", [0.35, 0.8])
 def test_a_point_that_stays_on_is_driven_by_the_troughs(ratio):
     """N = P (1 - Gamma sin theta) and u = -V sin theta: 2 Gamma/pi of mu P in the mean, against the crests."""
-    asked = {"held_speed": 0.0, "frozen": True, "samples": 4}
+    asked = {"prescribed_speed": 0.0, "fixed_position": True, "samples": 4}
     run = on_strip(point(Contact()), ratio * GRAVITY / OMEGA**2, periods=3, steps=1000, **asked)
     assert len(run.events) == 0
     assert run.normal_force[-1] == pytest.approx(MASS * GRAVITY, rel=1e-5)
@@ -187,11 +187,11 @@ def test_a_hard_point_that_stays_on_sticks_and_slips_as_the_ode_says(law, slope)
 def test_a_point_kept_at_its_place_lands_once_a_period_at_any_speed(speed, steps):
     ratio, amplitude = 1.1, 4.1e-7
     slider = point(Contact(), gravity=amplitude * OMEGA**2 / ratio)
-    run = on_strip(slider, amplitude, periods=20, steps=steps, samples=21, held_speed=speed, frozen=True)
+    run = on_strip(slider, amplitude, periods=20, steps=steps, samples=21, prescribed_speed=speed, fixed_position=True)
     share = 1.0 - (bouncing.landing_phase(ratio) - asin(1.0 / ratio)) / (2.0 * pi)
     assert np.count_nonzero(run.events[:, 1] == LANDS) == 20
     assert run.contact_share[2:].mean() == pytest.approx(share, abs=1e-5)
-    assert run.ledger.uphill == 0.0
+    assert run.energy.slope_work == 0.0
 
 
 @pytest.mark.parametrize(("speed", "steps"), [(0.0, 61), (3.1e-5, 64), (-2.2e-5, 61)])
@@ -202,7 +202,9 @@ def test_friction_of_a_hard_point_reverses_within_the_step(speed, steps):
     _, rise, _, along = by.felt(drive(amplitude, back)[1].at, MIDDLE, times, HALF)
     wanted = np.mean(np.sign(along - speed) * (1.0 + np.gradient(rise, times) / gravity))
     slider = point(Contact(), gravity=gravity)
-    run = on_strip(slider, amplitude, back, periods=4, steps=steps, samples=5, held_speed=speed, frozen=True)
+    run = on_strip(
+        slider, amplitude, back, periods=4, steps=steps, samples=5, prescribed_speed=speed, fixed_position=True
+    )
     assert run.friction[1:].mean() / (0.2 * MASS * gravity) == pytest.approx(wanted, abs=1e-3)
 
 

@@ -8,7 +8,7 @@ from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
 from reference.motor import DRAGGED, PRESSED, STUCK, TOUCHED, OneWay, Point, Rider, V, X, Z, body
 
 from verify.contact.landing import lift_off_ratio
-from verify.motor.records import LANDS
+from verify.dynamics.layout import LANDS
 from verify.problem.slider import Contact, Slider
 
 AMPLITUDE, BACK, MASS, LOAD, STIFFNESS, PERIODS = 1e-6, 0.1, 2e-3, 2.0, 5e6, 5
@@ -49,7 +49,7 @@ def run(name, steps):
         coupling="one-way",
         contact=contact,
     )
-    return on_strip(slider, AMPLITUDE, BACK, PERIODS, steps, held_speed=given.get("held"), samples=PERIODS + 1)
+    return on_strip(slider, AMPLITUDE, BACK, PERIODS, steps, prescribed_speed=given.get("held"), samples=PERIODS + 1)
 
 
 def motion_error(name, steps):
@@ -85,9 +85,9 @@ def test_height_converges_and_the_energy_balance_closes_with_the_square_of_the_s
     some = np.array([125, 133, 141, 149])
     coarse, fine = (np.mean([motion_error(name, n)[2] for n in steps[:2]]) for steps in (some, 32 * some))
     assert 1.5 < np.log2(coarse / fine) / 5.0 < 2.5
-    left = [np.mean([abs(run(name, n).ledger.residual) for n in steps]) for steps in (some, 32 * some)]
-    books = run(name, 4000).ledger
-    assert left[1] < 1e-5 * (abs(books.across) + abs(books.pressed) + books.rubbed)
+    left = [np.mean([abs(run(name, n).energy.residual) for n in steps]) for steps in (some, 32 * some)]
+    books = run(name, 4000).energy
+    assert left[1] < 1e-5 * (abs(books.normal_work) + abs(books.load_work) + books.friction_loss)
     assert 1.7 < np.log2(left[0] / left[1]) / 5.0 < 2.5
 
 
@@ -99,14 +99,14 @@ def test_the_least_normal_force_below_lift_off_is_the_closed_form(ratio, zeta):
     for share in (0.5, 0.9, 1.1):
         load = MASS * AMPLITUDE * OMEGA**2 / (share * lift_off_ratio(ratio, zeta))
         slider = Slider(mass=MASS, mu=0.2, gravity=0.0, preload=load, coupling="one-way", contact=contact)
-        found = on_strip(slider, periods=40, steps=400, held_speed=0.0, samples=16001)
+        found = on_strip(slider, periods=40, steps=400, prescribed_speed=0.0, samples=16001)
         assert found.pressures[-2000:].min() / load == pytest.approx(max(1.0 - share, 0.0), abs=2e-3)
 
 
 def test_a_point_at_rest_is_pressed_in_by_its_load_over_its_stiffness():
     given = {"mu": 0.2, "preload": 3.0, "preload_stiffness": 4e4, "coupling": "one-way"}
     slider = Slider(mass=0.013, contact=Contact(stiffness=7e5), **given)
-    found = on_strip(slider, 1e-16, periods=3, held_speed=0.0)
+    found = on_strip(slider, 1e-16, periods=3, prescribed_speed=0.0)
     assert found.height[1:, 0] == pytest.approx(-(3.0 + 0.013 * 9.81) / (7e5 + 4e4), rel=1e-6)
     assert found.normal_force[1:] == pytest.approx(7e5 * -found.height[1:, 0], rel=1e-6)
     assert found.contact_share == pytest.approx(1.0, rel=1e-12)

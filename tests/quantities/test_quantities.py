@@ -9,9 +9,9 @@ from msgspec.structs import replace
 
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
+from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.fem_beam import HermiteModel
-from verify.dynamics.simulate import simulate
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass

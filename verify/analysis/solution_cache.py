@@ -12,9 +12,9 @@ from verify.problem.beam import Beam
 if TYPE_CHECKING:
     from verify.analytic_modes import ExactModel
     from verify.arrays import Array
+    from verify.dynamics.result import Motion
     from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
-    from verify.dynamics.result import Motion
 
 EULER = "euler-bernoulli"
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]

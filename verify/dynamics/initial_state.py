@@ -87,16 +87,19 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
     for _ in range(PASSES):
         at = np.clip(x + lever * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
     level, slope, bend = (factors @ stage.columns(at, derivative) for derivative in range(3))
-    if not len(contacts.feet):  # dw/dt + w' dX/dt of the material X = x + (h/2) w'
-        rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
-        along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
-        along = along - slope * rise if contacts.following else along
-        state[:, lay.RISE_RATE] = rise + slope * (along + lever * (turn + bend * along))
+    rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
+    along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
+    along = along - slope * rise if contacts.following else along
+    climb = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
+    if not len(contacts.feet):
+        state[:, lay.RISE_RATE] = climb
         return
-    foot = contacts.indices[:, lay.OF_FOOT]
+    foot, rigid = contacts.indices[:, lay.OF_FOOT], contacts.restitution is not None
     for number, row in enumerate(contacts.feet):
         own = foot == number
-        row[lay.HEIGHT] = _rest_height(number, p[own], level[own], row, contacts.restitution is not None)
+        row[lay.HEIGHT] = _rest_height(number, p[own], level[own], row, rigid)
+    if rigid:  # a rigid point moves with the surface from the start
+        contacts.feet[:, lay.CLIMB] = climb
     height = contacts.feet[foot, lay.HEIGHT]
     state[:, lay.DEPTH] = p[:, lay.INSET] + p[:, lay.FACE] * (p[:, lay.IMAGE] * level - height)
 

@@ -179,6 +179,10 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     """Share of points and time in contact, 0 to 1."""
     stuck_share: Array
     """Share of points and time that stick, 0 to 1."""
+    friction_loss: Array
+    """Energy lost in friction and tangential compliance over the interval before, J."""
+    tangential_work: Array
+    """Work of the surface's motion along the beam on the slider over the interval before, J."""
     height: Array
     """(n, feet), m."""
     pitch: Array

@@ -44,7 +44,7 @@ from verify.problem.slider import Slider
 
 SAMPLED = (
     "times", "deflection", "travelled", "speed", "friction", "normal_force", "surface_speed", "contact_share",
-    "stuck_share", "height", "pitch", "pressures",
+    "stuck_share", "friction_loss", "tangential_work", "height", "pitch", "pressures",
 )  # fmt: skip
 """Fields of a motion with a row for each sample."""
 Progress = Callable[[float], None]
@@ -193,8 +193,6 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def run(self, stages: list[Stage], progress: Progress) -> Motion:
         """One run through these stages. Raises InputError."""
         began, request, contacts = perf_counter(), self.request, self._contacts()
-        if contacts.restitution is not None:
-            raise InputError("slider.contact.stiffness is missing: rigid contact with impacts runs by run_motor")
         z = self._initial(contacts)
         kinetic, elastic = _kinetic(request.sliders, contacts), _elastic(contacts)
         beam = _beam_energy(self.basis, stages[0], z, 0.0)
@@ -279,6 +277,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             surface_speed=along(lay.KEPT_SURFACE),
             contact_share=along(lay.KEPT_TOUCH),
             stuck_share=along(lay.KEPT_STUCK),
+            friction_loss=along(lay.KEPT_LOSS),
+            tangential_work=along(lay.KEPT_ALONG),
             height=heights[:, :, 0],
             pitch=heights[:, :, 1],
             pressures=pressures,

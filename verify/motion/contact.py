@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
-from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
@@ -136,9 +135,9 @@ def coupling_of(
         friction_size=float(speed / surface_speed) if surface_speed > 0.0 else None,
         normal_size=float(slider.mass * omega**2 * abs(receptance)),
         normal=slider.normal,
-        forced=slider.coupling != "auto",
+        forced=True,
     )
-    return found if found.forced else replace(found, two_way=found.felt)
+    return found
 
 
 def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
@@ -22,7 +22,7 @@ from verify.problem.slider import Slider
 from verify.validation import check_kind, check_number, check_unmasked, check_whole
 
 if TYPE_CHECKING:
-    from verify.motion.free_vibration import FreeVibration
+    from verify.dynamics.free_vibration import FreeVibration
     from verify.motor.result import MotorState
 
 STEPS_PER_PERIOD = 64
@@ -67,7 +67,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     step: float | None
     """Seconds, as given; None where step control chooses it."""
     accounts: bool
-    before: EndState | None
+    before: Any
 
     @property
     def omega(self) -> float:

@@ -23,7 +23,7 @@ from verify.problem.slider import Slider
 from verify.validation import check_kind
 
 if TYPE_CHECKING:
-    from verify.motion.free_vibration import FreeVibration
+    from verify.dynamics.free_vibration import FreeVibration
 
 CLOSED_FORM_ROWS = 2000
 ROUNDED = 1e-9
@@ -193,7 +193,7 @@ def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
 def _closed_form(request: Request, stages: list[Stage], basis: TimeBasis | None, began: float) -> Motion:
     """Nothing nonlinear: every sample is evaluated where it stands."""
     ready = perf_counter()
-    z = start = begin(request, stages[0], basis, None)
+    z = begin(request, stages[0], basis, None)
     parts = [stages[0].deflection(z, np.zeros(1), request.points)]
     state = stages[0].state(z, 0.0)
     for stage in stages:
@@ -203,10 +203,6 @@ def _closed_form(request: Request, stages: list[Stage], basis: TimeBasis | None,
         state = stage.state(free_at(stage, z, stage.duration), stage.duration)
     times, ledger = times_of(request, stages), None
     wall = perf_counter() - ready
-    if basis is not None and request.accounts and request.before is None:
-        from verify.motion.energy import driven_ledger
-
-        ledger = driven_ledger(stages, basis, start)
     return Motion(
         model=request.model,
         count=request.count,

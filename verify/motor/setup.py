@@ -10,7 +10,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.surface import check_one_range, contact_range, section_at
 from verify.linear.time_basis import TimeBasis
-from verify.motion.contact import FELT, Coupling, Margins, friction_speed
+from verify.motion.contact import Coupling, Margins, friction_speed
 from verify.motion.forcing import check_no_resonance
 from verify.motion.request import Request, check_same_modes
 from verify.motion.simulate import steady_of
@@ -144,13 +144,12 @@ def coupling_of(request: Request, placed: Sequence[Placed], stage: Stage, basis:
     with np.errstate(divide="ignore", invalid="ignore"):
         normal_size = float(np.where(moved > 0.0, across / moved, np.inf).max())
         friction_size = float((friction / speeds).max()) if (speeds > 0.0).all() else None
-    felt = friction_size is None or max(friction_size, normal_size) > FELT
     return Coupling(
-        two_way=choice == "two-way" if choice != "auto" else felt,
+        two_way=choice == "two-way",
         friction_size=friction_size,
         normal_size=normal_size,
         normal="held",
-        forced=choice != "auto",
+        forced=True,
     )
 
 

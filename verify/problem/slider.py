@@ -186,8 +186,8 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """Raise InputError for a slider that may lose contact."""
         if self.contact is not None:
             raise InputError(
-                "slider.contact belongs to a slider that may lose contact, for [motor]: leave it out for one that never "
-                "does"
+                "slider.contact belongs to a slider that may lose contact, for [motor]: leave it out for one that "
+                "never does"
             )
 
     @property

@@ -182,8 +182,8 @@ _NEWMARK = ("average acceleration, 64 steps a period", newmark_error)
 @check("free-vibration", "periods", (1, 1e3, 1e5, 1e7, 1e9), 1e-15, baseline=_NEWMARK)
 def free_vibration_error(periods: float) -> float:
     """Mode 1 released and read at a zero crossing: the frequency error that would explain its deflection."""
-    from verify.exact.closed_forms import frequency_hz
     from verify.dynamics.free_vibration import free_vibration
+    from verify.exact.closed_forms import frequency_hz
 
     hertz = frequency_hz(STRIP, 1)
     time = (periods + 0.25) / hertz
