@@ -15,7 +15,7 @@ from verify.jit import FAST, inline
 SWEEPS = 100
 """Sweeps before the friction forces of a step are solved as a block."""
 TOLERANCE = 1e-12
-"""Change of a force in a sweep, of the largest friction limit, at which sweeps have converged."""
+"""Change of a force in a sweep, of the largest normal force, at which sweeps have converged."""
 DAMPING = 0.1
 """Share of the slip at the end of a step in the condition of a sticking point."""
 TRANSVERSE = 1
@@ -196,7 +196,7 @@ def solve(
         feet[k, lay.LIFTED], feet[k, lay.TURNED] = dt * feet[k, lay.INVERSE_FOOT_MASS] * press, 0.0
     for j in range(len(response)):
         response[j] = 0.0
-    coupled, largest = law == lay.BILATERAL, 0.0
+    coupled, largest, pressing = law == lay.BILATERAL, 0.0, False
     for i in range(points.shape[0]):
         b = indices[i, lay.OF_SLIDER]
         contacts[i, lay.WAS_FRICTION] = contacts[i, lay.FRICTION]
@@ -204,7 +204,8 @@ def solve(
         contacts[i, lay.WAS_STUCK], contacts[i, lay.STUCK] = contacts[i, lay.STUCK], 0.0
         contacts[i, lay.OWN] = own_product(i, 0, shapes) if two_way else 0.0
         many = points.shape[0] > 1 and (two_way or sliders[b, lay.INVERSE_MASS] > 0.0)
-        coupled = coupled or many or points[i, lay.DASHPOT] > 0.0
+        coupled = coupled or many or (points[i, lay.DASHPOT] > 0.0 and two_way)
+        pressing = pressing or (points[i, lay.DASHPOT] > 0.0 and not two_way)  # normal forces come first, by themselves
     sweeps, changed = 0, 0.0
     while sweeps < SWEEPS:
         changed = 0.0
@@ -213,7 +214,7 @@ def solve(
             if law == lay.SPRING and contacts[i, lay.DEPTH] <= 0.0:
                 continue
             b, k = indices[i, lay.OF_SLIDER], indices[i, lay.OF_FOOT]
-            if sweeps == 1 or law == lay.BILATERAL or points[i, lay.DASHPOT] > 0.0:
+            if sweeps == 1 or law == lay.BILATERAL or (points[i, lay.DASHPOT] > 0.0 and (two_way or pressing)):
                 normal = normal_force(
                     i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
                 )
@@ -225,8 +226,9 @@ def solve(
                     push = dt * points[i, lay.FACE] * more
                     feet[k, lay.LIFTED] += push * feet[k, lay.INVERSE_FOOT_MASS]
                     feet[k, lay.TURNED] += push * points[i, lay.ARM] * feet[k, lay.INVERSE_INERTIA]
-                changed = max(changed, sliders[b, lay.MU] * abs(more))
-                largest = max(largest, sliders[b, lay.MU_STATIC] * normal)
+                changed, largest = max(changed, abs(more)), max(largest, normal)
+            if pressing:
+                continue
             force = friction_force(i, dt, codes, sliders, points, contacts, indices, shapes, response, spans)
             more = force - contacts[i, lay.FRICTION]
             if more != 0.0:
@@ -235,7 +237,9 @@ def solve(
                 if two_way:
                     respond(i, 0, more, shapes, response)
                 changed = max(changed, abs(more))
-        if changed <= TOLERANCE * largest or not coupled:
+        if pressing:
+            pressing = changed > TOLERANCE * largest and sweeps < SWEEPS - 1
+        elif changed <= TOLERANCE * largest or not coupled:
             changed = 0.0
             break
     balance[lay.SWEEPS] += sweeps

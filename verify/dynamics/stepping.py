@@ -157,7 +157,8 @@ class _Run:
         self.first = np.zeros((n_sliders, lay.KEPT))
         self.couplings = np.zeros((2, n, n))
         self.feet_of = np.zeros(n_feet, dtype=np.int64)
-        self.feet_of[contacts.indices[:, lay.OF_FOOT][: n * bool(n_feet)]] = contacts.indices[:, lay.OF_SLIDER]
+        if n_feet:
+            self.feet_of[contacts.indices[:, lay.OF_FOOT]] = contacts.indices[:, lay.OF_SLIDER]
         self.accounts, self.n_steps, self.loop_s, self.set_up_s = accounts, 0, 0.0, 0.0
         self.z: ComplexArray = np.empty(0, dtype=complex)
 
