@@ -161,6 +161,8 @@ def add_sums(
                 closing = 0.5 * face * (feet[k, lay.LIFTED] + points[i, lay.ARM] * feet[k, lay.TURNED])
                 loss = push - points[i, lay.STIFF] * contacts[i, lay.DEPTH]
                 sums[b, lay.DAMPED] += dt * loss * (contacts[i, lay.CLOSING] - closing)
+        if sliders[b, lay.INVERSE_MASS] > 0.0:
+            sums[b, lay.UPHILL] += dt * mean * sliders[b, lay.TILT] / sliders[b, lay.INVERSE_MASS]
         sums[b, lay.PULLED] += dt * mean * (sliders[b, lay.PULL] if sliders[b, lay.INVERSE_MASS] > 0.0 else -total)
         sums[b, lay.FRICTION_TIME] += dt * total
         sums[b, lay.NORMAL_TIME] += dt * normal
@@ -282,9 +284,9 @@ def advance(
                            growth, balance)  # fmt: skip
         set_mean_rates(dt, factors)
         filter_rates(dt, n_complex, rows, factors)
-        for b in range(sliders.shape[0] if spring else 0):
+        for b in range(sliders.shape[0] if spring and n_steps > 0 else 0):
             sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
-        for k in range(feet.shape[0]):
+        for k in range(feet.shape[0] if n_steps > 0 else 0):
             feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
             feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
         for when in range(last + 1):

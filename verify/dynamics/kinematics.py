@@ -156,12 +156,14 @@ def look(
         if not spring:
             x += ahead * sliders[b, lay.FREE] * (v + 0.5 * sliders[b, lay.GAINED] * ahead / dt)
             v += sliders[b, lay.GAINED] * ahead / dt
+            if codes[lay.FOLLOWING] > 0:
+                x += ahead * contacts[i, lay.DRIFT_END]
         above = (x - edges[piece]) / length
         at, level, slope, bend, rise, turn = touch(piece, above, length, lever, local)
         stretch = np.sqrt(1.0 + slope * slope)
         along = (rise * slope - lever * turn) / stretch
         if codes[lay.FOLLOWING] > 0 and when != MIDDLE:
-            tilt, drift = rise * (turn + 2.0 * bend * v) - gravity * slope, -slope * rise
+            tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise
             if when == START:
                 if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
                     sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
@@ -180,9 +182,8 @@ def look(
         elif when == END:
             # of the product of rise and slope: their covariance and the mean slope, order dt^2 both
             first = contacts[i, lay.COVARIANCE]
-            contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0 + contacts[
-                i, lay.LIFT
-            ] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
+            mean_slope = contacts[i, lay.LIFT] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
+            contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0 + mean_slope
             contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
             contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
             contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
