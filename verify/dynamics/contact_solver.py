@@ -15,7 +15,7 @@ from verify.jit import FAST, inline
 SWEEPS = 100
 """Sweeps before the friction forces of a step are solved as a block."""
 TOLERANCE = 1e-12
-"""Change of a force in a sweep, of the largest friction limit, at which sweeps have converged."""
+"""Change of a force in a sweep, of the largest normal force, at which sweeps have converged."""
 DAMPING = 0.1
 """Share of the slip at the end of a step in the condition of a sticking point."""
 TRANSVERSE = 1
@@ -72,7 +72,7 @@ def set_end_couplings(
                 turn = turn * above + here
                 here = here * above + table[piece, d, j]
             rate, moved = value + lean * turn, v * first
-            row, other = (j, j + n_complex) if j < n else (j - n_complex, j - n_complex)
+            row = j if j < n else j - n_complex
             # real part of z: rate Re(lambda G b) + moved Re(G b); imaginary part, factor -Im z, likewise
             real = rate * rows[lay.END_RE, row] + moved * rows[lay.GAIN_RE, row]
             imaginary = rate * rows[lay.END_IM, row] + moved * rows[lay.GAIN_IM, row]
@@ -103,7 +103,9 @@ def normal_force(
             own = couplings[1, i, i]
             for k in range(points.shape[0]):
                 climb -= couplings[0, i, k] * contacts[k, lay.FRICTION] + couplings[1, i, k] * contacts[k, lay.NORMAL]
-        return float((points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.RISE_RATE])) / (1.0 + inertia * own))
+        return float(
+            (points[i, lay.LOAD] + inertia * (climb + own * n - contacts[i, lay.RISE_RATE])) / (1.0 + inertia * own)
+        )
     depth, was, k = contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH], indices[i, lay.OF_FOOT]
     if depth <= 0.0:
         return 0.0
@@ -144,7 +146,9 @@ def friction_force(
         since = 0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was)
         full = 1.0 + 0.5 * stiff * since * ease
         trial = stiff * (contacts[i, lay.STRETCH] - since * slip) / full
-        force, spans[i, 0] = elastic_force(trial, stiff * since / full, static if stuck else kinetic, kinetic, steepness)
+        force, spans[i, 0] = elastic_force(
+            trial, stiff * since / full, static if stuck else kinetic, kinetic, steepness
+        )
     elif kinetic <= 0.0:
         force = 0.0
     else:
@@ -172,7 +176,7 @@ def friction_force(
         wide = np.sqrt(bound * bound + 2.0 * max(contacts[i, lay.LOSS], 0.0) / (dt * ease))
         force = min(max(force, bound - wide), bound + wide)
     contacts[i, lay.SLIP] = slip + 0.5 * ease * force
-    return force
+    return float(force)
 
 
 @inline
@@ -192,7 +196,7 @@ def solve(
         feet[k, lay.LIFTED], feet[k, lay.TURNED] = dt * feet[k, lay.INVERSE_FOOT_MASS] * press, 0.0
     for j in range(len(response)):
         response[j] = 0.0
-    coupled, largest = law == lay.BILATERAL, 0.0
+    coupled, largest, pressing = law == lay.BILATERAL, 0.0, False
     for i in range(points.shape[0]):
         b = indices[i, lay.OF_SLIDER]
         contacts[i, lay.WAS_FRICTION] = contacts[i, lay.FRICTION]
@@ -200,7 +204,8 @@ def solve(
         contacts[i, lay.WAS_STUCK], contacts[i, lay.STUCK] = contacts[i, lay.STUCK], 0.0
         contacts[i, lay.OWN] = own_product(i, 0, shapes) if two_way else 0.0
         many = points.shape[0] > 1 and (two_way or sliders[b, lay.INVERSE_MASS] > 0.0)
-        coupled = coupled or many or points[i, lay.DASHPOT] > 0.0
+        coupled = coupled or many or (points[i, lay.DASHPOT] > 0.0 and two_way)
+        pressing = pressing or (points[i, lay.DASHPOT] > 0.0 and not two_way)  # normal forces come first, by themselves
     sweeps, changed = 0, 0.0
     while sweeps < SWEEPS:
         changed = 0.0
@@ -209,8 +214,10 @@ def solve(
             if law == lay.SPRING and contacts[i, lay.DEPTH] <= 0.0:
                 continue
             b, k = indices[i, lay.OF_SLIDER], indices[i, lay.OF_FOOT]
-            if sweeps == 1 or law == lay.BILATERAL or points[i, lay.DASHPOT] > 0.0:
-                normal = normal_force(i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings)
+            if sweeps == 1 or law == lay.BILATERAL or (points[i, lay.DASHPOT] > 0.0 and (two_way or pressing)):
+                normal = normal_force(
+                    i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
+                )
                 more = normal - contacts[i, lay.NORMAL]
                 contacts[i, lay.NORMAL] = normal
                 if presses and more != 0.0:
@@ -219,8 +226,9 @@ def solve(
                     push = dt * points[i, lay.FACE] * more
                     feet[k, lay.LIFTED] += push * feet[k, lay.INVERSE_FOOT_MASS]
                     feet[k, lay.TURNED] += push * points[i, lay.ARM] * feet[k, lay.INVERSE_INERTIA]
-                changed = max(changed, sliders[b, lay.MU] * abs(more))
-                largest = max(largest, sliders[b, lay.MU_STATIC] * normal)
+                changed, largest = max(changed, abs(more)), max(largest, normal)
+            if pressing:
+                continue
             force = friction_force(i, dt, codes, sliders, points, contacts, indices, shapes, response, spans)
             more = force - contacts[i, lay.FRICTION]
             if more != 0.0:
@@ -229,7 +237,9 @@ def solve(
                 if two_way:
                     respond(i, 0, more, shapes, response)
                 changed = max(changed, abs(more))
-        if changed <= TOLERANCE * largest or not coupled:
+        if pressing:
+            pressing = changed > TOLERANCE * largest and sweeps < SWEEPS - 1
+        elif changed <= TOLERANCE * largest or not coupled:
             changed = 0.0
             break
     balance[lay.SWEEPS] += sweeps
@@ -254,7 +264,7 @@ def solve_block(
     dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array,
     response: Array, spans: Array, block: Array,
 ) -> float:  # fmt: skip
-    """Friction of all rigid points together, by their mean slips: Newton's method on active sets; the last change, N."""
+    """Friction of all rigid points together, by their mean slips: Newton's method on active sets; last change."""
     n, two_way, changed = points.shape[0], codes[lay.TWO_WAY] > 0, 0.0
     for _ in range(4 * n + 20):
         for i in range(n):  # row i: what the law asks of all changes of force

@@ -1,8 +1,8 @@
 """Compiled friction laws: the force on a slider in one step, with its own response and the surface's solved exactly.
 
-The relative speed r = v - s of a point begins the step at r0 and changes at -(a + ease f'), where `a` is the gain of the
-surface over a slider without friction, per step, and f the friction force on the slider: r' = ease f - a, in units of
-one step, with `ease` = dt/m + 2 w, w the mean response of the surface to a unit force.
+The relative speed r = v - s of a point follows r' = ease f - a in units of one step: f is the friction force on the
+slider, `a` the gain of the surface over a slider without friction, `ease` = dt/m + 2 w with the mean response w of the
+surface to a unit force.
 """
 
 import numpy as np
@@ -144,8 +144,9 @@ def coulomb_force(
 ) -> float:
     """Mean friction in the step by Coulomb's law, from event to event.
 
-    Sets row i of `spans` (points, 4 + 2 SPANS): 1 where it sticks all the step, 0.5 where from an event in it to its end, the relative displacement over dt, r at the
-    end, the number of events, and of each the share of the step and its kind.
+    Sets row i of `spans` (points, 4 + 2 SPANS): 1 where it sticks all the step, 0.5 where from an event in it to its
+    end; the relative displacement over dt, r at the end, the number of events, and of each the share of the step and
+    its kind.
     """
     force, used, moved, n = 0.0, 0.0, 0.0, 0
     if abs(r) <= 1e-9 * ease * kinetic and abs(a0) <= ease * static:
@@ -171,9 +172,7 @@ def coulomb_force(
 
 
 @inline
-def held_force(
-    i: int, needed: float, kinetic: float, static: float, last: float, ease: float, spans: Array
-) -> float:
+def held_force(i: int, needed: float, kinetic: float, static: float, last: float, ease: float, spans: Array) -> float:
     """Mean friction in the step of a point that sticks to a surface with a response, from the force that it `needed`.
 
     A force that is constant in the step lets the surface move less evenly than the true one, so that means decide. It

@@ -29,8 +29,8 @@ rides on it, tangential speed of the material."""
 
 @inline(fastmath=FAST)
 def see(
-    time: float, since: float, x: float, v: float, n_complex: int, rows: Array, drive: Array, table: Array, edges: Array,
-    lever: float, columns: Array, seen: Array,
+    time: float, since: float, x: float, v: float, n_complex: int, rows: Array, drive: Array, table: Array,
+    edges: Array, lever: float, columns: Array, seen: Array,
 ) -> None:  # fmt: skip
     """Set the surface under x at a time of the stage, `since` seconds after the state of the rows."""
     piece, n, omega, unit = 0, rows.shape[1], drive[lay.OMEGA], drive[lay.UNIT]
@@ -98,8 +98,18 @@ def advance_impacts(
     columns) and `seen` (5,) are working space.
     """
     slider, foot, touch, total, n_complex = sliders[0], feet[0], contacts[0], sums[0], codes[lay.COMPLEX]
-    mass, lever, free, inverse = 1.0 / foot[lay.INVERSE_FOOT_MASS], points[0, lay.LEVER], slider[lay.FREE], slider[lay.INVERSE_MASS]
-    press, along, mu, steepness = -foot[lay.PRESS] / mass, slider[lay.PULL] * inverse, slider[lay.MU], slider[lay.STEEPNESS]
+    mass, lever, free, inverse = (
+        1.0 / foot[lay.INVERSE_FOOT_MASS],
+        points[0, lay.LEVER],
+        slider[lay.FREE],
+        slider[lay.INVERSE_MASS],
+    )
+    press, along, mu, steepness = (
+        -foot[lay.PRESS] / mass,
+        slider[lay.PULL] * inverse,
+        slider[lay.MU],
+        slider[lay.STEEPNESS],
+    )
     for _ in range(n_steps):
         time, done, origin = tally[lay.STEP] * dt, 0.0, drive[lay.ORIGIN]
         for _ in range(IMPACTS):
@@ -107,7 +117,8 @@ def advance_impacts(
             if left <= 1e-15 * dt:
                 break
             if touch[lay.DEPTH] == 0.0:
-                see(time, done, slider[lay.X], free * slider[lay.V], n_complex, rows, drive, table, edges, lever, columns, seen)
+                see(time, done, slider[lay.X], free * slider[lay.V],
+                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
                 foot[lay.HEIGHT], foot[lay.CLIMB] = seen[LEVEL], seen[CLIMB]
                 touch[lay.DEPTH] = 1.0 if press + seen[ACCELERATION] > 0.0 else -1.0
             riding, low, high, x, v = touch[lay.DEPTH] > 0.0, 0.0, left, slider[lay.X], slider[lay.V]
@@ -117,8 +128,8 @@ def advance_impacts(
                 if (trial == 1 and ended) or (trial > 1 and not low < s < high):
                     continue
                 pull = 0.0 if riding else along
-                see(time + done + s, done + s, x + free * (v + 0.5 * pull * s) * s, free * (v + pull * s), n_complex, rows,
-                    drive, table, edges, lever, columns, seen)  # fmt: skip
+                see(time + done + s, done + s, x + free * (v + 0.5 * pull * s) * s, free * (v + pull * s),
+                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
                 margin = foot[lay.HEIGHT] + (foot[lay.CLIMB] - 0.5 * press * s) * s - seen[LEVEL]
                 margin = press + seen[ACCELERATION] if riding else margin
                 if margin < 0.0:
@@ -141,12 +152,15 @@ def advance_impacts(
                 see(time + done, done, x, free * v, n_complex, rows, drive, table, edges, lever, columns, seen)
                 speed = seen[ALONG]
                 middle = x + free * 0.5 * v * s
-                see(time + done + 0.5 * s, done + 0.5 * s, middle, free * v, n_complex, rows, drive, table, edges, lever, columns, seen)
+                see(time + done + 0.5 * s, done + 0.5 * s, middle, free * v,
+                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
                 push, share, uphill = mass * max(press + seen[ACCELERATION], 0.0), s, seen[RAMP]
-                see(time + done + s, done + s, x + free * v * s, free * v, n_complex, rows, drive, table, edges, lever, columns, seen)
+                see(time + done + s, done + s, x + free * v * s, free * v,
+                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
             ease, gain = inverse, 0.0
             if not riding and ended:  # landing: restitution across, friction of the impulse along
-                see(time + done + s, done + s, slider[lay.X], free * slider[lay.V], n_complex, rows, drive, table, edges, lever, columns, seen)
+                see(time + done + s, done + s, slider[lay.X], free * slider[lay.V],
+                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
                 foot[lay.HEIGHT] = seen[LEVEL]
                 into = max(seen[CLIMB] - foot[lay.CLIMB], 0.0)
                 push, share, speed, uphill = mass * (1.0 + restitution) * into, 1.0, seen[ALONG], seen[RAMP]
@@ -171,7 +185,8 @@ def advance_impacts(
                 slider[lay.V] = after
                 if riding:
                     slider[lay.X] = x + free * mean * s
-                    see(time + done + s, done + s, slider[lay.X], free * after, n_complex, rows, drive, table, edges, lever, columns, seen)
+                    see(time + done + s, done + s, slider[lay.X], free * after,
+                        n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
                     rise = seen[LEVEL] - foot[lay.HEIGHT]
                     across = 0.5 * mass * (seen[CLIMB] ** 2 - foot[lay.CLIMB] ** 2) + mass * press * rise
                     foot[lay.HEIGHT], foot[lay.CLIMB] = seen[LEVEL], seen[CLIMB]
@@ -208,7 +223,12 @@ def advance_impacts(
             if kind > 0.0:
                 row = tally[lay.EVENTS]
                 if row < events.shape[0]:
-                    events[row, 0], events[row, 1], events[row, 2], events[row, 3] = origin + time + done, kind, 0.0, slider[lay.X]
+                    events[row, 0], events[row, 1], events[row, 2], events[row, 3] = (
+                        origin + time + done,
+                        kind,
+                        0.0,
+                        slider[lay.X],
+                    )
                 tally[lay.EVENTS] += 1
         if dt - done > 1e-15 * dt:
             return lay.CHATTERS

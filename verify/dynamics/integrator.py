@@ -36,8 +36,8 @@ def add_powers(
 ) -> None:  # fmt: skip
     """Add the drive's power and the modes' loss, with a weight in seconds, to the balance.
 
-    `forced` (n, drive columns) are the forced parts of the rows over the drive's factors, `loads` (2, n) the generalised
-    force phasors, `growth` their envelope.
+    `forced` (n, drive columns) are the forced parts of the rows over the drive's factors, `loads` (2, n) the
+    generalised force phasors, `growth` their envelope.
     """
     angle, part, grown = drive[lay.OMEGA] * (drive[lay.ORIGIN] + time), time / drive[lay.UNIT], 0.0
     c, s, n, first = np.cos(angle), np.sin(angle), rows.shape[1], factors.shape[2] - forced.shape[1]
@@ -56,7 +56,8 @@ def add_powers(
 
 @inline
 def move(
-    dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices, spans: Array
+    dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
+    spans: Array,
 ) -> None:  # fmt: skip
     """Sliders and feet to the end of the step; a slider with one rigid point follows its law within the step."""
     spring = codes[lay.LAW] == lay.SPRING
@@ -138,7 +139,11 @@ def add_sums(
                     contacts[i, lay.CLOSING] += answer
                     contacts[i, lay.LIFT] = lift
             touching += 1 if push > 0.0 or not spring else 0
-            total, normal, surface = total + force, normal + push, surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0)
+            total, normal, surface = (
+                total + force,
+                normal + push,
+                surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0),
+            )
             sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
             sums[b, lay.ALONG] += dt * force * contacts[i, lay.SURFACE]
             sums[b, lay.DISSIPATED] -= dt * force * contacts[i, lay.SLIP]
@@ -156,6 +161,8 @@ def add_sums(
                 closing = 0.5 * face * (feet[k, lay.LIFTED] + points[i, lay.ARM] * feet[k, lay.TURNED])
                 loss = push - points[i, lay.STIFF] * contacts[i, lay.DEPTH]
                 sums[b, lay.DAMPED] += dt * loss * (contacts[i, lay.CLOSING] - closing)
+        if sliders[b, lay.INVERSE_MASS] > 0.0:
+            sums[b, lay.UPHILL] += dt * mean * sliders[b, lay.TILT] / sliders[b, lay.INVERSE_MASS]
         sums[b, lay.PULLED] += dt * mean * (sliders[b, lay.PULL] if sliders[b, lay.INVERSE_MASS] > 0.0 else -total)
         sums[b, lay.FRICTION_TIME] += dt * total
         sums[b, lay.NORMAL_TIME] += dt * normal
@@ -187,7 +194,7 @@ def write_events(
         for e in range(n):
             if codes[lay.LAW] != lay.SPRING:
                 share, kind = spans[i, 4 + 2 * e], spans[i, 5 + 2 * e]
-            if kind == 0.0 or kind == lay.TURNS:
+            if kind in (0.0, lay.TURNS):
                 continue
             row = tally[lay.EVENTS]
             if row < events.shape[0]:
@@ -277,9 +284,9 @@ def advance(
                            growth, balance)  # fmt: skip
         set_mean_rates(dt, factors)
         filter_rates(dt, n_complex, rows, factors)
-        for b in range(sliders.shape[0] if spring else 0):
+        for b in range(sliders.shape[0] if spring and n_steps > 0 else 0):
             sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
-        for k in range(feet.shape[0]):
+        for k in range(feet.shape[0] if n_steps > 0 else 0):
             feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
             feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
         for when in range(last + 1):

@@ -27,9 +27,7 @@ def set_factors(when: int, time: float, n_complex: int, rows: Array, drive: Arra
     n = rows.shape[1]
     for j in range(n):
         factors[when, VALUE, j] = rows[lay.Z_RE, j]
-        factors[when, RATE, j] = (
-            rows[lay.RATE_RE, j] * rows[lay.Z_RE, j] - rows[lay.RATE_IM, j] * rows[lay.Z_IM, j]
-        )
+        factors[when, RATE, j] = rows[lay.RATE_RE, j] * rows[lay.Z_RE, j] - rows[lay.RATE_IM, j] * rows[lay.Z_IM, j]
     for k in range(n_complex):
         j = n - n_complex + k
         factors[when, VALUE, n + k] = -rows[lay.Z_IM, j]
@@ -158,12 +156,14 @@ def look(
         if not spring:
             x += ahead * sliders[b, lay.FREE] * (v + 0.5 * sliders[b, lay.GAINED] * ahead / dt)
             v += sliders[b, lay.GAINED] * ahead / dt
+            if codes[lay.FOLLOWING] > 0:
+                x += ahead * contacts[i, lay.DRIFT_END]
         above = (x - edges[piece]) / length
         at, level, slope, bend, rise, turn = touch(piece, above, length, lever, local)
         stretch = np.sqrt(1.0 + slope * slope)
         along = (rise * slope - lever * turn) / stretch
         if codes[lay.FOLLOWING] > 0 and when != MIDDLE:
-            tilt, drift = rise * (turn + 2.0 * bend * v) - gravity * slope, -slope * rise
+            tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise
             if when == START:
                 if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
                     sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
@@ -182,10 +182,8 @@ def look(
         elif when == END:
             # of the product of rise and slope: their covariance and the mean slope, order dt^2 both
             first = contacts[i, lay.COVARIANCE]
-            contacts[i, lay.COVARIANCE] = (
-                (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0
-                + contacts[i, lay.LIFT] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
-            )
+            mean_slope = contacts[i, lay.LIFT] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
+            contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0 + mean_slope
             contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
             contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
             contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
@@ -226,7 +224,11 @@ def set_shapes(
             contacts[i, lay.SLOPE],
         )
         length = edges[piece + 1] - edges[piece]
-        lever, stretch, side = points[i, lay.LEVER], np.sqrt(1.0 + slope * slope), points[i, lay.FACE] * points[i, lay.IMAGE]
+        lever, stretch, side = (
+            points[i, lay.LEVER],
+            np.sqrt(1.0 + slope * slope),
+            points[i, lay.FACE] * points[i, lay.IMAGE],
+        )
         lean, weight = slope * lever / length, points[i, lay.WEIGHT] / dt
         for j in range(n + n_complex):
             value, first, here, turn = 0.0, 0.0, 0.0, 0.0

@@ -157,7 +157,8 @@ class _Run:
         self.first = np.zeros((n_sliders, lay.KEPT))
         self.couplings = np.zeros((2, n, n))
         self.feet_of = np.zeros(n_feet, dtype=np.int64)
-        self.feet_of[contacts.indices[:, lay.OF_FOOT][: n * bool(n_feet)]] = contacts.indices[:, lay.OF_SLIDER]
+        if n_feet:
+            self.feet_of[contacts.indices[:, lay.OF_FOOT]] = contacts.indices[:, lay.OF_SLIDER]
         self.accounts, self.n_steps, self.loop_s, self.set_up_s = accounts, 0, 0.0, 0.0
         self.z: ComplexArray = np.empty(0, dtype=complex)
 
@@ -173,14 +174,18 @@ class _Run:
         rows, drive = rows_of(stage, z), np.array([stage.omega, stage.origin, stage.unit_s], dtype=float)
         places = np.ascontiguousarray(stage.columns(self.places).T) if len(self.places) else np.zeros((0, 0))
         columns = stage.columns(stage.edges[:1]).shape[0]
-        own = n + (n if np.iscomplexobj(stage.shapes(stage.edges[:1], 0)) else 0)
+        own = n + stage.complex_rows
         forced, loads = np.zeros((n, columns - own)), np.array([stage.rows.loads.real, stage.rows.loads.imag])
         growth = np.zeros(0)
         if self.accounts and stage.forced is not None:
             forced[:] = interleaved(stage.forced.forward + stage.forced.backward)
             growth = np.array(stage.envelope, dtype=float)
         codes = np.zeros(lay.CODES, dtype=np.int64)
-        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = contacts.law, contacts.two_way, contacts.two_way and contacts.presses
+        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = (
+            contacts.law,
+            contacts.two_way,
+            contacts.two_way and contacts.presses,
+        )
         codes[[lay.FOLLOWING, lay.COMPLEX, lay.ACCOUNTS]] = contacts.following, own - n, self.accounts
         factors, two_way = np.zeros((4, 2, columns)), contacts.two_way
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
@@ -195,10 +200,11 @@ class _Run:
                 contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self._positions())
                 self.set_up_s += thread_time() - began
                 arrays = (
-                    contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet, contacts.points,
-                    contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes, response,
-                    self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples, self.heights,
-                    self.pressures, self.deflections, self.events, self.tally, self.sums, self.before, self.balance,
+                    contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
+                    contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
+                    response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
+                    self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
+                    self.balance,
                 )  # fmt: skip
                 rigid = contacts.restitution is not None
                 if self.n_steps == 0 and not rigid:
@@ -260,7 +266,11 @@ class _Run:
             self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
             self.first[:, lay.KEPT_SURFACE] = np.nan
             return
-        load, slip, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.V] - contacts[:, lay.START], sliders[:, lay.STEEPNESS]
+        load, slip, steepness = (
+            self.contacts.points[:, lay.LOAD],
+            sliders[:, lay.V] - contacts[:, lay.START],
+            sliders[:, lay.STEEPNESS],
+        )
         law = np.where(steepness > 0.0, np.tanh(steepness * slip), np.sign(slip))
         self.first[:, lay.KEPT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
         self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
@@ -272,7 +282,9 @@ class _Run:
             foot = feet[self.contacts.indices[:, lay.OF_FOOT]]
             climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
             depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
-            np.add.at(self.sums[:, lay.STORED], self.contacts.indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2)
+            np.add.at(
+                self.sums[:, lay.STORED], self.contacts.indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2
+            )
 
     def _positions(self) -> Array:
         """Points from the start of the first slider, (points,), m, half a step on for feet."""
@@ -296,7 +308,10 @@ class _Run:
         row = int(self.tally[lay.SAMPLES])
         free = stage.rows.after(self.z, (rest - begun) * dt)
         shapes, x = stage.shapes(self.places, 0), self.contacts.sliders[:, lay.X]
-        drive = stage.drive_factors(rest * dt) @ interleaved(stage.drive_shapes(self.places, 0).T).T
+        drive = (
+            stage.drive_factors(np.asarray(rest * dt, dtype=float))
+            @ interleaved(stage.drive_shapes(self.places, 0).T).T
+        )
         self.deflections[row : row + len(rest)] = (free @ shapes).real + drive
         speed = self.contacts.sliders[:, lay.V]
         self.samples[row : row + len(rest), :, lay.KEPT_X] = x + np.multiply.outer((rest - begun) * dt, speed)
@@ -314,7 +329,13 @@ def rows_of(stage: Stage, z: ComplexArray) -> Array:
     coarse = abs(rate) * dt > RESOLVED
     end = np.where(coarse, gain / dt, stage.rows.participations * grown)
     half, rows = np.exp(0.5 * rate * dt), np.empty((lay.ROW, len(z)))
-    for first, value in ((lay.Z_RE, z), (lay.RATE_RE, rate), (lay.HALF_RE, half), (lay.GAIN_RE, gain), (lay.END_RE, end)):
+    for first, value in (
+        (lay.Z_RE, z),
+        (lay.RATE_RE, rate),
+        (lay.HALF_RE, half),
+        (lay.GAIN_RE, gain),
+        (lay.END_RE, end),
+    ):
         rows[first], rows[first + 1] = value.real, value.imag
     rows[lay.COARSE] = coarse
     return rows
