@@ -29,17 +29,16 @@ from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
 from verify.validation import check_number
 from verify.waves.best_drive import BestDrive, best_drive
-from verify.waves.best_frequency import best_frequency
 from verify.waves.driven_case import DrivenCase
 from verify.waves.from_time_series import phasors
 from verify.waves.impedance_matching import matched_device
-from verify.waves.operating_point import OperatingMap, OperatingPoint, maximum_crest_speed
+from verify.waves.operating_point import OperatingPoint, best_frequency, maximum_crest_speed
 from verify.waves.two_waves import ROUNDING, TwoWaves, fit_waves, fitted_wavenumber, two_waves
 from verify.waves.waveguide import Waveguide
 from verify.waves.window import Window, check_clear, middle_half
 
 __all__ = [
-    "BestDrive", "DrivenCase", "OperatingMap", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
+    "BestDrive", "DrivenCase", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
     "best_frequency", "ellipse", "fit_waves", "matched_device", "maximum_crest_speed", "measure", "measure_series",
     "middle_half", "phasors", "power_imbalance", "surface_motion", "two_waves",
 ]  # fmt: skip

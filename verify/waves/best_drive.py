@@ -14,11 +14,10 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import NoFigureError
-from verify.waves.best_phase import FirstHarmonic, squared
 from verify.waves.driven_case import DrivenCase
 from verify.waves.operating_point import check_two
 from verify.waves.superposition import unit_waves
-from verify.waves.two_waves import reflections, standing_wave_ratios, zero_field
+from verify.waves.two_waves import minimum_near, reflections, standing_wave_ratios, zero_field
 from verify.waves.window import Window, middle_half
 
 HUGE = 10.0
@@ -93,11 +92,14 @@ def best_drive(
         drive = np.linalg.solve(r, np.linalg.svd(q[len(wanted) :])[2][-1].conj()) / scale
         ratio = float(abs(drive[1]) / abs(drive[0])) if drive[0] else inf
         phase = float(np.angle(drive[1] * np.conj(drive[0]), deg=True))
-    plus, minus = (squared(wave[:, 0], wave[:, 1]) for wave in (wanted, unwanted))
-    plus, minus = (FirstHarmonic(one.mean.sum(keepdims=True), one.first.sum(keepdims=True)) for one in (plus, minus))
-    total = minus.less(-1.0, plus)
-    equal = min(minus.stationary_ratio(plus)[0], key=lambda phase: float(minus.at(phase)[0] / total.at(phase)[0]))
-    turned = np.exp(1j * equal)
+
+    def unwanted_share(phases: Array) -> Array:
+        """Root of the power of the unwanted wave over that of both, of equal amplitudes."""
+        powers = [(abs(w[:, :1] + w[:, 1:] * np.exp(1j * phases)) ** 2).sum(axis=0) for w in (wanted, unwanted)]
+        return np.asarray(np.sqrt(powers[1] / sum(powers)))
+
+    # beyond one turn on both sides, so that a minimum at 180 degrees is inside
+    turned = np.exp(1j * minimum_near(unwanted_share, np.linspace(-1.04, 1.04, 105) * np.pi, 1e-12).x)
     return BestDrive(
         frequencies_hz=frequencies[known],
         ratio=ratio,
