@@ -62,6 +62,22 @@ def test_exact_modes_with_their_tail_are_the_exact_field():
         assert abs(rest(x, derivative)).max() < 1e-2 * abs(modal).max()
 
 
+@pytest.mark.parametrize(("kept", "driven"), [(25, 3), (25, 25), (3, 3)])
+@pytest.mark.parametrize("off", [0.0, 3e-11, 7e-5])
+def test_the_tail_of_the_exact_modes_exists_at_an_undamped_resonance_of_one_of_them(kept, driven, off):
+    """Between pinned ends: the sum of sine modes from the first that is left out on."""
+    model = ExactModel(STRIP)
+    frequency = (1.0 + off) * model.frequency_hz(driven)
+    basis, x = model.time_basis(modes=kept), np.array([0.0163, 0.0371, 0.211, 0.4])
+    k = np.arange(kept + 1, 100_000) * np.pi / STRIP.length
+    receptances = 2.0 / STRIP.mass_per_length / STRIP.length
+    receptances = receptances / ((k**2 * STRIP.wave_constant) ** 2 - (2.0 * np.pi * frequency) ** 2)
+    for derivative, shapes in ((0, np.sin(np.outer(x, k))), (1, k * np.cos(np.outer(x, k)))):
+        expected = sum(phasor(one) * (shapes @ (receptances * np.sin(k * one.position))) for one in FORCES)
+        found = basis.tail(FORCES, frequency, 0.0)(x, derivative)
+        assert found == pytest.approx(expected, abs=2e-7 * abs(expected).max())
+
+
 def test_models_of_a_stepped_beam_agree():
     exact = ExactModel(BEAMS["stepped"]).time_basis(modes=30).omegas[:3]
     for model in (SegmentModel, HermiteModel):
