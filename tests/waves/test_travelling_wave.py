@@ -104,6 +104,17 @@ def test_the_same_from_time_series_with_trend_noise_and_broken_periods(gamma, pe
     assert found.ellipses[0].mean() == pytest.approx(wanted.ellipses[0].mean(), rel=0.04)
 
 
+@pytest.mark.parametrize(
+    ("points", "rate", "message"),
+    [(33, 1.9, r"times have 1\.9 samples in each period"), (11, 31.3, r"x has a gap of 0\.025 m, half a wavelength")],
+)
+def test_series_sampled_below_nyquist_in_time_or_space_are_refused(points, rate, message):
+    x, times = np.linspace(*WINDOW, points), np.arange(0.0, 20.0, 1.0 / rate) / 4276.0
+    series = (two_waves(1e-6, 1e-7).deflection(x)[None] * np.exp(2j * np.pi * 4276.0 * times)[:, None]).real
+    with pytest.raises(InputError, match=message):
+        measure_series(BEAM, x, times, series, 4276.0)
+
+
 def test_series_too_short_to_measure_are_refused():
     times = np.linspace(0, 0.7 / 4276, 40)
     with pytest.raises(InputError, match=r"times cover 0\.7. periods"):
@@ -132,7 +143,7 @@ def test_the_ellipse_of_a_point_is_that_of_its_path():
 
 def test_a_wave_towards_plus_x_turns_counter_clockwise_and_moves_crests_backwards():
     found = measure(two_waves(1e-6, 0.0), WINDOW, 135.2)
-    assert found.signed_area_range[2] < 0.0
+    assert found.s3_range[2] < 0.0
     assert found.ellipses[0] == pytest.approx(np.full(len(found.x), -found.ideal_axis_ratio), rel=1e-12)
     assert found.crest_speed == pytest.approx(-2 * np.pi * 4276 * 0.0005 * 135.2 * 1e-6, rel=1e-12)
     field = two_waves(1e-6, 0.0)

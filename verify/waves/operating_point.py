@@ -96,7 +96,7 @@ def maximum_crest_speed(case: DrivenCase, limit: float, span: float = SEARCH_SPA
     # where the reflection reaches its limit; points beyond the limit rank by their reflection, which leads to it
     while True:
         waves, rows = unit_waves(case, at, middle_half(case.beam)), np.arange(len(at))
-        omega, phases = 2.0 * np.pi * at[:, None], np.tile(np.linspace(*ends, 171), (len(at), 1))
+        omega, phases = 2.0 * np.pi * at[:, None], np.tile(np.linspace(ends[0], ends[1], 171), (len(at), 1))
         for _ in range(_LEVELS):
             drives = np.stack([np.full_like(phases, first), second * np.exp(1j * phases)], axis=1)
             forward, backward = waves.superposed(drives)

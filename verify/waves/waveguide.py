@@ -1,4 +1,4 @@
-"""What a bending wave runs in: a beam's own section by a beam theory; crest speed and energy flux of two waves."""
+"""The waveguide of bending waves, a beam's own section by a beam theory: crest speed and energy flux of two waves."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ class Waveguide(msgspec.Struct, frozen=True):
     theory: str = "euler-bernoulli"
 
     def rotation_ratio(self, omega: Any) -> Any:
-        """Rotation of the section over the slope of the line in a running wave: 1 without shear.
+        """Rotation of the section over the slope of the line in a travelling wave: 1 without shear.
 
         kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921);
         complex with losses.
@@ -30,11 +30,15 @@ class Waveguide(msgspec.Struct, frozen=True):
         return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / resisted
 
     def axis_ratio(self, omega: Any, k: Any) -> Any:
-        """Of a pure wave: k h/2 times that ratio, width over height of the surface ellipse."""
+        """Width over height of the surface ellipse of a pure wave, r = (k h/2) psi/w'."""
         return np.real(k * self.rotation_ratio(omega)) * self.beam.surface_distance
 
     def crest_speed(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
-        """Speed of the surface at the crests along +x, m/s, under both waves."""
+        """Velocity of the surface along +x at the crests of both waves, m/s.
+
+        When w at a point is largest, u_x changes at omega S3 / (2 |w|). S3 = -2 r (|A+|^2 - |A-|^2) is constant; with
+        the rms sqrt(|A+|^2 + |A-|^2) of |w| that is -omega r (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2).
+        """
         plus, minus = abs(forward) ** 2, abs(backward) ** 2
         return -omega * self.axis_ratio(omega, k) * (plus - minus) / np.sqrt(plus + minus)
 
