@@ -1,4 +1,4 @@
-"""Comparison of modes and errors: MAC, pairing, relative and shape errors, observed order. Sees arrays, no model."""
+"""Comparison of modes and errors as arrays: MAC, pairing, relative and shape errors, observed order."""
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -18,12 +18,12 @@ ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
 ORDER_SPREAD = 1.0
 """Largest difference between the orders of neighbouring sizes in the asymptotic range."""
 AT_REST = 1e-11
-"""A shape of this fraction of its typical size is rounding: mode 3 of a pinned beam at the nodes of three parts."""
+"""A shape of this fraction of its typical size is rounding, as mode 3 of a pinned beam at the nodes of three parts."""
 LEAST_MAC = 0.5
 """Lowest MAC of a pair of modes."""
 LOW_MAC = 0.8
-"""Below this MAC supports differ: a clamped beam's first shapes have 0.62 and 0.75 with a cantilever's nearest, mode 6
-of a cantilever of twenty links has 0.996 with its own."""
+"""MAC below which supports differ: the first shapes of a clamped beam have 0.62 and 0.75 with a cantilever's, mode 6
+of a cantilever of twenty links has 0.996 with the exact one."""
 
 
 def relative_error(value: T, exact: T) -> T:
@@ -81,10 +81,9 @@ def node_weights(nodes: Array) -> Array:
 
 
 def shape_error(exact: Array, computed: Array, weights: Array, typical: float = 0.0) -> float:
-    """Relative L2 distance of two mass-normalised shapes, free of sign; all (n_nodes,).
+    """Relative L2 distance of two mass-normalised shapes up to sign; all (n_nodes,).
 
-    `typical` is the size of such a shape elsewhere. Raises NoFigureError where the exact shape is below `AT_REST` of it
-    at every node.
+    Raises NoFigureError where the exact shape is below `AT_REST` of its `typical` size at every node.
     """
     size = float(weights @ exact**2)
     if size <= (AT_REST * typical) ** 2 * float(weights.sum()):
@@ -114,22 +113,22 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
 def observed_order(counts: Sequence[float], errors: Sequence[complex], given: str = "") -> float:
     """Minus the least-squares slope of log |error| over log count; `errors` signed or complex.
 
-    `given` names the sizes where they are not counts: 'steps = [...]'. Raises InputError for fewer than three sizes,
-    equal sizes, an error that changes sign (or phase by more than 90 degrees), or one below `ORDER_FLOOR`.
+    `given` names sizes that are not counts: 'steps = [...]'. Raises InputError for fewer than three different sizes, an
+    error that changes sign (or phase by more than 90 degrees), and one below `ORDER_FLOOR`.
     """
     given = given or f"counts = {list(counts)}"
     sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=complex)
+    least, wrong = abs(values).min(initial=np.inf), ""
     if len(sizes) < 3 or len(set(counts)) != len(sizes):
-        raise InputError(f"{given}: an observed order needs three or more different sizes")
-    if not np.isfinite(values).all():
-        raise InputError(f"{given}: an error is not finite, choose another mode or another quantity")
-    if (abs(values) < ORDER_FLOOR).any():
-        raise InputError(
-            f"{given}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "
-            "use coarser sizes or a higher mode"
-        )
-    if (np.outer(values, values.conj()).real < 0.0).any():
-        raise InputError(f"{given}: the error changes sign between them, so it has no order there")
+        wrong = "an observed order needs three or more different sizes"
+    elif not np.isfinite(values).all():
+        wrong = "an error is not finite, choose another mode or another quantity"
+    elif least < ORDER_FLOOR:
+        wrong = f"an error of {least:.1e} is rounding (floor {ORDER_FLOOR:.0e}), use coarser sizes or a higher mode"
+    elif (np.outer(values, values.conj()).real < 0.0).any():
+        wrong = "the error changes sign between them, so it has no order there"
+    if wrong:
+        raise InputError(f"{given}: {wrong}")
     return float(-np.polyfit(np.log(sizes), np.log(abs(values)), 1)[0])
 
 
@@ -138,8 +137,8 @@ def asymptotic_order(
 ) -> float:
     """`observed_order` of errors in the asymptotic range: orders from size to size within `ORDER_SPREAD` of `expected`.
 
-    Of each other where `expected` is None. Raises InputError outside it: sizes are too coarse, or the error is about to
-    change sign, and a slope through them is no order.
+    Without `expected` they are within it of each other. Raises InputError for errors outside the asymptotic range,
+    where sizes are too coarse or the error is about to change sign.
     """
     order = observed_order(counts, errors, given)
     by_size = sorted(zip(counts, np.abs(errors), strict=True))

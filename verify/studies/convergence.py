@@ -132,12 +132,12 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
-        from verify.analysis.solution_cache import has_bracket
+        from verify.analysis.solution_cache import unproven
         from verify.linear.registry import MEAN
 
         rows: list[Row] = []
         reasons: dict[str, None] = {}
-        settings = next((one for one in self.combinations if has_bracket(cache.beam, one)), self.combinations[0])
+        settings = next((one for one in self.combinations if not unproven(cache.beam, one)), self.combinations[0])
         for mode in self.modes:
             for count in self.counts:
                 try:
