@@ -1,4 +1,4 @@
-"""A driven beam as one value: a model, what drives it at one frequency, and the devices on it."""
+"""A driven beam as one value: a model, its drive at one frequency, and the devices on it."""
 
 from typing import TYPE_CHECKING
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
-    """One model under harmonic forces, or with displacements imposed, at one frequency.
+    """One model under harmonic forces, or imposed displacements, at one frequency.
 
-    Raises InputError for a device that its beam cannot have, and for one with a force beside imposed displacements.
+    Raises InputError for a device off the beam or on a support, and for one with a force beside imposed displacements.
     """
 
     model: BeamModel
@@ -60,9 +60,9 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
         return solve(forces, frequency_hz, devices=self.passive)
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Of waves in the model, 1/m: by its discrete dispersion where that is known, else the beam's.
+        """Wavenumber in the model, 1/m: by its discrete dispersion where that is known, else the beam's.
 
-        Raises NoFigureError at a frequency whose waves do not run along its parts.
+        Raises NoFigureError above the cut-off of its parts.
         """
         if self.beam.section:
             return wavenumber(self.beam, frequency_hz, self.model.theory)

@@ -1,4 +1,4 @@
-"""The two waves under a unit force, or a unit displacement, of each actuator of a case, at many frequencies."""
+"""The two waves under a unit force (or displacement) of each actuator, at many frequencies, and their superposition."""
 
 import msgspec
 import numpy as np
@@ -33,7 +33,7 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
     def superposed(self, drives: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """A+ and A-, (n, p) each, m, under p sets of complex amplitudes, (n_a, p) or (n, n_a, p).
 
-        NaN where nothing moves but by rounding. Raises NoFigureError where that is all.
+        NaN where the motion is rounding. Raises NoFigureError where it is rounding throughout.
         """
         scale = np.ones((len(self.k), 1))
         if self.case.kind == "force":

@@ -1,4 +1,4 @@
-"""The lumped picture of a travelling wave: two modes a quarter of a period apart.
+"""The lumped-parameter model of a travelling wave: two modes a quarter of a period apart.
 
 At a point the derivatives of a mode separate both waves from both near fields:
 

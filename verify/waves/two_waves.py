@@ -13,16 +13,14 @@ from verify.linear.numerics import Rule, gauss_rule
 from verify.validation import check_kind
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
-STANDING = 1e-12
-"""Distance of a reflection from 1 below which the wave is a standing one: its ratio is infinite."""
-ROUNDING = 1e-13
-"""Deflection relative to the response to the forces below which it is rounding."""
+STANDING, ROUNDING = 1e-12, 1e-13
+"""1 - Gamma below which a wave is a standing one, and deflection over the response to the forces that is rounding."""
 _REACH = 0.04
-"""Relative distance from the beam's own up to which a wavenumber is fitted."""
+"""Largest relative distance of a fitted wavenumber from the beam's own."""
 
 
 def reflections(forward: ComplexArray, backward: ComplexArray) -> Array:
-    """Gamma of amplitudes of one shape: the weaker over the stronger; 1 where both are zero."""
+    """Gamma of amplitudes of any one shape: the weaker over the stronger; 1 where both are zero."""
     sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
     return np.asarray(np.where(sizes[1] == 0.0, 1.0, sizes[0] / np.where(sizes[1] == 0.0, 1.0, sizes[1])))
 
@@ -37,7 +35,7 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
 
     wavenumber: complex
-    """k, 1/m, the one used."""
+    """k, 1/m, stated or fitted."""
     forward: complex
     """A+ of e^{-ik(x - middle)}, m."""
     backward: complex
@@ -63,10 +61,7 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def check_travelling(self) -> None:
         """Raise NoFigureError for a standing wave: its flux and signed area are zero but for rounding."""
         if self.reflection >= 1.0 - STANDING:
-            raise NoFigureError(
-                "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
-                "phase_deg"
-            )
+            raise NoFigureError("the wave stands: its energy flux and S3 are zero, choose another phase_deg")
 
 
 def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
@@ -149,13 +144,13 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weight
     if least.at_edge:
         raise InputError(
             f"the fitted wavenumber ends at the edge of its search, {least.x * start.real:.6g} 1/m, {_REACH:.0%} from "
-            f"the beam's {start.real:.6g} 1/m: state the wavenumber, two waves near the beam's are not there"
+            f"the beam's {start.real:.6g} 1/m: state the wavenumber, the field is not two waves near the beam's"
         )
     return complex(least.x * start)
 
 
 class Minimum(msgspec.Struct, frozen=True):
-    """Where a figure is least in an interval; `at_edge` where it still falls at an end, which is then no minimum."""
+    """Minimum of a figure in an interval; `at_edge`: it still falls at an end of the interval."""
 
     x: float
     value: float
