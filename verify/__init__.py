@@ -54,29 +54,16 @@ __all__ = [
 ]  # fmt: skip
 __version__ = "0.1.0"
 
-_HOMES = {
-    "verify.analytic_modes": ("ExactModel",),
-    "verify.fem_beam": ("HermiteModel",),
-    "verify.segment_model": ("SegmentModel",),
-    "verify.problem.point_attachments": ("PointMass", "PointSpring"),
-    "verify.problem.beam": ("Beam", "PointForce"),
-    "verify.chain.bending": ("Bent", "bend"),
-    "verify.problem.device": ("Device",),
-    "verify.errors": ("InputError",),
-    "verify.linear.field": ("HarmonicField",),
-    "verify.linear.modes": ("Modes",),
-    "verify.motion.free_vibration": ("FreeVibration", "free_vibration"),
-    "verify.motion.result": ("Motion",),
-    "verify.motion.simulate": ("simulate",),
-    "verify.motor.result": ("MotorRun",),
-    "verify.motor.run": ("run_motor", "run_motors"),
-    "verify.scene.load": ("load_scene",),
-    "verify.scene.run": ("run_scene",),
-    "verify.problem.cross_section": ("Section",),
-    "verify.problem.slider": ("Contact", "Foot", "Slider"),
-    "verify.travelling_wave": ("WaveMeasures",),
-}
-_HOME = {name: home for home, names in _HOMES.items() for name in names}
+_HOMES = """
+    analytic_modes.ExactModel fem_beam.HermiteModel segment_model.SegmentModel linear.field.HarmonicField
+    linear.modes.Modes travelling_wave.WaveMeasures problem.beam.Beam problem.beam.PointForce problem.device.Device
+    problem.cross_section.Section problem.point_attachments.PointMass problem.point_attachments.PointSpring
+    problem.slider.Contact problem.slider.Foot problem.slider.Slider errors.InputError motion.simulate.simulate
+    motion.result.Motion motion.free_vibration.free_vibration motion.free_vibration.FreeVibration chain.bending.Bent
+    chain.bending.bend motor.result.MotorRun motor.run.run_motor motor.run.run_motors scene.load.load_scene
+    scene.run.run_scene
+"""
+_HOME = {home.rpartition(".")[2]: f"verify.{home.rpartition('.')[0]}" for home in _HOMES.split()}
 
 
 def __getattr__(name: str) -> Any:

@@ -37,8 +37,7 @@ from verify.waves.best_drive import BestDrive, best_drive
 from verify.waves.driven_case import DrivenCase
 from verify.waves.impedance_matching import matched_device
 from verify.waves.operating_point import OperatingPoint, best_frequency, maximum_crest_speed
-from verify.waves.two_waves import ROUNDING, TwoWaves, fit_waves, fitted_wavenumber, two_waves
-from verify.waves.waveguide import Waveguide
+from verify.waves.two_waves import ROUNDING, TwoWaves, Waveguide, fit_waves, fitted_wavenumber, two_waves
 from verify.waves.window import Window, check_clear, middle_half
 
 __all__ = [

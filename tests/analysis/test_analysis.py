@@ -8,7 +8,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.analysis import comparison, sizing
-from verify.analysis.grid_convergence import grid_convergence
+from verify.analysis.comparison import grid_convergence
 from verify.analysis.sizing import choose
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import Rules, Variant

@@ -17,9 +17,9 @@ from verify.quantities.base import evaluate
 from verify.scene.load import scene_from
 from verify.segment_model import SegmentModel
 from verify.travelling_wave import DrivenCase, best_drive, maximum_crest_speed, measure, middle_half
-from verify.waves.superposition import unit_waves
+from verify.waves.driven_case import unit_waves
 from verify.waves.two_modes import lumped_swr
-from verify.waves.waveguide import Waveguide
+from verify.waves.two_waves import Waveguide
 
 # --- Operating point ---
 

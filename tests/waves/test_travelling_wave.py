@@ -29,8 +29,7 @@ from verify.travelling_wave import (
 from verify.travelling_wave import (
     two_waves as fitted_waves,
 )
-from verify.waves.two_waves import fitted_wavenumber
-from verify.waves.waveguide import Waveguide
+from verify.waves.two_waves import Waveguide, fitted_wavenumber
 
 # --- Travelling wave ---
 

@@ -1,9 +1,11 @@
-"""Comparison of modes and errors as arrays: MAC, pairing, relative and shape errors, observed order."""
+"""Modes and errors as arrays: MAC, pairing, shape errors, observed order, grid convergence index."""
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from math import inf, isfinite, log
 from typing import TypeVar
 
+import msgspec
 import numpy as np
 
 from verify.arrays import Array, Indices
@@ -24,6 +26,13 @@ LEAST_MAC = 0.5
 LOW_MAC = 0.8
 """MAC below which supports differ: the first shapes of a clamped beam have 0.62 and 0.75 with a cantilever's, mode 6
 of a cantilever of twenty links has 0.996 with the exact one."""
+
+SAFETY = 1.25
+"""Factor of safety on the extrapolated error for three sizes (Roache)."""
+VALUE_ROUNDING = 1e-12
+"""Relative differences below this are rounding of the values."""
+_LOWEST, _HIGHEST = 1e-3, 40.0
+"""Range of observed orders."""
 
 
 def relative_error(value: T, exact: T) -> T:
@@ -151,3 +160,51 @@ def asymptotic_order(
             f"{listed}{'' if expected is None else f' and {expected} is expected'}: choose other sizes"
         )
     return order
+
+
+class GridConvergence(msgspec.Struct, frozen=True, kw_only=True):
+    """Estimate of the discretisation error at the finest of three sizes."""
+
+    value: float
+    """At the finest size."""
+    order: float | None
+    """Observed order; None where the values do not converge."""
+    extrapolated: float
+    """Richardson's value at vanishing part length; `value` without an observed order."""
+    index: float
+    """GCI: half width of the uncertainty band about `value`, relative to it; infinite without an order."""
+
+
+def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: int | None = None) -> GridConvergence:
+    """Observed order, extrapolated value and grid convergence index of a value at three sizes, without an exact one.
+
+    Richardson extrapolation with Roache's uncertainty (J. Fluids Eng. 116 (1994) 405) by the procedure of Celik et al.
+    (J. Fluids Eng. 130 (2008) 078001), with h = L/N.
+
+    `expected` is the theoretical order. An observed order above it is an accident of errors that are about to change
+    sign: the theoretical one then stands for it, which raises the fraction of bands that contain the exact frequency
+    from 0.90 to 0.97 (tests/analysis). Raises InputError for other than three different sizes, for values that are
+    zero or not finite, and for differences within rounding.
+    """
+    from scipy.optimize import brentq
+
+    if len(counts) != 3 or len(set(counts)) != 3 or min(counts) < 1 or len(values) != 3:
+        raise InputError(f"counts = {list(counts)}: a grid convergence index needs three different sizes")
+    if not all(map(isfinite, values)) or not all(values):
+        raise InputError(f"values = {list(values)}: give three finite values other than zero")
+    (n1, f1), (n2, f2), (n3, f3) = sorted(zip(counts, values, strict=True), reverse=True)  # the finest first
+    r21, r32, e21, e32 = n1 / n2, n2 / n3, f2 - f1, f3 - f2
+    if min(abs(e21), abs(e32)) <= VALUE_ROUNDING * abs(f1):
+        raise InputError(f"counts = {list(counts)}: the values differ by rounding alone, use coarser sizes")
+    sign = 1.0 if e32 / e21 > 0.0 else -1.0
+
+    def excess(p: float) -> float:
+        """Zero at the root p of e32 / e21 = r21^p (r32^p - s) / (r21^p - s), s the sign of the ratio."""
+        return p * log(r21) + log((r32**p - sign) / (r21**p - sign)) - log(abs(e32 / e21))
+
+    if not excess(_LOWEST) < 0.0 < excess(_HIGHEST):
+        return GridConvergence(value=f1, order=None, extrapolated=f1, index=inf)
+    order = float(brentq(excess, _LOWEST, _HIGHEST))
+    used = order if expected is None else min(order, expected)
+    correction = -e21 / (r21**used - 1.0)
+    return GridConvergence(value=f1, order=order, extrapolated=f1 + correction, index=SAFETY * abs(correction / f1))

@@ -86,8 +86,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:
         """A row for each mode, variant and size, in this order."""
-        from verify.analysis.comparison import ORDER_FLOOR, relative_error
-        from verify.analysis.grid_convergence import grid_convergence
+        from verify.analysis.comparison import ORDER_FLOOR, grid_convergence, relative_error
         from verify.analysis.solution_cache import theory_of
         from verify.linear.registry import MODELS
         from verify.timing import interleaved_medians

@@ -14,9 +14,8 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import NoFigureError
-from verify.waves.driven_case import DrivenCase
+from verify.waves.driven_case import DrivenCase, unit_waves
 from verify.waves.operating_point import check_two
-from verify.waves.superposition import unit_waves
 from verify.waves.two_waves import minimum_near, reflections, standing_wave_ratios, zero_field
 from verify.waves.window import Window, middle_half
 

@@ -6,10 +6,8 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError, NoFigureError
 from verify.linear.field import phasor
-from verify.waves.driven_case import DrivenCase
-from verify.waves.superposition import unit_waves
-from verify.waves.two_waves import minimum_near, reflections
-from verify.waves.waveguide import Waveguide
+from verify.waves.driven_case import DrivenCase, unit_waves
+from verify.waves.two_waves import Waveguide, minimum_near, reflections
 from verify.waves.window import Window, middle_half
 
 SEARCH_SPAN = 0.015
