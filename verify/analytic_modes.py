@@ -269,7 +269,7 @@ class ExactModel(BeamModel):
         return Motion(division, states), forces * unit
 
     def _resonances(self, layout: BeamLayout, frequencies: Array) -> list[int]:
-        """Number, rigid motions included, of the undamped resonance at each frequency; 0 where there is none."""
+        """Number of the undamped resonance at each frequency, rigid motions included; 0 off resonance."""
         if self.beam.loss_factor:
             return [0] * len(frequencies)
         low, high = self._omega2(frequencies * (1.0 - RESONANCE)), self._omega2(frequencies * (1.0 + RESONANCE))

@@ -2,9 +2,9 @@
 
 Kernels allocate nothing, so numba's reference counting is off (`_nrt`), which doubles the speed of a motor run.
 
-Numba's cache checks the file of the entry point alone, while all that it calls is compiled into it. The cache folder
-therefore carries a digest of all kernel modules. It stands in `NUMBA_CACHE_DIR` where that is set, else beside this
-file; where neither is writable, numba's user-wide cache or none is used.
+Numba's cache checks the file of the entry point alone, while all that it calls is compiled into it. So the name of the
+cache folder has a digest of all kernel modules. It is in `NUMBA_CACHE_DIR` or, by default, in this package; where
+neither is writable, numba's user-wide cache or none is used.
 """
 
 from collections.abc import Callable

@@ -66,7 +66,7 @@ class WaveMeasures:
     section_rotation: Callable[[Array], ComplexArray]
     """psi at any x of the window, rad."""
     x: Array
-    """(n,), m: 24 points in each half wavelength of the exact beam; the given ones of a time series."""
+    """(n,), m: 24 points in each half wavelength of the exact beam; those of a time series."""
     fine: Array
     """(m,), m: fine enough to separate the extremes of the field."""
 
@@ -288,7 +288,7 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
     power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
     # the third derivative jumps at a force, the second at a couple: quadrature in between
-    jumps = [f.position for f in field.forces] + [m.position for m in beam.mass] + [s.position for s in beam.spring]
+    jumps = [one.position for one in (*field.forces, *beam.attached)]
     cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
     edges = np.unique([*cells, *(x for x in jumps if x < middle)])
     points, weights = np.polynomial.legendre.leggauss(8)

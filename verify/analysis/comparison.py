@@ -56,9 +56,9 @@ def mac(reference: Array, shapes: Array) -> Array:
 
 
 def pair_modes(macs: Array) -> tuple[Indices, Array]:
-    """The computed mode (index) of every exact mode, one to one, and their MAC: (n_reference,) each.
+    """Index of the computed mode of every exact mode, and their MAC, (n_reference,) arrays.
 
-    The pairing with the largest sum of MAC values; `macs` is (n_reference, n_shapes).
+    The one-to-one pairing with the largest sum of MAC values; `macs` is (n_reference, n_shapes).
     """
     if (macs.argmax(axis=1) == np.arange(len(macs))).all():
         index = np.arange(len(macs))
@@ -182,7 +182,7 @@ def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: i
     (J. Fluids Eng. 130 (2008) 078001), with h = L/N.
 
     `expected` is the theoretical order. An observed order above it is an accident of errors that are about to change
-    sign: the theoretical one then stands for it, which raises the fraction of bands that contain the exact frequency
+    sign: the theoretical order replaces it, which raises the fraction of bands that contain the exact frequency
     from 0.90 to 0.97 (tests/analysis). Raises InputError for other than three different sizes, for values that are
     zero or not finite, and for differences within rounding.
     """

@@ -117,9 +117,9 @@ def sufficient_size(
 
 
 def _scan(within: Within, first: int, up_to: int, largest: int) -> tuple[int, int | None, int]:
-    """(size from which on all sizes tried are within, a smaller one before one beyond if any, the largest tried).
+    """(size from which on the error is within the limit, the smallest size within if smaller, the largest size tried).
 
-    Sizes up to `up_to`, or twice the last beyond the limit.
+    Sizes up to `up_to`, or twice the last size beyond the limit.
     """
     sizes, last, size = dict[int, bool](), first - 1, first
     while size <= max(2 * last, up_to):
@@ -136,7 +136,7 @@ def _scan(within: Within, first: int, up_to: int, largest: int) -> tuple[int, in
 
 
 def _between(within: Within, low: int, high: int) -> int:
-    """The first size within the limit between one beyond it and one within."""
+    """The first size within the limit between `low`, beyond it, and `high`, within."""
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if within(middle) else (middle, high)

@@ -86,7 +86,7 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return tuple(dict.fromkeys(not_default(dict(zip(DEFAULTS, values, strict=True))) for values in every))
 
     def alternatives(self, beam: Beam) -> tuple[Variant, ...]:
-        """The literature's rules for this beam with each combination: the wall 2EI/l, joints for tension, the lever."""
+        """Rules of the literature for this beam, with each combination: the wall 2EI/l, tensioned joints, the lever."""
         return tuple(
             dict.fromkeys(
                 Variant(model.name, not_default(dict(chosen) | {name: value}))
@@ -119,16 +119,14 @@ def has_wall(beam: Beam) -> bool:
 
 
 def attached_within(beam: Beam) -> bool:
-    """Whether links that carry attachments rigidly differ from others: one lies between the ends, or rotates."""
+    """Whether attachments on rigid links have an effect: an attachment lies between the ends, or rotates."""
     rotating = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
-    positions = [m.position for m in beam.mass] + [s.position for s in beam.spring]
-    return rotating or any(0.0 < position < beam.length for position in positions)
+    return rotating or any(0.0 < one.position < beam.length for one in beam.attached)
 
 
 def is_uneven(beam: Beam) -> bool:
-    """Whether errors may go up and down with N: a step or an attachment lies anywhere within a part."""
-    positions = [m.position for m in beam.mass] + [s.position for s in beam.spring]
-    return len(beam.pieces) > 1 or any(0.0 < position < beam.length for position in positions)
+    """Whether errors may oscillate with N: a step or an attachment lies within a part."""
+    return len(beam.pieces) > 1 or any(0.0 < one.position < beam.length for one in beam.attached)
 
 
 def not_default(settings: Mapping[str, str | float]) -> Settings:

@@ -84,7 +84,7 @@ def layout_of(
     beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = (), devices: tuple[Device, ...] = ()
 ) -> BeamLayout:
     """The layout of a beam with devices by a theory that it has the properties for; `also`: further stations, m."""
-    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.mass, *beam.spring, *devices)
+    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.attached, *devices)
     cuts = [*(one.position for one in attached), *also]
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
     spans, start = list[UniformSpan](), 0.0

@@ -108,6 +108,11 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         return ("section",) * self.stepped + others
 
     @property
+    def attached(self) -> tuple[PointMass | PointSpring, ...]:
+        """Masses and springs."""
+        return (*self.mass, *self.spring)
+
+    @property
     def uniform(self) -> bool:
         """Whether it has one section and no attachments, as closed forms assume."""
         return not self.added

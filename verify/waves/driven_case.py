@@ -101,7 +101,7 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
     """The reason for each frequency without them."""
 
     def superposed(self, drives: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """A+ and A-, (n, p) each, m, under p sets of complex amplitudes, (n_a, p) or (n, n_a, p).
+        """A+ and A- in m, (n, p) arrays, under p sets of complex amplitudes, (n_a, p) or (n, n_a, p).
 
         NaN where the motion is rounding. Raises NoFigureError where it is rounding throughout.
         """

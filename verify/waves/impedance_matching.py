@@ -6,7 +6,7 @@ far that their near field has decayed. Source: flexural waves on a half-infinite
 Structure-Borne Sound, chapters on impedance and on reflection; the classic of matching is Z = conj(Z_beam).
 
 A wave e^{-ikx} from the left makes s = w (or w') at the bare beam's place and comes back as r. A unit force (or couple)
-there sends A s e^{ikx} to the left, with A = -i/(4 EI k^3) of an endless beam, by reciprocity. The device pulls with
+there sends A s e^{ikx} to the left, with A = -i/(4 EI k^3) of an endless beam, by reciprocity. The device exerts
 i omega Z s Z_b/(Z + Z_b), so that
 
     Gamma = r - i omega A s^2 Z Z_b/(Z + Z_b) = Gamma_held (Z - Z_m)/(Z + Z_b),

@@ -46,7 +46,7 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def direction(self) -> int:
-        """+1 where the stronger wave runs towards +x, else -1."""
+        """Direction of the stronger wave: +1 towards +x, else -1."""
         return 1 if abs(self.forward) >= abs(self.backward) else -1
 
     @property

@@ -66,8 +66,7 @@ def check_span(
 
 def check_clear(beam: Beam, span: Window, name: str) -> None:
     """Raise WindowError for a mass or a spring of the beam inside a span, m; `name` of the span in the message."""
-    attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
-    if inside := [p for p in attached if span[0] < p < span[1]]:
+    if inside := [one.position for one in beam.attached if span[0] < one.position < span[1]]:
         raise WindowError(f"{name} holds a mass or a spring at {as_written(inside)} m: choose a window without one")
 
 
