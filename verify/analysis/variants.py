@@ -87,15 +87,15 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     def alternatives(self, beam: Beam) -> tuple[Variant, ...]:
         """Rules of the literature for this beam, with each combination: the wall 2EI/l, tensioned joints, the lever."""
-        return tuple(
-            dict.fromkeys(
-                Variant(model.name, not_default(dict(chosen) | {name: value}))
-                for chosen in self.combinations
-                for name, value in _alternatives(beam, dict(chosen))
-                for model in discrete()
-                if name in model.settings()
-            )
-        )
+        found = []
+        for chosen in map(dict, self.combinations):
+            # axial force and shear reduce the order of joints in series by two
+            loses = bool(beam.tension) or chosen.get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
+            rules = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
+            rules += [("attachment", "lever")] * attached_within(beam)
+            able = ((model.name, *rule) for rule in rules for model in discrete() if rule[0] in model.settings())
+            found += [Variant(model, not_default(chosen | {name: value})) for model, name, value in able]
+        return tuple(dict.fromkeys(found))
 
     def without_effect(self, beam: Beam) -> dict[str, str]:
         """Settings that are not the default and change nothing on this beam, each with the reason."""
@@ -103,13 +103,6 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         reasons["attachment"] = not (beam.mass or beam.spring) and "nothing is attached to the beam"
         changed = {name for chosen in self.combinations for name, _ in chosen}
         return {name: f"it has no effect, {why}" for name, why in reasons.items() if why and name in changed}
-
-
-def _alternatives(beam: Beam, chosen: Mapping[str, str | float]) -> list[tuple[str, str]]:
-    """Axial force and shear take two orders from joints in series."""
-    loses = bool(beam.tension) or chosen.get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
-    rules = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
-    return rules + [("attachment", "lever")] * attached_within(beam)
 
 
 def has_wall(beam: Beam) -> bool:
