@@ -38,7 +38,7 @@ from verify.waves.driven_case import DrivenCase
 from verify.waves.impedance_matching import matched_device
 from verify.waves.operating_point import OperatingPoint, best_frequency, maximum_crest_speed
 from verify.waves.two_waves import ROUNDING, TwoWaves, Waveguide, fit_waves, fitted_wavenumber, two_waves
-from verify.waves.window import Window, check_clear, middle_half
+from verify.waves.window import Window, check_clear, check_wavenumber, middle_half
 
 __all__ = [
     "BestDrive", "DrivenCase", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
@@ -224,14 +224,15 @@ def measure_series(
     own = wavenumber(beam, frequency_hz)
     if len(at) < 4 or (at[-1] - at[0]) * own.real < np.pi:
         raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
-    if (gap := float(np.diff(at).max())) >= (half := float(np.pi / complex(k or own).real)):
+    stated = None if k is None else check_wavenumber("k", k, (float(at[0]), float(at[-1])))
+    if (gap := float(np.diff(at).max())) >= (half := float(np.pi / (stated or own).real)):
         raise InputError(f"x has a gap of {gap:.4g} m, half a wavelength ({half:.4g} m) or more: give points within it")
     start, end = float(at[0]), float(at[-1])
     check_clear(beam, (start, end), f"x from {start:.6g} to {end:.6g} m")
     measured = phasors(times, values, frequency_hz)
     if not abs(measured).max() > ROUNDING * abs(np.asarray(values)).max():
         raise NoFigureError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
-    waves = fit_waves(at, measured, fitted_wavenumber(at, measured, own) if k is None else k)
+    waves = fit_waves(at, measured, stated or fitted_wavenumber(at, measured, own))
 
     def slope(x: Array) -> ComplexArray:
         phase = np.exp(1j * waves.wavenumber * (x - 0.5 * (start + end)))
