@@ -202,7 +202,7 @@ class ExactModel(BeamModel):
             return np.asarray(values[0] if one else values, dtype=complex)
 
         omega = 2.0 * pi * float(frequencies[0])
-        holding = [
+        constraint_forces = [
             point_force(drive.position, complex(force))
             for drive, force in zip(drives, solved[0][1][0, :, 0], strict=True)
         ]
@@ -217,7 +217,7 @@ class ExactModel(BeamModel):
             count=None,
             beam=beam,
             frequency_hz=float(frequencies[0]) if one else frequencies,
-            forces=(*holding, *forces, *reactions),
+            forces=(*constraint_forces, *forces, *reactions),
             shapes=read,
             theory=self.theory,
             rotation_shapes=(lambda x, d: read(x, d, ROTATION)) if self.theory == "timoshenko" else None,
