@@ -49,6 +49,15 @@ def _sums(terms: Array) -> Array:
     return np.asarray(np.ascontiguousarray(terms.T).sum(axis=1))
 
 
+def sparse_rows(columns: Array, values: Array, n: int) -> Any:
+    """Sparse (r, n) of values (r, c) at columns (r, c), without zeros and columns outside 0..n - 1."""
+    from scipy.sparse import csr_array
+
+    stored = (values != 0.0) & (columns >= 0) & (columns < n)
+    starts = np.concatenate([[0], np.cumsum(stored.sum(axis=1))])
+    return csr_array((values[stored], columns[stored], starts), shape=(len(columns), n))
+
+
 @dataclass(frozen=True, eq=False)
 class StructuralSystem:
     """K = B^T diag(d) B and M over n unknowns. B is a product of sparse factors, applied one after another."""
@@ -132,7 +141,7 @@ class StructuralSystem:
         from scipy.linalg import solve_triangular
 
         lower = np.linalg.cholesky(self.mass.toarray())
-        root = (np.sqrt(self.stiffness)[:, None] * self.strain_matrix.toarray()).T
+        root = (np.sqrt(self.stiffness)[:, None] * self.strain(np.eye(self.n))).T
         root = solve_triangular(lower, root, lower=True, check_finite=False).T
         right = np.linalg.svd(root, full_matrices=root.shape[0] < self.n)[2]
         last = self.n - self.n_rigid
@@ -146,7 +155,7 @@ class StructuralSystem:
         """
         from scipy.linalg import eigh
 
-        mass, strain = self.mass.toarray(), self.strain_matrix.toarray()
+        mass, strain = self.mass.toarray(), self.strain(np.eye(self.n))
         values, vectors = (
             part[..., self.n_rigid :] for part in eigh(strain.T @ (self.stiffness[:, None] * strain), mass)
         )
@@ -209,7 +218,7 @@ class StructuralSystem:
         from scipy.sparse.linalg import splu
 
         m, free = len(self.stiffness), np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
-        matrix, scales = self.augmented(-shift), self._pattern[3][:, None]
+        matrix, scales = self.augmented(-shift), self._pattern[-1][:, None]
         compliance = scales / self.stiffness[:, None]
         kept = np.concatenate([np.arange(m), m + free])
         factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
@@ -255,30 +264,31 @@ class StructuralSystem:
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
     @cached_property
-    def _pattern(self) -> tuple[Any, Any, Any, Array]:
-        """[[-1, B], [B^T, M]] sparse by columns, where its data hold -1 and M, and the scales of the strains.
+    def _pattern(self) -> tuple[Array, Array, Array, Array, Array]:
+        """[[-1, B], [B^T, M]]: values (-1, B, B^T, M in turn); their order by columns, rows and starts of columns; scales.
 
         Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
         """
-        from scipy.sparse import block_array, csc_array, diags_array
-
         m, scales = len(self.stiffness), np.exp2(np.minimum(np.round(0.5 * np.log2(abs(self.stiffness))), 0.0))
-        strain = diags_array(scales) @ self.strain_matrix
-        matrix = csc_array(block_array([[diags_array(-np.ones(m)), strain], [strain.T, self.mass]], format="csc"))
-        columns = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
-        inertia = np.flatnonzero((columns >= m) & (matrix.indices >= m))
-        return matrix, np.flatnonzero((columns < m) & (matrix.indices < m)), inertia, scales
+        strain, mass, diagonal = self.strain_matrix.tocoo(), self.mass.tocoo(), np.arange(m)
+        rows = np.concatenate([diagonal, strain.row, m + strain.col, m + mass.row])
+        columns = np.concatenate([diagonal, m + strain.col, strain.row, m + mass.col])
+        values = strain.data * scales[strain.row]
+        order = np.lexsort((rows, columns))
+        starts = np.concatenate([[0], np.cumsum(np.bincount(columns, minlength=m + self.n))])
+        values = np.concatenate([-np.ones(m), values, values, mass.data])
+        return values, order, rows[order].astype(np.int32), starts.astype(np.int32), scales
 
     def augmented(self, mass_factor: float, stiffness: Any = None) -> Any:
         """[[-1/d, B], [B^T, mass_factor M]], sparse by columns. Its pattern is made once, its data per frequency."""
         from scipy.sparse import csc_array
 
-        d = self.stiffness if stiffness is None else stiffness
-        matrix, compliance, inertia, scales = self._pattern
-        data = matrix.data.astype(d.dtype)
-        data[compliance] = -(scales**2) / d
-        data[inertia] *= mass_factor
-        return csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+        d, m = self.stiffness if stiffness is None else stiffness, len(self.stiffness)
+        values, order, rows, starts, scales = self._pattern
+        data = values.astype(d.dtype)
+        data[:m] *= scales**2 / d
+        data[len(data) - self.mass.nnz :] *= mass_factor
+        return csc_array((data[order], rows, starts), shape=(m + self.n,) * 2)
 
     def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
         """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
@@ -306,23 +316,23 @@ class StructuralSystem:
         its dynamic stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of a resonance where
         nothing is damped.
         """
-        d, k = self.stiffness if stiffness is None else stiffness, loads.shape[1]
+        d, k, m = self.stiffness if stiffness is None else stiffness, loads.shape[1], len(self.stiffness)
         undamped = not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices)
         factor = self._factor(omega2, d if undamped else np.asarray(d, dtype=complex), devices)
-
-        def once(load: Any) -> Any:
-            return factor.solve(np.concatenate([np.zeros((len(d), load.shape[1]), dtype=load.dtype), load]))[len(d) :]
+        transposed = self.strain_matrix.T
 
         def solve(load: Any) -> Any:
             # iterative refinement: the factors lose what a soft support holds to what bends, factored strains do not
-            response = once(load)
+            right = np.concatenate([np.zeros((m, load.shape[1]), dtype=load.dtype), load])
+            response = factor.solve(right)[m:]
             for _ in range(REFINED):
-                forces = self.strain_matrix.T @ (d[:, None] * self.strain(response)) - omega2 * (self.mass @ response)
+                right[m:] = load + omega2 * (self.mass @ response) - transposed @ (d[:, None] * self.strain(response))
                 for row, z in devices:
-                    forces += (z.real if undamped else z) * (row.T @ (row @ response))
-                correction = once(load - forces)
+                    right[m:] -= (z.real if undamped else z) * (row.T @ (row @ response))
+                correction = factor.solve(right)[m:]
                 response = response + correction
-                if abs(correction).max(initial=0.0) <= 1e-14 * abs(response).max(initial=0.0):
+                # a correction is what the factors lose; the next is as much smaller
+                if abs(correction).max(initial=0.0) <= 1e-8 * abs(response).max(initial=0.0):
                     break
             return response
 

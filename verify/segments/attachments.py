@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array, Indices
+from verify.linear.system import sparse_rows
 from verify.problem.supports import HOLDS
-from verify.segments.chain import Chain, selection
+from verify.segments.chain import Chain
 
 _BEFORE, _AFTER = 2, 4
 """Joints before and from an attachment's link on whose weights are corrected."""
@@ -48,7 +49,7 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
     A joint beyond a pinned end is its odd reflection, beyond a guided end its even one; at free and clamped ends the
     four joints move inward. Meant for equal links.
     """
-    (links, s), n, p = link_at(chain, positions), chain.n_segments, len(positions)
+    (links, s), n = link_at(chain, positions), chain.n_segments
     if rule == "lever" or n < 3:
         columns, weights = links[:, None] + np.arange(2), np.stack([1.0 - s, s], axis=1)
     else:
@@ -62,7 +63,7 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
         left, right = (-1.0 if support == "pinned" else 1.0 for support in chain.supports)
         weights = weights * np.where(columns < 0, left, np.where(columns > n, right, 1.0))
         columns = np.where(columns > n, 2 * n - columns, abs(columns))
-    return selection(np.repeat(np.arange(p), columns.shape[1]), columns.ravel(), (p, n + 1), weights.ravel())
+    return sparse_rows(columns, weights, n + 1)
 
 
 def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
@@ -70,7 +71,7 @@ def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
 
     The link itself, on a joint the mean of both; by the reciprocal rule linear between the links' middles.
     """
-    n, rows = chain.n_segments, np.arange(len(positions))
+    n = chain.n_segments
     if rule == "lever" or n < 3:
         links, s = link_at(chain, positions)
         before, share = np.maximum(links - (s == 0.0), 0), np.where(s == 0.0, 0.5, 1.0)
@@ -79,7 +80,7 @@ def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
         links = np.clip(np.searchsorted(middles, positions), 1, n - 1)
         before = links - 1
         share = np.clip((positions - middles[before]) / (middles[links] - middles[before]), 0.0, 1.0)
-    return selection(rows, before, (len(rows), n), 1.0 - share) + selection(rows, links, (len(rows), n), share)
+    return sparse_rows(np.stack([before, links], axis=1), np.stack([1.0 - share, share], axis=1), n)
 
 
 def attachment_weights(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Any, Any]:
