@@ -93,12 +93,12 @@ class StructuralSystem:
         return vectors
 
     @cached_property
-    def strain_matrix(self) -> Any:
-        """B, (m, n), sparse by columns."""
-        product = self.strain_factors[0]
-        for factor in self.strain_factors[1:]:
-            product = factor @ product
-        return product.tocsc()
+    def transposed(self) -> Any:
+        """B^T, (n, m), sparse by rows."""
+        product = self.strain_factors[-1]
+        for factor in reversed(self.strain_factors[:-1]):
+            product = product @ factor
+        return product.T.tocsr()
 
     def rayleigh_quotients(self, vectors: Array) -> Array:
         """Eigenvalues (k,) of vectors (n, k)."""
@@ -270,7 +270,7 @@ class StructuralSystem:
         Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
         """
         m, scales = len(self.stiffness), np.exp2(np.minimum(np.round(0.5 * np.log2(abs(self.stiffness))), 0.0))
-        strain, mass, diagonal = self.strain_matrix.tocoo(), self.mass.tocoo(), np.arange(m)
+        strain, mass, diagonal = self.transposed.T.tocoo(), self.mass.tocoo(), np.arange(m)
         rows = np.concatenate([diagonal, strain.row, m + strain.col, m + mass.row])
         columns = np.concatenate([diagonal, m + strain.col, strain.row, m + mass.col])
         values = strain.data * scales[strain.row]
@@ -297,13 +297,13 @@ class StructuralSystem:
 
         matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
         for row, z in devices:
-            wide = hstack([csc_array((1, m)), row], format="csc")
-            matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide)
+            wide = hstack([csc_array((1, m)), row], format="csr")
+            matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide).tocsc()
         if rows is not None:
-            wide = block_array([[csc_array((rows.shape[0], m)), rows]], format="csc")
+            wide = hstack([csc_array((rows.shape[0], m)), rows])
             matrix = block_array([[matrix, wide.T], [wide, None]], format="csc")
         try:
-            return splu(csc_array(matrix))
+            return splu(matrix)
         except RuntimeError:  # exactly singular
             raise np.linalg.LinAlgError(0.0) from None
 
@@ -319,14 +319,13 @@ class StructuralSystem:
         d, k, m = self.stiffness if stiffness is None else stiffness, loads.shape[1], len(self.stiffness)
         undamped = not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices)
         factor = self._factor(omega2, d if undamped else np.asarray(d, dtype=complex), devices)
-        transposed = self.strain_matrix.T
 
         def solve(load: Any) -> Any:
             # iterative refinement: the factors lose what a soft support holds to what bends, factored strains do not
             right = np.concatenate([np.zeros((m, load.shape[1]), dtype=load.dtype), load])
             response = factor.solve(right)[m:]
             for _ in range(REFINED):
-                right[m:] = load + omega2 * (self.mass @ response) - transposed @ (d[:, None] * self.strain(response))
+                right[m:] = load + omega2 * (self.mass @ response) - self.transposed @ (d[:, None] * self.strain(response))
                 for row, z in devices:
                     right[m:] -= (z.real if undamped else z) * (row.T @ (row @ response))
                 correction = factor.solve(right)[m:]
@@ -425,7 +424,7 @@ class StructuralSystem:
         soft = self.stiffness < 0.0
         if not soft.any():
             return float("inf")
-        strain = self.strain_matrix.tocsr()
+        strain = self.transposed.T.tocsr()
         released = diags_array(np.sqrt(-self.stiffness[soft])) @ strain[soft]
         solve = StructuralSystem([strain[~soft]], self.stiffness[~soft], self.mass, self.rigid)._inverse(0.0)
         size = released.shape[0]

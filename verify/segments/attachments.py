@@ -28,6 +28,8 @@ _UNEQUAL = 0.05
 _PARABOLA = (0, 1, 2)
 _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 """Powers of the distance from an end in the moments that loads far away cause there."""
+_FOUR_JOINTS = np.array([[-2, 6, -6, 2], [12, -30, 24, -6], [-23, 39, -21, 5], [14, -5, 4, -1]]) / 12.0
+"""Cubic Lagrange polynomials L_j of four joints plus L_j''/12, by the powers s^3, s^2, s, 1 (rows) of each joint."""
 _TIE = 1e-10
 """Added to what the weights are aligned with; decides where two solutions are equally near."""
 
@@ -56,10 +58,7 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
         reflects = [HOLDS[support] in (HOLDS["pinned"], HOLDS["guided"]) for support in chain.supports]
         first = np.clip(links - 1, -int(reflects[0]), n - 3 + reflects[1])
         s = s + links - first
-        cubics = [-(s - 1) * (s - 2) * (s - 3) / 6, s * (s - 2) * (s - 3) / 2, -s * (s - 1) * (s - 3) / 2,
-                  s * (s - 1) * (s - 2) / 6]  # fmt: skip
-        curvatures = [2.0 - s, 3.0 * s - 5.0, 4.0 - 3.0 * s, s - 1.0]
-        columns, weights = first[:, None] + np.arange(4), np.stack(cubics, axis=1) + np.stack(curvatures, axis=1) / 12.0
+        columns, weights = first[:, None] + np.arange(4), np.vander(s, 4) @ _FOUR_JOINTS
         left, right = (-1.0 if support == "pinned" else 1.0 for support in chain.supports)
         weights = weights * np.where(columns < 0, left, np.where(columns > n, right, 1.0))
         columns = np.where(columns > n, 2 * n - columns, abs(columns))
