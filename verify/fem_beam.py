@@ -17,11 +17,12 @@ from math import pi, sqrt
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.arrays import Array, Indices
-from verify.errors import NoFigureError
-from verify.linear.base import DiscreteModel
+from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
+from verify.linear.surface import piece_at, section_at
 from verify.linear.system import StructuralSystem, sparse_rows
 from verify.options import Theory
 from verify.problem.beam import Beam
@@ -105,7 +106,9 @@ class HermiteModel(DiscreteModel):
     @cached_property
     def unknowns(self) -> Indices:
         """Number of each degree of freedom among the unknowns, (n_all,); -1 where a support prevents it."""
-        ends = [2 * self.n_elements * i + j for i, end in enumerate(self.beam.supports) for j in (0, 1) if HOLDS[end][j]]
+        ends = [
+            2 * self.n_elements * i + j for i, end in enumerate(self.beam.supports) for j in (0, 1) if HOLDS[end][j]
+        ]
         free = np.delete(np.arange((4 if self.shear else 2) * self.n_elements + 2), ends)
         unknowns = np.full(len(free) + len(ends), -1)
         unknowns[free] = np.arange(len(free))
@@ -130,15 +133,17 @@ class HermiteModel(DiscreteModel):
         # second: strains of the elements, each a list of (column, value)
         columns = np.where(every < 0, -1, n + every)
         left, right, constant = columns[2 * e + 1], columns[2 * e + 3], columns[2 * n + 2 :: 2]
-        chord = [(e, 1.0 / lengths)]
-        mean, gradient = [(left, -1.0), (right, 1.0)], [(left, 1.0), (right, 1.0), (e, -2.0 / lengths)]
-        strains, stiffness = [mean, gradient], [self.own_stiffness]
+        mean, chord = [(left, -1.0), (right, 1.0)], [(e, 1.0 / lengths)]
+        gradient: list[Any] = [(left, 1.0), (right, 1.0), (e, -2.0 / lengths)]
+        strains: list[list[Any]] = [mean, gradient]
+        stiffness = [self.own_stiffness]
         if self.shear:
             strains = [mean, [*gradient, (constant, 2.0)], [(constant, 1.0)], [(constant + 1, 1.0)]]
         if self.beam.tension:
             # w'^2 has the mean chord^2 + mean^2/12 + gradient^2/20
             force = self.beam.tension * self.unit**2 / self.beam.bending_stiffness * lengths
-            strains, stiffness = [*strains, chord, mean, gradient], [*stiffness, force, force / 12.0, force / 20.0]
+            strains += [chord, mean, gradient]
+            stiffness += [force, force / 12.0, force / 20.0]
         places, values = np.full((len(strains), n, 4), -1), np.zeros((len(strains), n, 4))
         for i, strain in enumerate(strains):
             for j, (place, value) in enumerate(strain):
@@ -332,11 +337,25 @@ class HermiteModel(DiscreteModel):
         k = complex(2.0 * np.arcsin(np.sqrt(2.0 * c / (b + np.sqrt(b * b + 4.0 * a * c + 0j)))) / self.unit)
         return k if k.imag <= 0.0 else k.conjugate()
 
-    def check_propagates(self, frequency_hz: float) -> None:
-        """Raise NoFigureError at and beyond omega^2 = (1680/17) EI/(rho A l^4), a half wave on each element."""
-        n, of_one = self.n_elements, sqrt(1680.0 / 17.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
-        if frequency_hz >= of_one * n**2:
-            raise NoFigureError(
-                f"count = {n}: {n} elements carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
-                f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
-            )
+    @property
+    def cut_off_hz(self) -> float:
+        """Where a half wave fits on the worst element, (1680/17) EI/(rho A l^4) = omega^2 of a plain one.
+
+        From one element whose ends move oppositely, as those of all elements do at that wavelength.
+        """
+        from scipy.linalg import eigh
+
+        nodes, limits = self.mesh.nodes, list[float]()
+        at = piece_at(self.beam, (nodes[:-1] + 0.5 * self.mesh.lengths) * self.unit)
+        for piece in np.unique(at):
+            inside = np.flatnonzero(at == piece)
+            longest = inside[self.mesh.lengths[inside].argmax()]
+            section, length = section_at(self.beam, nodes[longest] * self.unit), self.mesh.lengths[longest] * self.unit
+            alone = replace(section, length=length, supports=("free", "free"), mass=(), spring=())
+            model = HermiteModel(alone, 1, theory=self.theory)
+            system, opposite = model.system, np.eye(model.n_unknowns)[:, [0, 1, *range(4, model.n_unknowns)]]
+            opposite[[2, 3], [0, 1]] = -1.0
+            strain, mass = system.strain(opposite), opposite.T @ (system.mass @ opposite)
+            value = eigh(strain.T @ (system.stiffness[:, None] * strain), mass, eigvals_only=True)[0]
+            limits.append(float(np.sqrt(max(value, 0.0))) * model._omega_unit / (2.0 * pi))
+        return min(limits)

@@ -21,15 +21,15 @@ Quantities over the unknowns are dimensionless: lengths in `unit` = L/N, stiffne
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
-from math import pi, sqrt
+from math import pi
 from typing import Any, ClassVar, Literal
 
 import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.errors import InputError, NoFigureError
-from verify.linear.base import DiscreteModel
+from verify.errors import InputError
+from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts, check_division, divide, part_counts
 from verify.linear.system import StructuralSystem
 from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
@@ -470,24 +470,42 @@ class SegmentModel(DiscreteModel):
         return order_of(self.beam, **{name: getattr(self, name) for name in self.modal_settings})
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of waves along equal links of the beam's own section, 1/m.
+        """Wavenumber of waves along equal links of the beam's own section, 1/m, with the losses of the joints.
 
-        With s = sin(k l/2): 16 s^4 EI/l^4 + 4 s^2 T/l^2 = (rho A omega^2 - k_f) (1 - 2 s^2/3). Thick beams: the exact.
+        Of joint stiffness k, slip compliance g, m = rho A l, J = m l^2/12 + rho I l: with L = m omega^2 - k_f l,
+        B = T l + k_f l^3/12 - J omega^2 and S = sin^2(k l/2),
+        16 k S^2 + (4 B + l^2 L - 4 k g L) S = (l^2 + g B) L.
         """
+        omega, own = 2.0 * pi * frequency_hz, self.beam.own
+        omega2, lossy = (omega / self._omega_unit) ** 2, 1.0 + 1j * self.beam.loss_factor
+        load, spin, soft = omega2 - self._foundation, 0.0, 0j
         if self.theory != "euler-bernoulli":
-            return super().wavenumber(frequency_hz)
-        load = (2.0 * pi * frequency_hz / self._omega_unit) ** 2 - self._foundation
-        a, b = 16.0 * (1.0 + 1j * self.beam.loss_factor), 4.0 * self._tension + 2.0 * load / 3.0
+            spin = float(own.rotary_inertia or 0.0) / (self.beam.mass_per_length * self.unit**2) * omega2
+        if self.theory == "timoshenko":
+            soft = self.beam.bending_stiffness / (float(own.shear_stiffness or 0.0) * self.unit**2 * lossy)
+        bend = lossy + 1j * self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
+        turn = self._tension - load / 12.0 - spin
         if self.joints == "tensioned":
-            a -= 4.0 * self._tension / 3.0
-        k = complex(2.0 * np.arcsin(np.sqrt(2.0 * load / (b + np.sqrt(b * b + 4.0 * a * load + 0j)))) / self.unit)
+            bend -= (self._tension - spin) / 12.0
+            soft /= 1.0 + soft * omega2 / 12.0
+        b, c = 4.0 * turn + load - 4.0 * bend * soft * load, (1.0 + soft * turn) * load
+        # the lower branch, without a difference of large numbers
+        square = 2.0 * c / (b + np.sqrt(b * b + 64.0 * bend * c))
+        k = complex(2.0 * np.arcsin(np.sqrt(square + 0j)) / self.unit)
         return k if k.imag <= 0.0 else k.conjugate()
 
-    def check_propagates(self, frequency_hz: float) -> None:
-        """Raise NoFigureError at and beyond omega^2 = 48 EI/(rho A l^4), a half wave on each link."""
-        n, of_one = self.n_segments, sqrt(48.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
-        if frequency_hz >= of_one * n**2:
-            raise NoFigureError(
-                f"count = {n}: {n} segments carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
-                f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
-            )
+    @property
+    def cut_off_hz(self) -> float:
+        """Where a half wave fits on the worst link: it rotates, at 48 EI/(rho A l^4) = omega^2 if plain, or slips."""
+        lengths, tensioned = self.links.lengths, self.joints == "tensioned"
+        masses, spins = lengths * self.links.masses_per_length, 0.0 * lengths
+        if self.theory != "euler-bernoulli":
+            spins = self._rotary_inertias
+        share = 2.0 / 3.0 if tensioned else 1.0
+        force, ground = self._tension * lengths * share, self._foundation * lengths
+        turning = 4.0 * self.links.stiffnesses / lengths + force + ground * lengths**2 / 12.0
+        squares = turning / (link_inertia(masses, lengths) + spins * share)
+        if self.theory == "timoshenko":
+            slipping = 4.0 * self._shears / lengths + ground
+            squares = np.minimum(squares, slipping / (masses * share))
+        return float(np.sqrt(max(squares.min(), 0.0))) * self._omega_unit / (2.0 * pi)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray
+from verify.arrays import Array, ComplexArray, Indices
 from verify.errors import InputError
 
 DENSE = 150
@@ -49,7 +49,7 @@ def _sums(terms: Array) -> Array:
     return np.asarray(np.ascontiguousarray(terms.T).sum(axis=1))
 
 
-def sparse_rows(columns: Array, values: Array, n: int) -> Any:
+def sparse_rows(columns: Indices, values: Array, n: int) -> Any:
     """Sparse (r, n) of values (r, c) at columns (r, c), without zeros and columns outside 0..n - 1."""
     from scipy.sparse import csr_array
 
@@ -264,8 +264,8 @@ class StructuralSystem:
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
     @cached_property
-    def _pattern(self) -> tuple[Array, Array, Array, Array, Array]:
-        """[[-1, B], [B^T, M]]: values (-1, B, B^T, M in turn); their order by columns, rows and starts of columns; scales.
+    def _pattern(self) -> tuple[Array, Indices, Any, Any, Array]:
+        """[[-1, B], [B^T, M]]: its values in turn; their order by columns, rows and starts of columns; scales.
 
         Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
         """
@@ -325,7 +325,9 @@ class StructuralSystem:
             right = np.concatenate([np.zeros((m, load.shape[1]), dtype=load.dtype), load])
             response = factor.solve(right)[m:]
             for _ in range(REFINED):
-                right[m:] = load + omega2 * (self.mass @ response) - self.transposed @ (d[:, None] * self.strain(response))
+                right[m:] = (
+                    load + omega2 * (self.mass @ response) - self.transposed @ (d[:, None] * self.strain(response))
+                )
                 for row, z in devices:
                     right[m:] -= (z.real if undamped else z) * (row.T @ (row @ response))
                 correction = factor.solve(right)[m:]
