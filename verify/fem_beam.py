@@ -22,7 +22,7 @@ from msgspec.structs import replace
 from verify.arrays import Array, Indices
 from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
-from verify.linear.surface import piece_at, section_at
+from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem, sparse_rows
 from verify.options import Theory
 from verify.problem.beam import Beam
@@ -88,12 +88,6 @@ class HermiteModel(DiscreteModel):
         """The elements; nodes at steps, masses and springs."""
         pieces = cut_pieces(self.beam)
         return divide(self.beam, self.n_elements, self.grading, pieces if len(pieces) > len(self.beam.pieces) else ())
-
-    def of_elements(self, field: str, scale: float) -> Array:
-        """A property of each element's section over `scale`, (N,)."""
-        ends = np.cumsum([piece.length for piece in self.beam.pieces])[:-1] / self.unit
-        figures = np.array([getattr(piece, field) for piece in self.beam.pieces]) / scale
-        return np.asarray(figures[ends.searchsorted(self.mesh.nodes[:-1] + 0.5 * self.mesh.lengths)])
 
     @cached_property
     def basis(self) -> Any:
@@ -175,7 +169,7 @@ class HermiteModel(DiscreteModel):
         gradient = -0.25 * self.mesh.lengths**2 * bending[:, 0, 2]
         own = [gradient - bending[:, 1, 3], gradient]
         if self.shear:
-            shear = np.minimum(self.of_elements("shear_stiffness", stiffness), RIGID * self.mesh.stiffnesses.max())
+            shear = np.minimum(self.mesh.of("shear_stiffness") / stiffness, RIGID * self.mesh.stiffnesses.max())
             inside = el.element_matrices(self.basis, el.shear, shear).tolocal()
             own += [inside[:, 4, 4], inside[:, 5, 5]]
         return np.concatenate(own)
@@ -214,7 +208,7 @@ class HermiteModel(DiscreteModel):
         mass = el.element_matrices(self.basis, el.inertia, self.mesh.masses_per_length)
         data, (rows, columns) = mass.data, self.unknowns[mass.indices]
         if self.theory != "euler-bernoulli":
-            rotary = self.of_elements("rotary_inertia", self.beam.mass_per_length * self.unit**2)
+            rotary = self.mesh.of("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
             data = data + el.element_matrices(self.basis, el.rotary_inertia, rotary).data
         free = (rows >= 0) & (columns >= 0)
         return csc_array((data[free], (rows[free], columns[free])), shape=(self.n_unknowns,) * 2)
@@ -345,13 +339,11 @@ class HermiteModel(DiscreteModel):
         """
         from scipy.linalg import eigh
 
-        nodes, limits = self.mesh.nodes, list[float]()
-        at = piece_at(self.beam, (nodes[:-1] + 0.5 * self.mesh.lengths) * self.unit)
-        for piece in np.unique(at):
-            inside = np.flatnonzero(at == piece)
-            longest = inside[self.mesh.lengths[inside].argmax()]
-            section, length = section_at(self.beam, nodes[longest] * self.unit), self.mesh.lengths[longest] * self.unit
-            alone = replace(section, length=length, supports=("free", "free"), mass=(), spring=())
+        limits, last = list[float](), np.cumsum(self.mesh.shares) - 1
+        for first, stop in zip([0, *(last[:-1] + 1)], last + 1, strict=True):
+            lengths = self.mesh.lengths[first:stop]
+            section = section_at(self.beam, self.mesh.nodes[first] * self.unit)
+            alone = replace(section, length=lengths.max() * self.unit, supports=("free", "free"), mass=(), spring=())
             model = HermiteModel(alone, 1, theory=self.theory)
             system, opposite = model.system, np.eye(model.n_unknowns)[:, [0, 1, *range(4, model.n_unknowns)]]
             opposite[[2, 3], [0, 1]] = -1.0

@@ -30,7 +30,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.discrete import DiscreteModel
-from verify.linear.mesh import Parts, check_division, divide, part_counts
+from verify.linear.mesh import Parts, check_division, divide
 from verify.linear.system import StructuralSystem
 from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
 from verify.problem.beam import Beam
@@ -49,6 +49,7 @@ from verify.segments.chain import (
     selection,
     squares,
 )
+from verify.segments.dispersion import cut_off2, phase
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
@@ -138,7 +139,7 @@ class SegmentModel(DiscreteModel):
         compliances = self._own_compliances.copy()
         compliances[[0, -1]] += self.attached.end_springs
         inertias = link_inertia(masses, lengths)
-        if self.theory != "euler-bernoulli":
+        if self._thick:
             inertias = inertias + self._rotary_inertias
         return Chain(
             supports=self.beam.supports,
@@ -177,23 +178,22 @@ class SegmentModel(DiscreteModel):
 
     @cached_property
     def _own_compliances(self) -> Array:
-        """Compliances with EI - T l^2/12 in tensioned joints, reduced further at a clamped wall (`tension_excess`)."""
+        """Those of tensioned joints: EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
         if self.joints != "tensioned" or not self.beam.tension:
             return self._beam_compliances
-        tension, lengths, factors = self._tension, self.links.lengths, self._wall_factors
-        stiffnesses = self.links.stiffnesses - tension * lengths**2 / 12.0
-        found = self._joint_compliances(stiffnesses)
+        lengths, stiffnesses = self.links.lengths, self.links.stiffnesses - self._tension * self.links.lengths**2 / 12.0
+        compliances = self._joint_compliances(stiffnesses)
         for end, (support, turns) in enumerate(zip(self.beam.supports, self.attached.elastic, strict=True)):
             if support == "clamped" or turns:
-                excess = tension * lengths[-end] * tension_excess(self.wall) / 12.0 / factors[-end] ** 2
-                found[-end] = 1.0 / (1.0 / found[-end] - excess)
-        if stiffnesses.min() <= 0.0 or found.min() <= 0.0:
+                excess = self._tension * lengths[-end] * tension_excess(self.wall) / 12.0
+                compliances[-end] = 1.0 / (1.0 / compliances[-end] - excess / self._wall_factors[-end] ** 2)
+        if stiffnesses.min() <= 0.0 or compliances.min() <= 0.0:
             raise InputError(
                 f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
                 f"{self.n_segments} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of "
                 "it: give more segments or choose joints = 'series'"
             )
-        return found
+        return compliances
 
     @property
     def _tension(self) -> float:
@@ -203,15 +203,15 @@ class SegmentModel(DiscreteModel):
     def _foundation(self) -> float:
         return self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
 
-    def _of_links(self, figure: str) -> Array:
-        """A property of the beam's pieces for every link, (N,), SI."""
-        counts = part_counts([piece.length for piece in self.beam.pieces], self.n_segments)
-        return np.repeat([float(getattr(piece, figure)) for piece in self.beam.pieces], counts)
+    @property
+    def _thick(self) -> bool:
+        """Whether links have the rotary inertia of their thickness."""
+        return self.theory != "euler-bernoulli"
 
     @cached_property
     def _rotary_inertias(self) -> Array:
         """Rotary inertia rho I l of the links, (N,)."""
-        return self.links.lengths * self._of_links("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
+        return self.links.lengths * self.links.of("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
 
     # --- Attachments ---------------------------------------------------------------------------------------------
 
@@ -243,7 +243,7 @@ class SegmentModel(DiscreteModel):
     @cached_property
     def _shears(self) -> Array:
         """Kappa G A of the links, (N,)."""
-        return self._of_links("shear_stiffness") * self.unit**2 / self.beam.bending_stiffness
+        return self.links.of("shear_stiffness") * self.unit**2 / self.beam.bending_stiffness
 
     @cached_property
     def _shear_compliances(self) -> Array:
@@ -290,7 +290,7 @@ class SegmentModel(DiscreteModel):
         if beam.tension:
             strains.append((links, self._tension * lengths))
         mass, across, bodies = link_mass(motions), None, None
-        if self.joints == "tensioned" and self.theory != "euler-bernoulli":
+        if self.joints == "tensioned" and self._thick:
             inertias = shear.joint_inertias(self._rotary_inertias, self._wall_factors, self._own_share, self.wall)
             mass = mass - squares(motions.angles_of @ motions.both, inertias)
             if motions.n_slips:
@@ -323,9 +323,8 @@ class SegmentModel(DiscreteModel):
         for column, (start, tilt) in enumerate(self.beam.rigid_lines):
             found[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
         springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
-        if (
-            springs and found.size
-        ):  # without strain of a single spring, whose interpolated position errs on unequal links
+        if springs and found.size:
+            # no strain of a single spring, whose interpolated position errs on unequal links
             found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
         return found
 
@@ -438,16 +437,14 @@ class SegmentModel(DiscreteModel):
             rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
             return np.asarray((rows @ self.motions.both @ vectors).T / self.unit)
 
+        raw = line == "raw"
+        shapes = (
+            self._links(vectors, both_sides=False)
+            if raw
+            else line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
+        )
         turns = rotations if self.beam.mass else None
-        if line == "raw":
-            return {
-                "shapes": self._links(vectors, both_sides=False),
-                "edges": self.chain.nodes,
-                "degree": 1,
-                "turns": turns,
-            }
-        shapes = line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
-        return {"shapes": shapes, "edges": self.chain.nodes, "degree": 3, "turns": turns}
+        return {"shapes": shapes, "edges": self.chain.nodes, "degree": 1 if raw else 3, "turns": turns}
 
     # --- Buckling, order, waves ----------------------------------------------------------------------------------
 
@@ -470,42 +467,28 @@ class SegmentModel(DiscreteModel):
         return order_of(self.beam, **{name: getattr(self, name) for name in self.modal_settings})
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of waves along equal links of the beam's own section, 1/m, with the losses of the joints.
-
-        Of joint stiffness k, slip compliance g, m = rho A l, J = m l^2/12 + rho I l: with L = m omega^2 - k_f l,
-        B = T l + k_f l^3/12 - J omega^2 and S = sin^2(k l/2),
-        16 k S^2 + (4 B + l^2 L - 4 k g L) S = (l^2 + g B) L.
-        """
-        omega, own = 2.0 * pi * frequency_hz, self.beam.own
-        omega2, lossy = (omega / self._omega_unit) ** 2, 1.0 + 1j * self.beam.loss_factor
-        load, spin, soft = omega2 - self._foundation, 0.0, 0j
-        if self.theory != "euler-bernoulli":
-            spin = float(own.rotary_inertia or 0.0) / (self.beam.mass_per_length * self.unit**2) * omega2
-        if self.theory == "timoshenko":
-            soft = self.beam.bending_stiffness / (float(own.shear_stiffness or 0.0) * self.unit**2 * lossy)
-        bend = lossy + 1j * self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
-        turn = self._tension - load / 12.0 - spin
-        if self.joints == "tensioned":
-            bend -= (self._tension - spin) / 12.0
-            soft /= 1.0 + soft * omega2 / 12.0
-        b, c = 4.0 * turn + load - 4.0 * bend * soft * load, (1.0 + soft * turn) * load
-        # the lower branch, without a difference of large numbers
-        square = 2.0 * c / (b + np.sqrt(b * b + 64.0 * bend * c))
-        k = complex(2.0 * np.arcsin(np.sqrt(square + 0j)) / self.unit)
-        return k if k.imag <= 0.0 else k.conjugate()
+        """Wavenumber of waves along equal links of the beam's own section, 1/m, with the losses of the joints."""
+        omega, own, loss = 2.0 * pi * frequency_hz, self.beam.own, 1.0 + 1j * self.beam.loss_factor
+        rigidity, inertia = own.shear_stiffness or 0.0, own.rotary_inertia or 0.0
+        k = phase(
+            (omega / self._omega_unit) ** 2,
+            loss + 1j * self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness,
+            self.beam.bending_stiffness / (rigidity * self.unit**2 * loss) if self.theory == "timoshenko" else 0.0,
+            spin=self._thick * inertia / (self.beam.mass_per_length * self.unit**2),
+            tension=self._tension,
+            foundation=self._foundation,
+            tensioned=self.joints == "tensioned",
+        )
+        return (k if k.imag <= 0.0 else k.conjugate()) / self.unit
 
     @property
     def cut_off_hz(self) -> float:
-        """Where a half wave fits on the worst link: it rotates, at 48 EI/(rho A l^4) = omega^2 if plain, or slips."""
-        lengths, tensioned = self.links.lengths, self.joints == "tensioned"
-        masses, spins = lengths * self.links.masses_per_length, 0.0 * lengths
-        if self.theory != "euler-bernoulli":
-            spins = self._rotary_inertias
-        share = 2.0 / 3.0 if tensioned else 1.0
-        force, ground = self._tension * lengths * share, self._foundation * lengths
-        turning = 4.0 * self.links.stiffnesses / lengths + force + ground * lengths**2 / 12.0
-        squares = turning / (link_inertia(masses, lengths) + spins * share)
-        if self.theory == "timoshenko":
-            slipping = 4.0 * self._shears / lengths + ground
-            squares = np.minimum(squares, slipping / (masses * share))
-        return float(np.sqrt(max(squares.min(), 0.0))) * self._omega_unit / (2.0 * pi)
+        """Frequency of a half wave on the worst link, Hz."""
+        share = 2.0 / 3.0 if self.joints == "tensioned" else 1.0  # 1 - 4/12: a joint bends twice the link's rotation
+        lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
+        inertias = link_inertia(masses, lengths) + (share * self._rotary_inertias if self._thick else 0.0)
+        slips, masses = (self._shears, share * masses) if self.theory == "timoshenko" else (np.inf, masses)
+        square = cut_off2(
+            lengths, self.links.stiffnesses, masses, inertias, slips, share * self._tension, self._foundation
+        )
+        return float(np.sqrt(square)) * self._omega_unit / (2.0 * pi)

@@ -54,8 +54,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
     def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
         """The field under other forces (displacements) at another frequency. Raises InputError."""
-        if self.beam.uniform:
-            self.model.check_propagates(frequency_hz)
+        self.model.check_propagates(frequency_hz)
         solve = self.model.harmonic if self.kind == "force" else self.model.imposed
         return solve(forces, frequency_hz, devices=self.passive)
 
@@ -64,10 +63,9 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises NoFigureError at a frequency whose waves do not run along its parts.
         """
+        self.model.check_propagates(frequency_hz)
         if self.beam.section:
             return wavenumber(self.beam, frequency_hz, self.model.theory)
-        if self.beam.uniform:
-            self.model.check_propagates(frequency_hz)
         return self.model.wavenumber(frequency_hz)
 
 
