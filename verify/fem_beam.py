@@ -21,9 +21,10 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, Indices
 from verify.linear.discrete import DiscreteModel
+from verify.linear.factored import sparse_rows
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
 from verify.linear.surface import section_at
-from verify.linear.system import StructuralSystem, sparse_rows
+from verify.linear.system import StructuralSystem
 from verify.options import Theory
 from verify.problem.beam import Beam
 from verify.problem.supports import HOLDS

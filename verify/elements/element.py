@@ -23,7 +23,7 @@ from skfem.mesh import MeshLine
 from skfem.refdom import RefLine
 
 from verify.arrays import Array, Indices
-from verify.linear.system import sparse_rows
+from verify.linear.factored import sparse_rows
 
 DEFLECTION = np.array(
     [[1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1, 1], [0, 1, -3, 2], [0, -1, 1, 0]], dtype=float

@@ -1,22 +1,20 @@
-"""Linear structural systems kept in factored form, K = B^T diag(d) B: modes, harmonic response, buckling.
+"""Linear structural systems K = B^T diag(d) B: modes, harmonic response, buckling.
 
-An assembled K loses the low eigenvalues of a beam to rounding like n^4 eps. Here the vectors may come from any solver;
-each eigenvalue is the Rayleigh quotient sum d (B v)^2 / v^T M v, with B applied as successive differences, so that its
-error is of second order in that of the vector. Factorisations use the augmented (saddle-point) matrix
-[[-1/d, B], [B^T, -s M]], which never forms B^T diag(d) B and takes stiffnesses of any size and sign.
-
-Unknowns, stiffnesses and masses are dimensionless, of order one; models scale them.
+Vectors may come from any solver; each eigenvalue is the Rayleigh quotient sum d (B v)^2 / v^T M v, with B applied as
+successive differences, so that its error is of second order in that of the vector. Factorisations are those of the
+augmented matrix (`factored`).
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray, Indices
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
+from verify.linear.factored import FactoredSystem
 
 DENSE = 150
 """Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
@@ -49,56 +47,9 @@ def _sums(terms: Array) -> Array:
     return np.asarray(np.ascontiguousarray(terms.T).sum(axis=1))
 
 
-def sparse_rows(columns: Indices, values: Array, n: int) -> Any:
-    """Sparse (r, n) of values (r, c) at columns (r, c), without zeros and columns outside 0..n - 1."""
-    from scipy.sparse import csr_array
-
-    stored = (values != 0.0) & (columns >= 0) & (columns < n)
-    starts = np.concatenate([[0], np.cumsum(stored.sum(axis=1))])
-    return csr_array((values[stored], columns[stored], starts), shape=(len(columns), n))
-
-
 @dataclass(frozen=True, eq=False)
-class StructuralSystem:
-    """K = B^T diag(d) B and M over n unknowns. B is a product of sparse factors, applied one after another."""
-
-    strain_factors: Sequence[Any]
-    """Sparse; B = factors[-1] @ ... @ factors[0]. The first take plain differences, which are exact."""
-    stiffness: Array
-    """d, (m,); negative where an axial compression releases energy."""
-    mass: Any
-    """M, (n, n), sparse by columns."""
-    rigid: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    """(n, r), motions without strain, whose zero eigenvalues are left out."""
-    lower_bound: float = 0.0
-    """Lower bound of all eigenvalues without `bodies`. A hard foundation raises them to where they lie close together;
-    the shift of Lanczos follows it."""
-    bodies: Any = None
-    """Sparse rows (r, n) whose squares are the part of M of attached bodies, which may lower r eigenvalues further."""
-
-    @property
-    def n(self) -> int:
-        """Number of unknowns."""
-        return int(self.mass.shape[0])
-
-    @property
-    def n_rigid(self) -> int:
-        """Number of rigid-body motions."""
-        return int(self.rigid.shape[1]) if self.rigid.size else 0
-
-    def strain(self, vectors: Any) -> Any:
-        """B v, (m, k), of v (n, k)."""
-        for factor in self.strain_factors:
-            vectors = factor @ vectors
-        return vectors
-
-    @cached_property
-    def transposed(self) -> Any:
-        """B^T, (n, m), sparse by rows."""
-        product = self.strain_factors[-1]
-        for factor in reversed(self.strain_factors[:-1]):
-            product = product @ factor
-        return product.T.tocsr()
+class StructuralSystem(FactoredSystem):
+    """Modes, harmonic response and buckling of a factored system."""
 
     def rayleigh_quotients(self, vectors: Array) -> Array:
         """Eigenvalues (k,) of vectors (n, k)."""
@@ -140,9 +91,8 @@ class StructuralSystem:
         """From the singular values of diag(d)^(1/2) B L^-T with M = L L^T, conditioned like n^2 and not n^4."""
         from scipy.linalg import solve_triangular
 
-        lower = np.linalg.cholesky(self.mass.toarray())
-        root = (np.sqrt(self.stiffness)[:, None] * self.strain(np.eye(self.n))).T
-        root = solve_triangular(lower, root, lower=True, check_finite=False).T
+        lower, strain = np.linalg.cholesky(self.mass.toarray()), self.strain(np.eye(self.n))
+        root = solve_triangular(lower, (np.sqrt(self.stiffness)[:, None] * strain).T, lower=True, check_finite=False).T
         right = np.linalg.svd(root, full_matrices=root.shape[0] < self.n)[2]
         last = self.n - self.n_rigid
         vectors = solve_triangular(lower, right[last - k : last].T, lower=True, trans="T", check_finite=False)
@@ -156,9 +106,8 @@ class StructuralSystem:
         from scipy.linalg import eigh
 
         mass, strain = self.mass.toarray(), self.strain(np.eye(self.n))
-        values, vectors = (
-            part[..., self.n_rigid :] for part in eigh(strain.T @ (self.stiffness[:, None] * strain), mass)
-        )
+        stiffness = strain.T @ (self.stiffness[:, None] * strain)
+        values, vectors = (part[..., self.n_rigid :] for part in eigh(stiffness, mass))
         flexibility = mass @ self._inverse(0.0)(mass)[1]
         inverse, low = (part[..., ::-1] for part in eigh(0.5 * (flexibility + flexibility.T), mass))
         n_low = int(np.searchsorted(values, np.sqrt(values[-1] / inverse[0])))
@@ -263,33 +212,6 @@ class StructuralSystem:
 
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
-    @cached_property
-    def _pattern(self) -> tuple[Array, Indices, Any, Any, Array]:
-        """[[-1, B], [B^T, M]]: its values in turn; their order by columns, rows and starts of columns; scales.
-
-        Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
-        """
-        m, scales = len(self.stiffness), np.exp2(np.minimum(np.round(0.5 * np.log2(abs(self.stiffness))), 0.0))
-        strain, mass, diagonal = self.transposed.T.tocoo(), self.mass.tocoo(), np.arange(m)
-        rows = np.concatenate([diagonal, strain.row, m + strain.col, m + mass.row])
-        columns = np.concatenate([diagonal, m + strain.col, strain.row, m + mass.col])
-        values = strain.data * scales[strain.row]
-        order = np.lexsort((rows, columns))
-        starts = np.concatenate([[0], np.cumsum(np.bincount(columns, minlength=m + self.n))])
-        values = np.concatenate([-np.ones(m), values, values, mass.data])
-        return values, order, rows[order].astype(np.int32), starts.astype(np.int32), scales
-
-    def augmented(self, mass_factor: float, stiffness: Any = None) -> Any:
-        """[[-1/d, B], [B^T, mass_factor M]], sparse by columns. Its pattern is made once, its data per frequency."""
-        from scipy.sparse import csc_array
-
-        d, m = self.stiffness if stiffness is None else stiffness, len(self.stiffness)
-        values, order, rows, starts, scales = self._pattern
-        data = values.astype(d.dtype)
-        data[:m] *= scales**2 / d
-        data[len(data) - self.mass.nnz :] *= mass_factor
-        return csc_array((data[order], rows, starts), shape=(m + self.n,) * 2)
-
     def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
         """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
         from scipy.sparse import block_array, csc_array, hstack
@@ -345,9 +267,9 @@ class StructuralSystem:
         return parts[:, 1 : k + 1] + 1j * parts[:, k + 1 :] if np.iscomplexobj(loads) else parts[:, 1:]
 
     def _check_resonance(self, solve: Callable[[Any], Any], response: Any, omega2: float) -> None:
-        """Raise LinAlgError within `RESONANCE` of a resonance, by the response (n, 1) to a random load.
+        """Raise LinAlgError within `RESONANCE` of a resonance, from the response (n, 1) to a random load.
 
-        One step of inverse iteration on the coupled system: omega_n^2 - omega^2 of the nearest resonance.
+        One step of inverse iteration gives omega_n^2 - omega^2 of the nearest resonance of the coupled system.
         """
         first = self.mass @ response
         distance = float((response * first).sum() / (first * solve(first)).sum())
@@ -402,15 +324,16 @@ class StructuralSystem:
         m, d = len(self.stiffness), self.stiffness if stiffness is None else stiffness
         factor = self._factor(omega2, np.asarray(d, dtype=complex), devices, rows)
 
-        def solve(loads: Any) -> Any:
-            padded = [np.zeros((m, 1)), loads, np.zeros((rows.shape[0], 1))]
-            return factor.solve(np.concatenate(padded).astype(complex))[m : m + self.n].real
+        def solve(loads: Any, displacements: Any) -> Any:
+            right = np.concatenate([np.zeros((m, loads.shape[1])), loads, displacements])
+            return factor.solve(right.astype(complex))[m:]
 
         if not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices):
-            self._check_resonance(solve, solve(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
-        right = np.concatenate([np.zeros((m, loads.shape[1])), loads, displacements])
-        solution = factor.solve(right.astype(complex))
-        return solution[m : m + self.n], -solution[m + self.n :]
+            start, nothing = np.random.default_rng(0).standard_normal((self.n, 1)), np.zeros((rows.shape[0], 1))
+            response = solve(start, nothing)[: self.n].real
+            self._check_resonance(lambda load: solve(load, nothing)[: self.n].real, response, omega2)
+        solution = solve(loads, displacements)
+        return solution[: self.n], -solution[self.n :]
 
     # --- Buckling ------------------------------------------------------------------------------------------------
 

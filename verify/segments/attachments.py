@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.linear.system import sparse_rows
+from verify.linear.factored import sparse_rows
 from verify.problem.supports import HOLDS
 from verify.segments.chain import Chain
 
