@@ -136,7 +136,7 @@ class HermiteModel(DiscreteModel):
             strains = [mean, [*gradient, (constant, 2.0)], [(constant, 1.0)], [(constant + 1, 1.0)]]
         if self.beam.tension:
             # w'^2 has the mean chord^2 + mean^2/12 + gradient^2/20
-            force = self.beam.tension * self.unit**2 / self.beam.bending_stiffness * lengths
+            force = self._tension * lengths
             strains += [chord, mean, gradient]
             stiffness += [force, force / 12.0, force / 20.0]
         places, values = np.full((len(strains), n, 4), -1), np.zeros((len(strains), n, 4))
@@ -191,7 +191,7 @@ class HermiteModel(DiscreteModel):
             points, weights = np.polynomial.legendre.leggauss(4)
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
             shares = (lengths[:, None] * 0.5 * weights).ravel()
-            found.append((self._rows(x), beam.foundation * self.unit**3 * scale * shares))
+            found.append((self._rows(x), self._foundation * shares))
         for spring in beam.spring:
             at = np.array([spring.position / self.unit])
             for value, rotation in ((spring.stiffness * self.unit**2, False), (spring.rotational, True)):
@@ -241,7 +241,7 @@ class HermiteModel(DiscreteModel):
         beam = self.beam
         if not beam.foundation or beam.tension < 0.0 or self.theory != "euler-bernoulli":
             return 0.0
-        return beam.foundation * self.unit**4 / beam.bending_stiffness / float(self.mesh.masses_per_length.max())
+        return self._foundation / float(self.mesh.masses_per_length.max())
 
     def lossy_stiffness(self, omega: float) -> Any:
         """D with the beam's loss factor on its own bending and shear, (m,)."""

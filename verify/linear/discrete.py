@@ -97,6 +97,16 @@ class DiscreteModel(BeamModel):
         return self.beam.wave_constant / self.unit**2
 
     @property
+    def _tension(self) -> float:
+        """Axial force T unit^2/EI."""
+        return self.beam.tension * self.unit**2 / self.beam.bending_stiffness
+
+    @property
+    def _foundation(self) -> float:
+        """Foundation k_f unit^4/EI."""
+        return self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
+
+    @property
     def _tilts(self) -> bool:
         """Whether the beam without its axial force rotates freely as a whole."""
         return any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines)
