@@ -122,9 +122,13 @@ class DiscreteModel(BeamModel):
     def check_propagates(self, frequency_hz: float) -> None:
         """Raise NoFigureError at and beyond `cut_off_hz`."""
         if frequency_hz >= (limit := self.cut_off_hz):
+            beam, n = self.beam, self.count or 0
+            plain = self.theory == "euler-bernoulli" and not (beam.section or beam.tension or beam.foundation)
             raise NoFigureError(
-                f"count = {self.count}: {self.count} {self.parts} carry waves up to {limit:.6g} Hz and frequency_hz = "
-                f"{float(frequency_hz)!r} lies beyond, raise count"
+                f"count = {n}: {n} {self.parts} carry waves up to {limit:.6g} Hz and frequency_hz = "
+                f"{float(frequency_hz)!r} lies beyond, "
+                # the cut-off of plain parts is in proportion to their number squared
+                + (f"give count = {int(n * sqrt(frequency_hz / limit)) + 1} or more" if plain else "raise count")
             )
 
     @cached_property
