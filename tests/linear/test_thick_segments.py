@@ -8,7 +8,9 @@ import pytest
 from msgspec.structs import replace
 
 from tests.reference.transfer import frequency_near
-from verify.problem.beam import Beam
+from verify.fem_beam import HermiteModel
+from verify.problem.beam import Beam, PointForce
+from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass, PointSpring
 from verify.segment_model import SegmentModel
 
@@ -138,3 +140,27 @@ def test_stiff_shear_is_rayleighs_chain_and_no_thickness_is_euler_bernoullis(sup
 def test_ground_under_a_beam_that_shears_keeps_order_two():
     beam = replace(THICK, supports=ENDS["CF"], foundation=900.0)
     assert order(beam, 1, (160, 320), "timoshenko") == pytest.approx(2.0, abs=0.03)
+
+
+@pytest.mark.parametrize("settings", [{}, {"theory": "rayleigh", "joints": "tensioned"}, {"theory": "timoshenko"}])
+def test_a_field_decays_by_the_wavenumber_with_dashpots_in_the_joints(settings):
+    model = SegmentModel(
+        Beam(length=80.0, width=0.02, thickness=0.02, youngs_modulus=70e9, density=2700.0, supports=("free", "free")),
+        200, joint_dashpot=200.0, reading="raw", **settings,
+    )  # fmt: skip
+    here, there = model.harmonic(PointForce(position=5.1), 300.0).deflection(model.unit * np.array([80.0, 81.0]))
+    k = 1j * np.log(there / here) / model.unit
+    assert k.imag < -0.8
+    assert model.wavenumber(300.0) == pytest.approx(k, rel=1e-9)
+
+
+def test_elements_carry_waves_up_to_a_half_wave_each_on_the_worst_section():
+    """By the fastest waves of elements in closed form; softer with shear, lower on a section of half the thickness."""
+    beam = Beam(length=0.43, width=0.019, thickness=0.003, youngs_modulus=113e9, density=4470.0, poissons_ratio=0.31)
+    model = HermiteModel(beam, 11)
+    assert model.cut_off_hz == pytest.approx((1680 / 17) ** 0.5 * beam.wave_constant / (2 * pi * model.unit**2))
+    assert model.wavenumber(model.cut_off_hz * (1 - 1e-9)) * model.unit == pytest.approx(pi, abs=1e-4)
+    assert 0.9 < HermiteModel(beam, 11, theory="timoshenko").cut_off_hz / model.cut_off_hz < 0.999
+    stepped = replace(beam, section=(Section(length=0.23), Section(length=0.2, thickness=0.0015)))
+    for kind in (HermiteModel, SegmentModel):
+        assert kind(stepped, 43).cut_off_hz == pytest.approx(0.5 * kind(beam, 43).cut_off_hz)

@@ -144,5 +144,9 @@ def test_a_pinned_chain_resonates_at_half_waves_of_its_own_wavenumber(titanium_s
     model = SegmentModel(beam, 23, joints=joints)
     for mode, frequency in enumerate(model.modes(9).frequencies_hz, 1):
         assert model.wavenumber(float(frequency)) * beam.length == pytest.approx(mode * np.pi, rel=1e-9)
-    with pytest.raises(NoFigureError, match="give count = 24 or more"):
-        model.check_propagates(48**0.5 * beam.wave_constant * (23.5 / beam.length) ** 2 / (2 * np.pi))
+    if not change:
+        assert model.cut_off_hz == pytest.approx(48**0.5 * beam.wave_constant * (23 / beam.length) ** 2 / (2 * np.pi))
+    assert model.wavenumber(model.cut_off_hz) * model.unit == pytest.approx(np.pi, rel=1e-6)
+    remedy = "raise count" if change else "give count = 24 or more"
+    with pytest.raises(NoFigureError, match=rf"frequency_hz = \d+\.\d+ lies beyond, {remedy}"):
+        model.check_propagates(np.float64(1.001 * model.cut_off_hz))

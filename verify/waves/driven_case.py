@@ -58,8 +58,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
     def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
         """The field under other forces (displacements) at another frequency. Raises InputError."""
-        if self.beam.uniform:
-            self.model.check_propagates(frequency_hz)
+        self.model.check_propagates(frequency_hz)
         solve = self.model.harmonic if self.kind == "force" else self.model.imposed
         return solve(forces, frequency_hz, devices=self.passive)
 
@@ -68,10 +67,9 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises NoFigureError above the cut-off of its parts.
         """
+        self.model.check_propagates(frequency_hz)
         if self.beam.section:
             return wavenumber(self.beam, frequency_hz, self.model.theory)
-        if self.beam.uniform:
-            self.model.check_propagates(frequency_hz)
         return self.model.wavenumber(frequency_hz)
 
 
