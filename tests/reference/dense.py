@@ -154,10 +154,14 @@ class Links(DenseModel):
         half = np.array([0.5 * a / piece.bending_stiffness for piece, a in zip(self.pieces, self.lengths, strict=True)])
         compliance = half[1:] + half[:-1]
         self.compliance = np.concatenate([2.0 * half[: left in WALLS], compliance, 2.0 * half[n - (right in WALLS) :]])
+        factors = np.ones(len(self.compliance))
         for side, support in ((1, left), (-1, right)):
-            along = self.compliance[::side]
-            along[: len(wall) if support == "clamped" else 0] *= wall[: len(wall) if support == "clamped" else 0]
-            along[: int(support == "guided")] *= 0.5
+            along = factors[::side]
+            if support == "clamped":
+                along[: len(wall)] += wall[: len(along)] - 1.0
+            elif support == "guided":
+                along[0] *= 0.5
+        self.compliance *= factors
         self.bending = (self.bend.T / self.compliance) @ self.bend
         line = np.array([piece.mass_per_length for piece in self.pieces]) * self.lengths
         bed = beam.foundation * self.lengths
