@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from tests.beams import BAR, BEAMS, FORCES, HELD, LADEN, MASSES, PAIRED, PAIRS, STRIP
 from tests.reference import dense, transfer
 from verify import Beam, Device, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
-from verify.errors import InputError, ResonanceError
+from verify.errors import InputError
 
 X = np.array([0.13, 0.37, 0.58, 0.81])
 """Fractions of the length."""
@@ -232,120 +232,6 @@ MODELS = {
     "segment": lambda beam, count=23, **settings: SegmentModel(beam, count, **settings),
     "fem": lambda beam, count=14, **settings: HermiteModel(beam, count, **settings),
 }
-SHEARED = replace(BAR, supports=("clamped", "free"), loss_factor=0.01, foundation=4e6)
-
-
-@over(MODELS)
-@pytest.mark.parametrize(
-    ("beam", "theory"),
-    [
-        (BEAMS["clamped-free"], EULER),
-        (LADEN["masses-springs-steps"], EULER),
-        (LADEN["tension-masses"], EULER),
-        (SHEARED, "rayleigh"),
-        (SHEARED, "timoshenko"),
-    ],
-)
-def test_sweeps_and_receptances_superpose_single_fields(name, beam, theory):
-    model, x, hertz = MODELS[name](beam, theory=theory), X * beam.length, (97.0, 211.0, 613.0, 1409.0, 1777.0)
-    forces = [replace(force, position=force.position / STRIP.length * beam.length) for force in FORCES]
-    single = np.array([model.harmonic(forces, f).deflection(x) for f in hertz])
-    sweep = model.harmonic(forces, hertz)
-    assert sweep.deflection(x) == pytest.approx(single, rel=1e-8)
-    assert sweep.at(2).deflection(x) == pytest.approx(single[2], rel=1e-8)
-    units = model.receptance([force.position for force in forces], hertz, x)
-    phasors = [dense.phasor(force) for force in forces]
-    assert np.einsum("i,fix->fx", phasors, units) == pytest.approx(single, rel=1e-7)
-
-
-@over(MODELS)
-@pytest.mark.parametrize("beam", ["masses-springs-steps", "losses", "tension"])
-def test_force_and_deflection_are_reciprocal(name, beam):
-    model = SegmentModel(BEAMS[beam], 200) if name == "segment" else MODELS[name](BEAMS[beam])
-    ahead = model.harmonic(PointForce(position=0.193), HERTZ, devices=DEVICE).deflection(0.541)
-    back = model.harmonic(PointForce(position=0.541), HERTZ, devices=DEVICE).deflection(0.193)
-    # links share forces and read deflections by different weights, both of order four
-    assert ahead == pytest.approx(back, rel=1e-3 if name == "segment" else 1e-8)
-
-
-@over(MODELS)
-def test_links_and_elements_are_reciprocal_to_rounding_at_joints_and_nodes(name):
-    model = MODELS[name](replace(STRIP, supports=("clamped", "guided"), loss_factor=0.01))
-    parts = {"segment": 23, "fem": 14}.get(name, 31)
-    a, b = STRIP.length * 3 / parts, STRIP.length * 11 / parts
-    ahead, back = (model.harmonic(PointForce(position=p), 412.0).deflection(q)[0] for p, q in ((a, b), (b, a)))
-    assert ahead == pytest.approx(back, rel=1e-11)
-
-
-@over(MODELS)
-@pytest.mark.parametrize(("loss_factor", "devices"), [(0.0, DEVICE), (0.013, DEVICE), (0.0, ()), (0.0, DEVICES)])
-def test_forces_of_imposed_displacements_impose_them(name, loss_factor, devices):
-    model = MODELS[name](replace(LADEN["stepped"], loss_factor=loss_factor))
-    drives = [PointForce(position=0.17, amplitude=2e-6), PointForce(position=0.53, amplitude=3e-6, phase_deg=71.0)]
-    field = model.imposed(drives, HERTZ, devices=devices)
-    by_forces = model.harmonic(field.forces[:2], HERTZ, devices=devices)
-    for one in (field, by_forces):
-        assert one.deflection([0.17, 0.53]) == pytest.approx([2e-6, 3e-6 * np.exp(1j * np.deg2rad(71.0))], rel=1e-8)
-    close(by_forces.deflection(PLACES), field.deflection(PLACES))
-
-
-@over(MODELS)
-def test_forces_of_devices_act_with_imposed_displacements(name):
-    device, beam = replace(DEVICE, amplitude=0.13, phase_deg=-19.0), LADEN["stepped"]
-    drives = [PointForce(position=0.17, amplitude=2e-6, phase_deg=13.0)]
-    model = ExactModel(beam) if name == "exact" else MODELS[name](beam, {"segment": 400, "fem": 60}[name])
-    field, exact = (one.imposed(drives, HERTZ, devices=device) for one in (model, ExactModel(beam)))
-    without = model.imposed(drives, HERTZ, devices=DEVICE).deflection(X[1])
-    assert field.deflection(0.17) == pytest.approx(2e-6 * np.exp(1j * np.deg2rad(13.0)), rel=1e-9)
-    assert field.deflection(X[1]) == pytest.approx(exact.deflection(X[1]), rel=3e-3)
-    assert abs(field.deflection(X[1]) / without - 1.0) > 0.1
-    assert [one.position for one in field.forces] == [0.17, 0.21, 0.21]
-    assert field.forces[1].amplitude == 0.13
-
-
-# --- Resonance, close modes, sizes ------------------------------------------------------------------------------------
-
-
-@over(MODELS)
-@pytest.mark.parametrize("theory", [EULER, "timoshenko"])
-def test_an_undamped_resonance_is_refused_within_3e_10(name, theory):
-    beam, x = HELD if theory == EULER else replace(BAR, supports=("clamped", "pinned")), np.array([0.31])
-    model, force = MODELS[name](beam, theory=theory), PointForce(position=0.1)
-    third = float(model.modes(3).frequencies_hz[2])
-    for frequencies in (third, third * (1 + 3e-10), [0.7 * third, 0.8 * third, third]):
-        with pytest.raises(ResonanceError, match=rf"resonance.* of the {model.name} model"):
-            model.harmonic(force, frequencies)
-    gaps = np.isnan(model.receptance([0.3], [0.7 * third, third], x)).all(axis=(1, 2))
-    assert gaps.tolist() == [False, True]
-    below, above = (model.harmonic(force, third * (1 + side * 1e-7)).deflection(x)[0].real for side in (-1, 1))
-    assert below / above == pytest.approx(-1.0, rel=2e-4)
-    damped = MODELS[name](replace(beam, loss_factor=0.01), theory=theory).harmonic(force, third)
-    assert 0.0 < abs(damped.deflection(x)[0]) < 1e-3 * abs(below)
-
-
-@over(MODELS)
-def test_the_resonance_of_beam_and_device_is_refused_and_that_of_the_beam_is_not(name):
-    device = Device(position=0.31, mass=0.2, stiffness=2.1e3, rotational=3.0)
-    spring = PointSpring(position=0.31, stiffness=2.1e3, rotational=3.0)
-    laden = replace(HELD, spring=(spring,), mass=(PointMass(position=0.31, mass=0.2),))
-    resonance = float(MODELS[name](laden, *([] if name == "exact" else [30])).modes(3).frequencies_hz[2])
-    model = MODELS[name](HELD, *([] if name == "exact" else [30]))
-    with pytest.raises(ResonanceError):
-        model.harmonic(FORCES, resonance, devices=device)
-    for hertz in (resonance * (1 + 3e-9), float(model.modes(1).frequencies_hz[0])):
-        assert np.isfinite(model.harmonic(FORCES, hertz, devices=device).deflection(PLACES)).all()
-
-
-@pytest.mark.parametrize("name", ["exact", "fem"])
-def test_the_resonance_of_a_beam_fixed_at_its_actuators_is_refused(name):
-    """An imposed displacement at a free end is a pinned end."""
-    arm, fixed = (replace(STRIP, supports=("clamped", end)) for end in ("free", "pinned"))
-    resonance, drive = float(MODELS[name](fixed).modes(2).frequencies_hz[1]), PointForce(position=0.73, amplitude=1e-6)
-    with pytest.raises(ResonanceError, match="resonance"):
-        MODELS[name](arm).imposed(drive, resonance * (1 - 3e-10))
-    for loss, off in ((0.0, 1e-6), (1e-4, 0.0)):
-        field = MODELS[name](replace(arm, loss_factor=loss)).imposed(drive, resonance * (1 + off))
-        assert np.isfinite(field.deflection(PLACES)).all()
 
 
 @pytest.mark.parametrize("mass", [3e-6, 0.03, 3.0])
