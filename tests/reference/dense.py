@@ -232,7 +232,7 @@ class ReciprocalLinks(Links):
 
 
 class TimoshenkoElements(DenseModel):
-    """Elements of a cubic line and a linear shear strain each, tied at their ends: over what the ties leave free."""
+    """Elements of cubic deflection and linear shear strain without attachments, tied at their ends."""
 
     def __init__(self, beam: Beam, nodes: Array) -> None:
         super().__init__(beam, nodes)
@@ -252,14 +252,8 @@ class TimoshenkoElements(DenseModel):
             )
         for end, z, support in ((0, 0.0, beam.supports[0]), (count - 1, 1.0, beam.supports[1])):
             ties += [self._rows(end, z)[k] for k in HELD[support]]
-        for body in beam.mass:
-            w, turn = self._at(body.position)
-            mass += body.mass * np.outer(w, w) + body.rotary_inertia * np.outer(turn, turn)
-        for spring in beam.spring:
-            w, turn = self._at(spring.position)
-            rest += spring.stiffness * np.outer(w, w) + spring.rotational * np.outer(turn, turn)
-        self.basis = null_space(np.array(ties))
-        self.bending, self.rest, self.mass = (self.basis.T @ one @ self.basis for one in (bent, rest, mass))
+        basis = null_space(np.array(ties))
+        self.bending, self.rest, self.mass = (basis.T @ one @ basis for one in (bent, rest, mass))
         self.free = list(range(len(self.mass)))
 
     def _rows(self, i: int, z: float) -> tuple[Array, Array, Array, Array]:
@@ -272,15 +266,3 @@ class TimoshenkoElements(DenseModel):
         strain[6 * i + 4 : 6 * i + 6] = 1.0, z
         bend[6 * i + 5] -= 1.0 / length
         return w, slope - strain, bend, strain
-
-    def _at(self, x: float) -> tuple[Array, Array]:
-        i = int(np.clip(np.searchsorted(self.nodes, x + 1e-12, side="right") - 1, 0, len(self.lengths) - 1))
-        return self._rows(i, (x - float(self.nodes[i])) / float(self.lengths[i]))[:2]
-
-    def load(self, forces: Sequence[PointForce]) -> Array:
-        """Of point forces."""
-        return np.asarray(self.basis.T @ sum(phasor(one) * self._at(one.position)[0] for one in forces), dtype=complex)
-
-    def values_at(self, solution: Any, x: Array) -> Any:
-        """Deflections at places."""
-        return np.array([self._at(float(at))[0] for at in x]) @ self.basis @ solution

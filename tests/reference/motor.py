@@ -127,9 +127,9 @@ class Point(NamedTuple):
     load_stiffness: float = 0.0
 
 
-X, V, Z, ZD, Y, PRESSED, DRAGGED, TOUCHED, STUCK, RUBBED, DASHED, ACROSS, ALONG = range(13)
-"""Of a state, counted from its body's first entry: motion, stretch along, impulses, times, works."""
-BODY = 13
+X, V, Z, ZD, Y, PRESSED, DRAGGED, TOUCHED, STUCK = range(9)
+"""Entries of the state of a body: motion, stretch along, impulses, times."""
+BODY = 9
 
 
 class OneWay:
@@ -270,7 +270,6 @@ class Rider:
     def with_friction(self, t, s, mode, normal, friction):
         """Rates under known forces."""
         p, b = self.p, s[self.on.beam :]
-        _, rise, tilt, u = self.on.seen(t, s)
         out = np.zeros(BODY)
         out[X], out[Z] = b[V], b[ZD]
         out[V] = 0.0 if p.held is not None else (friction + p.pull) / p.mass
@@ -278,10 +277,6 @@ class Rider:
         touches = mode[0] == "pressed"
         out[PRESSED], out[DRAGGED], out[TOUCHED] = normal, friction, float(touches)
         out[STUCK] = float(touches and mode[1] == "stuck")
-        closing = rise + tilt * b[V] - b[ZD]
-        out[DASHED] = p.damping * closing**2 * touches
-        out[ACROSS], out[ALONG] = normal * (rise + tilt * b[V]), friction * u
-        out[RUBBED] = friction * (u - b[V])
         return np.concatenate([self.on.pushed(t, s, normal, friction), out])
 
     def whole(self, t, s, mode):
@@ -345,7 +340,7 @@ class Rider:
             return [*found, (spare, 1)]
         return [*found, (lambda t, s: mode[1] * self.slip(t, s), -1)]
 
-    def run(self, start, duration, at, period, max_step=0.02, rtol=1e-10, atol=None):
+    def run(self, start, duration, at, period, max_step=0.02, rtol=1e-10):
         """States at the times `at`, from 0 to `duration`."""
         self.tick = 1e-5 * period
         self.speed = max(abs(self.on.seen(t, start)[3]) for t in np.linspace(0.0, period, 17))
@@ -359,7 +354,7 @@ class Rider:
                 s,
                 method="DOP853",
                 rtol=rtol,
-                atol=1e-15 if atol is None else atol,
+                atol=1e-15,
                 max_step=max_step * period,
                 events=ends,
                 dense_output=True,
@@ -449,18 +444,15 @@ def cells(length, n):
     return length * ((np.arange(n) + 0.5) / n - 0.5)
 
 
-def foot_ridden(foot, waves, x, start, times, rtol=1e-9, max_step=np.inf, moving=True):
-    """Rows z, z_t, theta, theta_t, impulses of N and of Coulomb's friction, points' time in contact over their number.
-
-    `moving` False: the place along is held though the speed is that given, so that the motion is periodic.
-    """
+def foot_ridden(foot, waves, x, start, times, rtol=1e-9, max_step=np.inf):
+    """Rows z, z_t, theta, theta_t, impulses of N and of Coulomb's friction, points' time in contact over their number."""
     n, s = len(foot.places), foot.places
 
     def rates(t, y):
-        at = x + moving * foot.speed * t + s
+        at = x + foot.speed * t + s
         w, rise, tilt, u = felt(waves.at, at, t, foot.half)
         pen = w - y[0] - y[2] * s
-        closing = rise + moving * tilt * foot.speed - y[1] - y[3] * s
+        closing = rise + tilt * foot.speed - y[1] - y[3] * s
         push = (foot.stiffness * pen + foot.damping * closing) / n
         push = np.where(pen > 0.0, np.maximum(push, 0.0), 0.0)
         drag = foot.mu * push * np.sign(u - foot.speed)
@@ -473,17 +465,16 @@ def foot_ridden(foot, waves, x, start, times, rtol=1e-9, max_step=np.inf, moving
             push.sum(),
             drag.sum(),
             np.mean(push > 0.0),
-            drag @ u,
         ]
 
-    y0 = np.concatenate([start, np.zeros(4)])
+    y0 = np.concatenate([start, np.zeros(3)])
     found = solve_ivp(
         rates, (0.0, times[-1]), y0, method="DOP853", rtol=rtol, atol=1e-16, t_eval=times, max_step=max_step
     )
     return found.y.T
 
 
-# --- springs in a row under a slider that is held at a speed, on crests cos s
+# --- springs in a row under a slider at a prescribed speed, on crests cos s
 
 
 def lain_on(depths, load):
@@ -494,23 +485,17 @@ def lain_on(depths, load):
     return heights[np.argmax(heights >= below)]
 
 
-def row_of_springs(n, r, epsilon, steps, height=None, load=None, span=2.0 * pi):
-    """Mean F/(mu N) over a period of n springs over `span` radians of the wave at r times the crest speed.
+def row_of_springs(n, r, epsilon, steps, height):
+    """Mean F/(mu N) over a period of n springs on a wavelength at r times the crest speed, `height` over A.
 
-    Heights over A: held, or such that the springs carry `load` (over kappa A times the length) at every instant.
-    Stretch by return mapping in `steps` of a period, over V/omega; epsilon = 0 is Coulomb's. Each spring sees cos(s -
-    tau) as the wave runs below it.
+    Stretch by return mapping in `steps` of a period, over V/omega; epsilon = 0 is Coulomb's. The wave moves each spring
+    by cos(s - tau).
     """
-    place, step = (np.arange(n) + 0.5) * span / n, 2.0 * pi / steps
-    stretch, dragged, pressed = np.zeros(n), 0.0, 0.0
-
-    def depths(i):
+    place, step = (np.arange(n) + 0.5) * 2.0 * pi / n, 2.0 * pi / steps
+    stretch, dragged, pressed, before = np.zeros(n), 0.0, 0.0, np.cos(place) - height
+    for i in range(1, 2 * steps + 1):  # the first period damps the start
         top = np.cos(place - step * i)
-        return top, top - (height if load is None else lain_on(top, load))
-
-    before = depths(0)[1]
-    for i in range(1, 2 * steps + 1):  # the first period forgets the start
-        top, deep = depths(i)
+        deep = top - height
         pen = np.maximum(deep, 0.0)
         if epsilon:
             passed = np.sin(place - step * (i - 1)) - np.sin(place - step * i) - r * step
