@@ -52,18 +52,18 @@ for pair in combinations_with_replacement("PCFG", 2):
             due, band = {"half": (2, 0.01), "welded": (2, 0.04), "third-order": (3, 0.02)}[wall]
             add(name, on(pair), 2, (80, 160), due, -band, band, **settings)
 # attachments
-ATTACHED = {
-    "mass": {"mass": mass(ABSTRACT, 0.375, 0.4)},
-    "spring": {"spring": spring(ABSTRACT, 0.375, 200.0)},
-    "rotary inertia": {"mass": mass(ABSTRACT, 0.375, rotary=0.01)},
-    "rotational spring": {"spring": spring(ABSTRACT, 0.375, rotational=8.0)},
-}
-BETWEEN = {
-    "mass": {"mass": mass(ABSTRACT, 1 / 3, 0.4)},
-    "spring": {"spring": spring(ABSTRACT, 1 / 3, 200.0)},
-    "rotary inertia": {"mass": mass(ABSTRACT, 1 / 3, rotary=0.01)},
-    "rotational spring": {"spring": spring(ABSTRACT, 1 / 3, rotational=8.0)},
-}
+
+
+def attached(at):
+    return {
+        "mass": {"mass": mass(ABSTRACT, at, 0.4)},
+        "spring": {"spring": spring(ABSTRACT, at, 200.0)},
+        "rotary inertia": {"mass": mass(ABSTRACT, at, rotary=0.01)},
+        "rotational spring": {"spring": spring(ABSTRACT, at, rotational=8.0)},
+    }
+
+
+ATTACHED, BETWEEN = attached(0.375), attached(1 / 3)
 for pair, what in product(("FF", "GP"), ATTACHED):
     high = 0.7 if what == "spring" else 0.2  # a term of order 5 as well
     fine = (50, 200) if what == "rotary inertia" else (100, 400)  # 400 links: its error, 3e-13, is rounding

@@ -248,10 +248,3 @@ def test_a_heavy_tip_vibrates_on_the_static_stiffness_of_the_cantilever():
     expected = np.sqrt(3 * EI / L**3 / (STRIP.mass_per_length * L * (1e6 + 33 / 140))) / (2 * np.pi)
     for count in (20, 300):
         assert HermiteModel(beam, count).modes(1).frequencies_hz[0] == pytest.approx(expected, rel=1e-10)
-
-
-def test_a_section_by_its_stiffness_is_the_shape_of_that_stiffness():
-    plain = supported(Beam(length=L, bending_stiffness=EI, mass_per_length=STRIP.mass_per_length), "CF")
-    assert HermiteModel(plain, 20).modes(3).frequencies_hz == pytest.approx(
-        HermiteModel(on("CF"), 20).modes(3).frequencies_hz, rel=1e-14
-    )

@@ -10,7 +10,6 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from tests.beams import cut
 from verify.problem.beam import Beam, PointForce
 
 _FREE = {"clamped": (2, 3), "pinned": (1, 3), "guided": (0, 2), "free": (0, 1)}
@@ -51,33 +50,6 @@ def deflection(beam: Beam, theory: str, hertz: float, forces: tuple[PointForce, 
     return np.array(
         [sum(value * state(beam, theory, hertz, at, float(one), digits)[0] for at, value in phasors) for one in x]
     )
-
-
-def shape(beam: Beam, theory: str, hertz: float, x: Any) -> Any:
-    """Deflection of the mode nearest to a frequency at places x, unit modal mass, positive off the left end."""
-    hertz = frequency_near(beam, theory, hertz)
-    with mp.workdps(DIGITS):
-        right = _at_right_end(beam, _states(beam, theory, hertz)[:, :2])
-        row = 0 if abs(right[0, 0]) + abs(right[0, 1]) > abs(right[1, 0]) + abs(right[1, 1]) else 1
-        start = mp.matrix([right[row, 1], -right[row, 0]])
-
-        def at(place: float) -> tuple[float, float]:
-            found = _states(beam, theory, hertz, None, place)[:, :2] * start
-            return float(found[0]), float(found[1]) / beam.length
-
-        mass = 0.0
-        points, weights = np.polynomial.legendre.leggauss(14)
-        for piece, begin, end in cut(beam):
-            length = end - begin
-            for z, weight in zip(points, weights, strict=True):
-                w, turn = at(begin + length / 2 * (z + 1))
-                inertia = 0.0 if theory == "euler-bernoulli" else piece.rotary_inertia
-                mass += weight * length / 2 * (piece.mass_per_length * w * w + inertia * turn * turn)
-        for one in beam.mass:
-            w, turn = at(one.position)
-            mass += one.mass * w * w + one.rotary_inertia * turn * turn
-        sign = np.sign(at(1e-3 * beam.length)[0])
-        return np.array([at(float(one))[0] for one in x]) * sign / np.sqrt(mass)
 
 
 def buckling_load(beam: Beam, guess: float) -> float:

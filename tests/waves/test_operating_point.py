@@ -17,7 +17,6 @@ from verify.quantities.base import evaluate
 from verify.scene.load import scene_from
 from verify.segment_model import SegmentModel
 from verify.travelling_wave import DrivenCase, OperatingMap, best_drive, measure, middle_half
-from verify.waves.best_phase import fastest_candidates
 from verify.waves.two_modes import lumped_swr
 
 # --- Operating point ---
@@ -83,46 +82,6 @@ def test_a_resonance_is_a_gap_of_the_map_and_refused_alone(titanium_strip, model
     assert 0.0 < gamma[1, 0] < 1.0
     with pytest.raises(ResonanceError, match="undamped resonance"):
         here.over(np.array([resonance]), np.array([77.0]))
-
-
-# --- Best phase ---
-
-CIRCLE = 4001
-CASES = 400
-
-
-def waves(seed, scale=3e-6):
-    """Amplitudes of both drives in either wave, (CASES, 2) each, all sizes and phases different."""
-    parts = np.random.default_rng(seed).standard_normal((4, CASES, 2))
-    return scale * (parts[0] + 1j * parts[1]), 0.7 * scale * (parts[2] + 1j * parts[3])
-
-
-def figures(forward, backward, phases):
-    """(reflection, crest speed but for a factor), (n, p) each."""
-    plus, minus = (abs(w[:, :1] + w[:, 1:] * np.exp(1j * phases)) ** 2 for w in (forward, backward))
-    reflection = np.sqrt(np.minimum(plus, minus) / np.maximum(plus, minus))
-    return reflection, abs(plus - minus) / np.sqrt(plus + minus)
-
-
-def fastest(forward, backward, limit, phases):
-    """The largest allowed speed among phases, (n,); 0 where none is allowed."""
-    reflection, speed = figures(forward, backward, phases)
-    return np.where(reflection <= limit + 1e-13, speed, 0.0).max(axis=1)
-
-
-@pytest.mark.parametrize("limit", [0.05, 0.1, 0.43, 0.97])
-@pytest.mark.parametrize("ends", [(0.087, 3.05), (-3.05, -0.087), (0.4, 1.7)])
-def test_no_phase_of_a_fine_circle_beats_the_ten_that_are_tried(limit, ends):
-    forward, backward = waves(11)
-    tried = fastest_candidates(forward, backward, limit, ends)
-    assert tried.shape == (CASES, 10)
-    assert ((tried >= ends[0]) & (tried <= ends[1])).all()
-    found = fastest(forward, backward, limit, tried)
-    every = fastest(forward, backward, limit, np.linspace(*ends, CIRCLE))
-    assert (found >= every * (1.0 - 1e-15)).all()
-    assert np.count_nonzero(every) > 9
-    allowed = every > 0.0  # a fine circle comes as near as its steps are small
-    assert found[allowed] == pytest.approx(every[allowed], rel=5e-3)
 
 
 # --- Best drive ---
