@@ -121,20 +121,13 @@ for name, beam in {
     add(f"sheared {name}", beam, 1, (320, 960), 2, -0.1, 0.1, **SHEAR)
 add("sheared on a foundation", on("CF", foundation=900.0), 1, (160, 320), 2, -0.03, 0.03, **SHEAR)
 # sections
-STEP = Beam(
-    length=0.6,
-    width=0.02,
-    thickness=0.004,
-    youngs_modulus=70e9,
-    density=2700.0,
-    supports=("clamped", "pinned"),
-    section=(Section(length=0.25), Section(length=0.35, thickness=0.002, youngs_modulus=210e9, density=7850.0)),
-)
+BAR = Beam(length=0.7, width=0.03, thickness=0.02, youngs_modulus=70e9, density=2700.0)
+STEEL = Section(length=0.4, thickness=0.012, youngs_modulus=210e9, density=7850.0)
+STEP = replace(BAR, supports=("clamped", "pinned"), section=(Section(length=0.3), STEEL))
 add("step", STEP, 2, (96, 192), 2, -0.03, 0.03)
 add("step by Eq. (1) as printed", STEP, 2, (384, 768), 1, -0.03, 0.03, joints="printed")
 add("unequal links", on("PP"), 3, (60, 120), 2, -0.05, 0.05, grading=2.5)
 # two reasons at once
-BAR = Beam(length=0.7, width=0.03, thickness=0.02, youngs_modulus=70e9, density=2700.0)
 CANTILEVER, TAUT = replace(BAR, supports=("clamped", "free")), replace(BAR, tension=4e5)
 BASED = replace(BAR, foundation=1e8)
 STEPPED = replace(BAR, section=(Section(length=0.3), Section(length=0.4, thickness=0.03)))

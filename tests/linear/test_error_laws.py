@@ -89,7 +89,7 @@ def test_errors_of_clamped_chains_change_sign():
         assert error_laws.leading_error("segment", ("clamped", "free"), mode, 119) > 0.0
 
 
-def test_frequencies_of_segments_lie_below_and_of_elements_above_the_exact_ones(titanium_strip):
+def test_frequencies_of_segments_lie_below_and_of_elements_above_those_of_the_beam(titanium_strip):
     for count in range(2, 30):
         exact = ExactModel(titanium_strip).modes(count - 1).frequencies_hz
         below, above = (MODELS[model](titanium_strip, count).modes(count - 1).frequencies_hz for model in MODELS)
