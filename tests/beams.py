@@ -1,11 +1,10 @@
 """Unsymmetric beams that several tests share: all pairs of ends, all attachments."""
 
 import numpy as np
+import pytest
 from msgspec.structs import replace
 
-from verify.problem.beam import Beam, PointForce
-from verify.problem.cross_section import Section
-from verify.problem.point_attachments import PointMass, PointSpring
+from verify import Beam, Device, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 BAR = Beam(length=0.41, width=0.03, thickness=0.037, youngs_modulus=206e9, density=7850.0, poissons_ratio=0.29)
@@ -38,6 +37,15 @@ FORCES = (
     PointForce(position=0.017, amplitude=1.3, phase_deg=11.0),
     PointForce(position=0.697, amplitude=0.8, phase_deg=97.0),
 )
+DEVICES = (
+    Device(position=0.31, stiffness=2.1e3, dashpot=1.7, mass=2.9e-3, amplitude=0.7, phase_deg=23.0),
+    Device(position=0.62, rotational=0.9, rotational_dashpot=3e-4),
+)
+MODELS = {
+    "exact": ExactModel,
+    "segment": lambda beam, count=23, **settings: SegmentModel(beam, count, **settings),
+    "fem": lambda beam, count=14, **settings: HermiteModel(beam, count, **settings),
+}
 PAIRED = Beam(
     length=0.7,
     width=0.02,
@@ -78,3 +86,11 @@ def cut(beam):
     stops = np.unique([0.0, *ends, *(one.position for one in (*beam.mass, *beam.spring))])
     pieces = np.searchsorted(ends, 0.5 * (stops[1:] + stops[:-1]))
     return [(beam.pieces[i], a, b) for i, a, b in zip(pieces, stops[:-1], stops[1:], strict=True) if b - a > 1e-12]
+
+
+def over(beams):
+    return pytest.mark.parametrize("name", beams)
+
+
+def close(found, expected, bound=1e-8):
+    assert found == pytest.approx(expected, abs=bound * abs(expected).max())

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from tests.beams import BAR, BEAMS, FORCES, HELD, LADEN, MASSES, PAIRED, PAIRS, STRIP
+from tests.beams import BAR, BEAMS, DEVICES, FORCES, HELD, LADEN, MASSES, MODELS, PAIRED, PAIRS, STRIP, close, over
 from tests.reference import dense, transfer
-from verify import Beam, Device, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
+from verify import Beam, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 from verify.errors import InputError
 
 X = np.array([0.13, 0.37, 0.58, 0.81])
@@ -16,19 +16,6 @@ HERTZ = 613.0
 EULER = "euler-bernoulli"
 THICK = ("rayleigh", "timoshenko")
 OMEGA = 2.0 * np.pi * HERTZ
-DEVICE = Device(position=0.21, stiffness=310.0, mass=1.7e-3, dashpot=2.3, rotational=0.4, rotational_dashpot=3e-4)
-DEVICES = (
-    Device(position=0.31, stiffness=2.1e3, dashpot=1.7, mass=2.9e-3, amplitude=0.7, phase_deg=23.0),
-    Device(position=0.62, rotational=0.9, rotational_dashpot=3e-4),
-)
-
-
-def over(beams):
-    return pytest.mark.parametrize("name", beams)
-
-
-def close(found, expected, bound=1e-8):
-    assert found == pytest.approx(expected, abs=bound * abs(expected).max())
 
 
 # --- The exact beam against transfer matrices in 30 digits -----------------------------------------------------------
@@ -218,12 +205,6 @@ def test_links_buckle_as_their_joints(name):
 
 
 # --- All three models ------------------------------------------------------------------------------------------------
-
-MODELS = {
-    "exact": ExactModel,
-    "segment": lambda beam, count=23, **settings: SegmentModel(beam, count, **settings),
-    "fem": lambda beam, count=14, **settings: HermiteModel(beam, count, **settings),
-}
 
 
 @pytest.mark.parametrize("mass", [3e-6, 0.03, 3.0])

@@ -24,10 +24,10 @@ def phasor(force: PointForce) -> complex:
 
 
 HELD = {"pinned": (0,), "clamped": (0, 1), "guided": (1,), "free": ()}
-"""Which of deflection and slope an end holds."""
+"""Deflection 0 and slope 1 that an end prescribes."""
 WALLS, MIRRORS = ("clamped", "guided"), ("pinned", "guided")
 GREGORY = np.array([3.0 / 8.0, 7.0 / 6.0, 23.0 / 24.0])
-"""How soft joints are from a clamp on, over those of links alike inside."""
+"""Compliance of the joints next to a clamp over that of inner joints."""
 CUBICS = np.array([[1.0, 0.0, -3.0, 2.0], [0.0, 1.0, -2.0, 1.0], [0.0, 0.0, 3.0, -2.0], [0.0, 0.0, -1.0, 1.0]])
 """Hermite's, of deflection and slope at both ends, over the length."""
 
@@ -113,7 +113,7 @@ class Elements(DenseModel):
             matrix += value * np.outer(row, row)
 
     def row(self, x: float, derivative: int) -> Array:
-        """What reads a derivative at x off the nodal values."""
+        """Row of a derivative at x over the nodal values."""
         i = int(np.clip(np.searchsorted(self.nodes, x + 1e-12, side="right") - 1, 0, len(self.lengths) - 1))
         n, z = float(self.lengths[i]), (x - float(self.nodes[i])) / float(self.lengths[i])
         powers = ((1.0, z, z**2, z**3), (0.0, 1.0, 2.0 * z, 3.0 * z**2), (0.0, 0.0, 2.0, 6.0 * z))[derivative]
@@ -141,7 +141,7 @@ def _hermite(n: float) -> tuple[Array, Array, Array]:
 
 
 class Links(DenseModel):
-    """Rigid links, half of each one's give in the joint at either end; what stands on one moves as it does there."""
+    """Rigid links with half their compliance in the joint at either end; attachments move with their link."""
 
     def __init__(self, beam: Beam, nodes: Array, wall: Array = GREGORY) -> None:
         super().__init__(beam, nodes)
@@ -205,7 +205,7 @@ class Links(DenseModel):
 
 
 class ReciprocalLinks(Links):
-    """Equal links alone: loads on four joints, and a line through what these joints stand for, mirrored at ends."""
+    """Equal links: loads on four joints, and a line through corrected joints, mirrored at ends."""
 
     def row(self, x: float) -> Array:
         """Cubic Lagrange shares of the four joints around a place and a twelfth of their second derivative."""
@@ -223,7 +223,7 @@ class ReciprocalLinks(Links):
         return row
 
     def values_at(self, solution: Any, x: Array, derivative: int) -> Any:
-        """At places of the same spline through y + delta^2 y / 12, a guided end's joint beside its image."""
+        """At places of the same spline through y + delta^2 y / 12, the joint of a guided end next to its image."""
         bends = np.zeros(solution.shape, dtype=solution.dtype)
         bends[1:-1] = np.diff(solution, 2, axis=0)
         for end, inner, support in ((0, 1, self.beam.supports[0]), (-1, -2, self.beam.supports[1])):

@@ -36,7 +36,7 @@ def next_landing(ratio, theta, speed, after=1e-7, looks=400):
 
 
 class Landed(NamedTuple):
-    """One landing."""
+    """A landing."""
 
     phase: float
     closing: float
@@ -87,7 +87,7 @@ class Waves(NamedTuple):
 
 
 def waves_of(shapes, k, omega, near, half_length=0.02):
-    """The Waves that a complex field is between two places beside `near`, x measured as the field does."""
+    """Waves fitted to a complex field around `near`, x of the field."""
     x = np.linspace(near - half_length, near + half_length, 41)
     rows = np.stack([np.exp(-1j * k * x), np.exp(1j * k * x)], axis=1)
     found, *_ = np.linalg.lstsq(rows, shapes(x), rcond=None)
@@ -102,11 +102,11 @@ def felt(at, x, t, half):
     return w, rise + slope * half * turn, slope * (1.0 + half * bend), along
 
 
-# --- a point on a spring and a dashpot, on a surface or on a beam that feels it
+# --- a point on a spring and a dashpot, on a surface or on a two-way coupled beam
 
 
 class Point(NamedTuple):
-    """A body that touches at one point."""
+    """A body with a single point of contact."""
 
     mass: float
     across: float
@@ -117,12 +117,12 @@ class Point(NamedTuple):
     damping: float = 0.0
     mu: float = 0.2
     slope: float | None = None
-    """Of tanh friction, s/m; Coulomb's unless given."""
+    """Of tanh friction, s/m; Coulomb's without."""
     give: float | None = None
     """Stiffness along the surface, N/m."""
     pull: float = 0.0
     held: float | None = None
-    """Speed at which it is kept."""
+    """Prescribed speed."""
     half: float = 0.0
     load_stiffness: float = 0.0
 
@@ -133,7 +133,7 @@ BODY = 9
 
 
 class OneWay:
-    """A surface that does not feel the body."""
+    """A surface without reaction to the body."""
 
     beam = 0
 
@@ -150,10 +150,7 @@ class OneWay:
 
 
 class Modes:
-    """A beam of a few modes that feels the body: mass 1 in each, forces F cos(omega t + phase) at places.
-
-    `shape` gives all modes at a place, or a derivative of them.
-    """
+    """A two-way coupled beam of a few modes of unit mass, `shape`(place, derivative), forces F cos(omega t + phase)."""
 
     def __init__(self, own, shape, damping, forces, omega, half, grow=0.0):
         self.own, self.shape, self.damping, self.omega = np.asarray(own), shape, damping, omega
@@ -162,11 +159,11 @@ class Modes:
         self.beam = 2 * len(own)
 
     def height(self, q, x):
-        """Of what the body at x stands on: w(X), X = x + (h/2) w'(x)."""
+        """Of the surface below the body at x: w(X), X = x + (h/2) w'(x)."""
         return q @ self.shape(x + self.half * (q @ self.shape(x, 1)), 0)
 
     def lifted(self, q, x):
-        """How that changes with every mode: what a force across does of work, all that its contact's depth reads."""
+        """Derivatives of the height by the modes, which are the modal forces of a unit force across."""
         here = x + self.half * (q @ self.shape(x, 1))
         return self.shape(here, 0) + (q @ self.shape(here, 1)) * self.half * self.shape(x, 1)
 
@@ -205,14 +202,14 @@ class Modes:
 
 
 class Ridden(NamedTuple):
-    """A run: states (rows) at the asked times, and (time, mode) of each change."""
+    """States (rows) at the requested times, and (time, mode) of all changes."""
 
     states: np.ndarray
     events: list
 
 
 class Rider:
-    """A Point on a surface as an ODE in pieces: free or pressed; and stuck, or slipping one way or the other."""
+    """A Point on a surface as an ODE in pieces: free or pressed, stuck or slipping with either sign."""
 
     def __init__(self, point, surface):
         self.p, self.on, self.tick = point, surface, 0.0
@@ -232,7 +229,7 @@ class Rider:
         return self.on.seen(t, s)[3] - s[self.on.beam + V]
 
     def rates(self, t, s, mode):
-        """Of the state in this mode; where it sticks by the friction that keeps it there."""
+        """Of the state in this mode; while it sticks, with the friction that constrains it."""
         normal = self.force(t, s) if mode[0] == "pressed" else 0.0
         return self.with_friction(t, s, mode, normal, self.friction(t, s, mode, normal))
 
@@ -261,7 +258,7 @@ class Rider:
         return mode[1] * self.p.mu * self.force_rate(t, s) / self.p.give
 
     def force_rate(self, t, s):
-        """Of k pen + c pen' along the motion; friction as it is does not depend on what is asked."""
+        """Rate of k pen + c pen' along the motion under the present friction."""
         way = self.tick * self.with_friction(
             t, s, ("pressed", "stuck"), self.force(t, s), self.p.give * s[self.on.beam + Y]
         )
@@ -316,7 +313,7 @@ class Rider:
         return "stuck" if abs(needed) <= self.p.mu * normal else (1 if needed > 0.0 else -1)
 
     def over(self, t, s, way):
-        """What the stretch pulls one way beyond what friction holds."""
+        """Force of the stretch beyond the friction limit with a sign."""
         return way * self.p.give * s[self.on.beam + Y] - self.p.mu * self.force(t, s)
 
     def ends(self, mode):
@@ -423,7 +420,7 @@ def body(x=0.0, v=0.0, z=0.0, zd=0.0, beam=0):
 
 
 class Foot(NamedTuple):
-    """Points on springs below a rigid foot at a held speed along; what moves across and turns."""
+    """Points on springs below a rigid foot at a prescribed speed, which moves across and rotates."""
 
     mass: float
     inertia: float

@@ -1,6 +1,6 @@
 """A slider on a vibrating beam as one system of equations, by scipy's DOP853.
 
-Hermite elements, friction by Eq. (3), the normal reaction of a held slider from the acceleration of the
+Hermite elements, friction by Eq. (3), the normal reaction of a bilateral slider from the acceleration of the
 surface along its path, powers integrated with the motion. Of verify value types alone.
 """
 
@@ -77,12 +77,12 @@ class Ridden(NamedTuple):
     ledger: dict
 
 
-def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.0, two_way=True, at_rest=True):
+def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.0, two_way=True):
     """A tanh slider on the beam; `half` is half the thickness, `soft` the periods over which the forces grow.
 
-    One-way, or coupled two-way, held on the surface or massless, tangential or following. The material under it stands
-    at X = x + (h/2) w'(x); a held slider's reaction is square to the surface, so that it works on every mode by as much
-    as that mode moves w(X). Its acceleration across is a central difference of its speed across, linear in the reaction.
+    One-way or two-way coupled, bilateral or massless, tangential or following. The material under it is at
+    X = x + (h/2) w'(x); the reaction of a bilateral slider is normal to the surface, its modal forces are the
+    derivatives of w(X). Its acceleration across is a central difference of its speed, linear in the reaction.
     """
     own, shape = modes
     n, omega, start = len(own), 2 * np.pi * hertz, slider.position

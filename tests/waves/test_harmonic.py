@@ -4,33 +4,16 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from tests.beams import BAR, BEAMS, FORCES, HELD, LADEN, STRIP
+from tests.beams import BAR, BEAMS, DEVICES, FORCES, HELD, LADEN, MODELS, STRIP, close, over
 from tests.reference.dense import phasor
-from verify import Device, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, SegmentModel
+from verify import Device, ExactModel, PointForce, PointMass, PointSpring, SegmentModel
 from verify.errors import InputError, ResonanceError
 
 X = np.array([0.13, 0.37, 0.58, 0.81])
 """Fractions of the length."""
 PLACES = X * STRIP.length
 HERTZ, EULER = 613.0, "euler-bernoulli"
-MODELS = {
-    "exact": ExactModel,
-    "segment": lambda beam, count=23, **settings: SegmentModel(beam, count, **settings),
-    "fem": lambda beam, count=14, **settings: HermiteModel(beam, count, **settings),
-}
 DEVICE = Device(position=0.21, stiffness=310.0, mass=1.7e-3, dashpot=2.3, rotational=0.4, rotational_dashpot=3e-4)
-DEVICES = (
-    Device(position=0.31, stiffness=2.1e3, dashpot=1.7, mass=2.9e-3, amplitude=0.7, phase_deg=23.0),
-    Device(position=0.62, rotational=0.9, rotational_dashpot=3e-4),
-)
-
-
-def over(beams):
-    return pytest.mark.parametrize("name", beams)
-
-
-def close(found, expected, bound=1e-8):
-    assert found == pytest.approx(expected, abs=bound * abs(expected).max())
 
 
 SHEARED = replace(BAR, supports=("clamped", "free"), loss_factor=0.01, foundation=4e6)
