@@ -9,8 +9,7 @@ from tests.reference import dense, transfer
 from verify import Beam, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 from verify.errors import InputError
 
-X = np.array([0.13, 0.37, 0.58, 0.81])
-"""Fractions of the length."""
+X = np.array([0.13, 0.37, 0.58, 0.81])  # fractions of the length
 PLACES = X * STRIP.length
 HERTZ = 613.0
 EULER = "euler-bernoulli"

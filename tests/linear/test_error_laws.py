@@ -97,6 +97,14 @@ def test_frequencies_of_segments_lie_below_and_of_elements_above_those_of_the_be
         assert (exact < above).all(), count
 
 
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("count", [3, 8, 49, 700])
+def test_pinned_models_have_the_frequencies_of_their_dispersion(titanium_strip, model, count):
+    found = MODELS[model](titanium_strip, count).modes(min(count - 1, 40)).frequencies_hz
+    law = [error_laws.dispersion_frequency_hz(model, titanium_strip, n, count) for n in range(1, len(found) + 1)]
+    assert found == pytest.approx(law, rel=1e-13)
+
+
 @pytest.mark.parametrize("count", [3, 12, 31, 47])
 @pytest.mark.parametrize("supports", FREE_OF_CLAMPS, ids="-".join)
 def test_the_mean_of_both_is_nearer_than_elements_for_seven_tenths_of_the_modes(titanium_strip, supports, count):

@@ -227,11 +227,10 @@ def test_the_power_of_forces_is_the_loss_in_bending_alone():
     loaded = replace(
         beam, mass=(*beam.mass, PointMass(position=0.07, mass=1.0))
     )  # for a stretch that ends at the force
-    x, weights, mass, _ = gauss(loaded, 3)
+    x, weights, *_ = gauss(loaded, 3)
     stiffness = np.concatenate([np.full(42, piece.bending_stiffness) for piece, _, _ in cut(loaded)])
     loss = beam.loss_factor * field.omega / 2 * (stiffness * weights) @ abs(field.shapes(x, 2)) ** 2
     assert power == pytest.approx(loss, rel=1e-10)
-    assert mass.min() > 0.0
 
 
 def test_a_dashpot_at_a_node_leaves_a_resonance_undamped():
