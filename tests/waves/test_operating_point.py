@@ -148,7 +148,7 @@ def test_a_ratio_leaves_no_reflection_where_equal_amplitudes_leave_1_8(direction
 @pytest.mark.parametrize(
     "settings", [{}, {"kind": "displacement"}, {"devices": (Device(position=0.26, dashpot=0.02),)}]
 )
-def test_every_model_has_its_best_ratio_under_forces_displacements_and_devices(model, settings):
+def test_the_best_ratio_of_all_models_under_forces_displacements_and_devices_leaves_a_pure_wave(model, settings):
     case = brass_case(model, positions=(0.02, 0.28), loss_factor=0.01, **settings)
     window = (0.08, 0.24)
     best = best_drive(case, window)
@@ -171,7 +171,7 @@ def test_the_best_ratio_is_a_quantity():
     assert evaluate("wave.best_ratio_phase", {"direction": "-x"}, scene, cache) == pytest.approx(-best.phase_deg)
 
 
-def test_one_ratio_over_a_band_beats_every_other_in_the_mean_square():
+def test_the_ratio_for_a_band_is_the_best_in_the_mean_square():
     case, band = brass_case(), np.linspace(1950.0, 2050.0, 7)
     best = best_drive(case, frequencies_hz=band)
     assert best.reflection.max() > 1e-3
@@ -227,7 +227,7 @@ def test_it_is_right_at_mid_span_of_the_papers_beam_and_wrong_at_a_quarter():
     assert lumped == pytest.approx([1.0, 1.0 + np.sqrt(2.0), 1.0 + np.sqrt(2.0)], rel=1e-9)
 
 
-def test_one_mode_with_itself_is_no_wave():
+def test_two_equal_modes_are_a_standing_wave():
     with pytest.raises(InputError, match=r"modes = \[4, 4\]: one mode with itself stands"):
         lumped_swr(STRIP, 0.1, (4, 4))
     with pytest.raises(InputError, match=r"beam\.mass: two modes are one wave on"):

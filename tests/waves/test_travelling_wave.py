@@ -26,9 +26,6 @@ from verify.travelling_wave import (
     power_imbalance,
     surface_motion,
 )
-from verify.travelling_wave import (
-    two_waves as fitted_waves,
-)
 from verify.waves.two_waves import Waveguide, fitted_wavenumber
 
 # --- Travelling wave ---
@@ -74,7 +71,7 @@ def measured(one):
 
 @settings(max_examples=60, deadline=None)
 @given(st.floats(0, 0.99), st.floats(-3.1, 3.1), st.booleans(), st.floats(0.985, 1.015))
-def test_two_waves_are_found_exactly_and_their_wavenumber_is_fitted(gamma, phase, reversed_, factor):
+def test_the_fit_of_two_waves_is_exact_and_so_is_their_fitted_wavenumber(gamma, phase, reversed_, factor):
     k = 135.2 * factor
     amplitudes = (2e-6 * np.exp(0.4j), 2e-6 * gamma * np.exp(1j * phase))
     forward, backward = amplitudes[::-1] if reversed_ else amplitudes
@@ -275,7 +272,7 @@ STEPS = (Section(length=0.2), Section(length=0.1, thickness=0.0013), Section(len
 def test_a_window_holds_no_attachment_no_device_and_a_wave(beam, devices, message):
     field = ExactModel(beam).harmonic(driven().forces, 4276.0, devices=devices)
     with pytest.raises(WindowError, match=message):
-        fitted_waves(field, WINDOW)
+        measure(field, WINDOW)
 
 
 # --- Rotations of thick beams ---
@@ -303,7 +300,7 @@ def solve(model, beam, forces=FORCE, hertz=23000.0, theory="timoshenko"):
 
 
 @pytest.mark.parametrize("supports", [("free", "clamped"), ("pinned", "guided"), ("guided", "free")], ids="-".join)
-def test_every_model_turns_as_the_states_along_the_beam_do(supports):
+def test_sections_of_all_models_rotate_as_by_transfer_matrices(supports):
     beam = replace(BAR, supports=supports, mass=(PointMass(position=0.13, mass=0.02, rotary_inertia=3e-6),))
     places = [0.003, 0.043, 0.11, 0.187]
     exact = np.array([transfer.state(beam, "timoshenko", 23000.0, 0.045, x)[1] for x in places])
@@ -311,7 +308,7 @@ def test_every_model_turns_as_the_states_along_the_beam_do(supports):
         assert abs(solve(model, beam).rotation(places) - exact).max() < within * abs(exact).max()
 
 
-def test_a_pure_wave_turns_its_sections_as_the_medium_says_with_losses_too():
+def test_a_pure_wave_has_the_rotation_ratio_of_its_waveguide_with_losses_too():
     """Far from the force on a long bar with an end that swallows nothing in time: e^{-ikx} times what is left of it."""
     beam = replace(BAR, length=3.0, loss_factor=0.08, supports=("pinned", "pinned"))
     field = solve("analytic", beam, (PointForce(position=0.1),), 30000.0)
