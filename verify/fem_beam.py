@@ -336,8 +336,13 @@ class HermiteModel(DiscreteModel):
     def cut_off_hz(self) -> float:
         """Where a half wave fits on the worst element, (1680/17) EI/(rho A l^4) = omega^2 of a plain one.
 
-        From one element whose ends move oppositely, as those of all elements do at that wavelength.
+        Otherwise from one element whose ends move oppositely, as those of all elements do at that wavelength.
         """
+        plain = self.theory == "euler-bernoulli" and not (
+            self.beam.section or self.beam.tension or self.beam.foundation
+        )
+        if plain:  # scenes are checked by it: neither scipy nor scikit-fem is loaded
+            return float(np.sqrt(1680.0 / 17.0) * self._omega_unit / (2.0 * pi) / self.mesh.lengths.max() ** 2)
         from scipy.linalg import eigh
 
         limits, last = list[float](), np.cumsum(self.mesh.shares) - 1
