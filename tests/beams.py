@@ -1,12 +1,10 @@
-"""Unsymmetric beams that several tests share: every pair of ends, and everything that a beam may carry."""
+"""Unsymmetric beams that several tests share: all pairs of ends, all attachments."""
 
-from itertools import pairwise
-
+import numpy as np
+import pytest
 from msgspec.structs import replace
 
-from verify.problem.beam import Beam, PointForce
-from verify.problem.cross_section import Section
-from verify.problem.point_attachments import PointMass, PointSpring
+from verify import Beam, Device, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 BAR = Beam(length=0.41, width=0.03, thickness=0.037, youngs_modulus=206e9, density=7850.0, poissons_ratio=0.29)
@@ -39,6 +37,15 @@ FORCES = (
     PointForce(position=0.017, amplitude=1.3, phase_deg=11.0),
     PointForce(position=0.697, amplitude=0.8, phase_deg=97.0),
 )
+DEVICES = (
+    Device(position=0.31, stiffness=2.1e3, dashpot=1.7, mass=2.9e-3, amplitude=0.7, phase_deg=23.0),
+    Device(position=0.62, rotational=0.9, rotational_dashpot=3e-4),
+)
+MODELS = {
+    "exact": ExactModel,
+    "segment": lambda beam, count=23, **settings: SegmentModel(beam, count, **settings),
+    "fem": lambda beam, count=14, **settings: HermiteModel(beam, count, **settings),
+}
 PAIRED = Beam(
     length=0.7,
     width=0.02,
@@ -48,16 +55,42 @@ PAIRED = Beam(
     supports=("clamped", "clamped"),
     section=(Section(length=0.2), Section(length=0.3, thickness=0.3, density=1e8), Section(length=0.2)),
 )
-"""Two thin strips held by a block too heavy to move: its fourth and fifth frequency are 2.4e-7 apart."""
+"""Two thin strips clamped in a block too heavy to move: frequencies 4 and 5 are 2.4e-7 apart."""
+ABSTRACT = Beam(length=0.73, bending_stiffness=3.7, mass_per_length=0.31, rotary_inertia=3e-5, shear_stiffness=2e4)
+"""A beam by its stiffnesses, slenderness L sqrt(A / I) = 74."""
+
+
+def supported(beam, letters, **changes):
+    """The beam on supports by their initials (P, C, F, G), with further changes."""
+    names = {end[0].upper(): end for end in ENDS}
+    return replace(beam, supports=tuple(names[letter] for letter in letters), **changes)
+
+
+def mass(beam, at, mass=0.0, rotary=0.0):
+    """A point mass at a fraction of the length, in m and m L^2 of the beam."""
+    whole = beam.mass_per_length * beam.length
+    inertia = rotary * whole * beam.length**2
+    return (PointMass(position=at * beam.length, mass=mass * whole, rotary_inertia=inertia),)
+
+
+def spring(beam, at, stiffness=0.0, rotational=0.0):
+    """A spring at a fraction of the length, in EI / L^3 and EI / L."""
+    unit = beam.bending_stiffness / beam.length
+    across = stiffness * unit / beam.length**2
+    return (PointSpring(position=at * beam.length, stiffness=across, rotational=rotational * unit),)
 
 
 def cut(beam):
-    """(piece, begin, end) from left to right, cut wherever something is attached."""
-    places = {one.position for one in (*beam.mass, *beam.spring)}
-    parts, start = [], 0.0
-    for piece in beam.pieces:
-        end = start + piece.length
-        inner = [start, *sorted(p for p in places if start + 1e-12 < p < end - 1e-12), end]
-        parts += [(piece, a, b) for a, b in pairwise(inner)]
-        start = end
-    return parts
+    """(piece, begin, end) between steps and attachments, from left to right."""
+    ends = np.cumsum([piece.length for piece in beam.pieces])
+    stops = np.unique([0.0, *ends, *(one.position for one in (*beam.mass, *beam.spring))])
+    pieces = np.searchsorted(ends, 0.5 * (stops[1:] + stops[:-1]))
+    return [(beam.pieces[i], a, b) for i, a, b in zip(pieces, stops[:-1], stops[1:], strict=True) if b - a > 1e-12]
+
+
+def over(beams):
+    return pytest.mark.parametrize("name", beams)
+
+
+def close(found, expected, bound=1e-8):
+    assert found == pytest.approx(expected, abs=bound * abs(expected).max())

@@ -55,14 +55,15 @@ why = "rho b h L g."
 
 
 @pytest.fixture
-def toys():
+def toys(monkeypatch):
     toys = {"__name__": "toys"}
-    with MODELS.registered(), QUANTITIES.registered(), STUDIES.registered(), ENGINES.registered():
-        exec(LINES, toys)
-        MODELS.register(toys["Sines"])
-        STUDIES.register(toys["Load"])
-        ENGINES.register(toys["TOY"])
-        yield toys
+    for registry in (MODELS, QUANTITIES, STUDIES, ENGINES):
+        monkeypatch.setattr(registry, "_members", dict(registry._members))
+    exec(LINES, toys)
+    MODELS.register(toys["Sines"])
+    STUDIES.register(toys["Load"])
+    ENGINES.register(toys["TOY"])
+    return toys
 
 
 @pytest.fixture

@@ -127,7 +127,7 @@ def test_waves_run_the_other_way_and_devices_take_up_as_much(model):
     assert abs(there.waves.forward) == pytest.approx(abs(here.waves.backward), rel=1e-6)
     assert abs(there.waves.backward) == pytest.approx(abs(here.waves.forward), rel=1e-6)
     assert there.travelling_index == pytest.approx(here.travelling_index, rel=1e-6)
-    assert there.signed_area_range == pytest.approx([-one for one in here.signed_area_range[::-1]], rel=1e-6)
+    assert there.s3_range == pytest.approx([-one for one in here.s3_range[::-1]], rel=1e-6)
 
 
 @OF_MODEL

@@ -1,17 +1,17 @@
 """Finite segments against finite elements against exact beam theory: how far to trust them, at what cost.
 
-What there is (`help` of each says its fields, shapes and units; everything is SI):
+Public names (`help` of a name lists fields, shapes and units; everything is SI):
 
-  Beam, Section, PointMass, PointSpring, PointForce, Slider    what exists
-  Device                                                       what takes up a wave, or drives it, beside the forces
+  Beam, Section, PointMass, PointSpring, PointForce, Slider    the problem
+  Device                                                       impedance on a driven beam: absorber or actuator
   ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
-  Modes, HarmonicField                                         what those return
-  travelling_wave                                              the wave that a field carries: measure, WaveMeasures
-  simulate, Motion                                             a driven beam in time, with sliders or without
-  run_motor, run_motors, MotorRun, Contact, Foot               sliders that may leave the beam, on feet of many points
-  free_vibration, FreeVibration                                a beam let go from a shape, without forces
-  bend, Bent                                                   a chain under a large load at its tip
-  load_scene, run_scene                                        a scene file, and what its gates and studies find
+  Modes, HarmonicField                                         their results
+  travelling_wave                                              the wave in a field: measure, WaveMeasures
+  simulate, Motion                                             a driven beam in time, with or without a slider
+  run_motor, run_motors, MotorRun, Contact, Foot               sliders with unilateral contact on feet of many points
+  free_vibration, FreeVibration                                a beam released from a shape, without forces
+  bend, Bent                                                   a nonlinear chain under a large load at its tip
+  load_scene, run_scene                                        a scene file, its gates and studies
   InputError                                                   bad input, in one sentence
 
   beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -54,38 +54,25 @@ __all__ = [
 ]  # fmt: skip
 __version__ = "0.1.0"
 
-_HOMES = {
-    "verify": ("travelling_wave",),
-    "verify.analytic_modes": ("ExactModel",),
-    "verify.fem_beam": ("HermiteModel",),
-    "verify.segment_model": ("SegmentModel",),
-    "verify.problem.point_attachments": ("PointMass", "PointSpring"),
-    "verify.problem.beam": ("Beam", "PointForce"),
-    "verify.chain.statics": ("Bent", "bend"),
-    "verify.problem.device": ("Device",),
-    "verify.errors": ("InputError",),
-    "verify.linear.field": ("HarmonicField",),
-    "verify.linear.modes": ("Modes",),
-    "verify.dynamics.free_vibration": ("FreeVibration", "free_vibration"),
-    "verify.dynamics.result": ("Motion",),
-    "verify.dynamics.simulate": ("simulate",),
-    "verify.motor.result": ("MotorRun",),
-    "verify.motor.run": ("run_motor", "run_motors"),
-    "verify.scene.load": ("load_scene",),
-    "verify.scene.run": ("run_scene",),
-    "verify.problem.cross_section": ("Section",),
-    "verify.problem.slider": ("Contact", "Foot", "Slider"),
-    "verify.travelling_wave": ("WaveMeasures",),
-}
-_HOME = {name: home for home, names in _HOMES.items() for name in names}
+_HOMES = """
+    analytic_modes.ExactModel fem_beam.HermiteModel segment_model.SegmentModel linear.field.HarmonicField
+    linear.modes.Modes travelling_wave.WaveMeasures problem.beam.Beam problem.beam.PointForce problem.device.Device
+    problem.cross_section.Section problem.point_attachments.PointMass problem.point_attachments.PointSpring
+    problem.slider.Contact problem.slider.Foot problem.slider.Slider errors.InputError dynamics.simulate.simulate
+    dynamics.result.Motion dynamics.free_vibration.free_vibration dynamics.free_vibration.FreeVibration chain.statics.Bent
+    chain.statics.bend motor.result.MotorRun motor.run.run_motor motor.run.run_motors scene.load.load_scene
+    scene.run.run_scene
+"""
+_HOME = {home.rpartition(".")[2]: f"verify.{home.rpartition('.')[0]}" for home in _HOMES.split()}
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name at its first use."""
+    if name == "travelling_wave":
+        return import_module("verify.travelling_wave")
     if name not in _HOME:
         raise AttributeError(f"module 'verify' has no attribute {name!r}")
-    home = _HOME[name]
-    return import_module(f"verify.{name}") if home == "verify" else getattr(import_module(home), name)
+    return getattr(import_module(_HOME[name]), name)
 
 
 def __dir__() -> list[str]:

@@ -4,7 +4,7 @@ import sys
 
 
 def main() -> None:
-    """Run the command line. An interrupt during the imports ends like a later one."""
+    """Run the command line; an interrupt during the imports has the exit status of any other."""
     try:
         from verify.cli import main as run
 

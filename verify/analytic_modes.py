@@ -1,9 +1,15 @@
-"""The exact beam by three theories: modes, harmonic fields, buckling, motion in time.
+"""The analytical model of a beam, against which the paper verifies its chain of segments (Section II.A).
 
-Frequencies are the roots of one characteristic equation, which counts those below a trial (`exact.characteristic`);
-shapes and fields are multiple-shooting solutions with devices and imposed displacements at their stations
-(`exact.transfer`). Steps, point masses with rotary inertia, springs, axial force and foundation are exact. The loss
-factor acts on the beam's own bending and shear stiffness; springs, foundation and axial force lose nothing.
+With the deflection w and the rotation psi of the sections a beam vibrates by
+
+    (kappa G A (w' - psi))' + T w'' - k_f w = rho A d2w/dt2,    (EI psi')' + kappa G A (w' - psi) = rho I d2psi/dt2,
+
+Timoshenko's theory; Rayleigh's where w' = psi, Euler-Bernoulli's where rho I = 0 as well: EI w'''' = rho A omega^2 w
+between pinned ends has the frequencies (n pi / L)^2 sqrt(EI / rho A) / 2 pi, mode 22 of the paper's beam at 4470 Hz
+(printed: 4467 Hz). In general frequencies are the roots of one characteristic equation with a count of the roots below
+any trial (`exact.characteristic`); shapes and harmonic fields are multiple-shooting solutions (`exact.transfer`). Steps
+of the section, point masses with rotary inertia, springs, axial force T and foundation k_f are exact. The loss factor
+acts on EI and kappa G A; springs, foundation and axial force have no losses.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,29 +32,35 @@ from verify.linear.base import BeamModel
 from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, frequencies_on, positions_on, reshape_like, vector_on
+from verify.linear.system import RESONANCE
 from verify.linear.time_basis import TimeBasis, check_held
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
+from verify.problem.supports import HOLDS
 from verify.validation import check_whole
 
 EXACT_MODES = 400
-"""Modes of a time basis unless another number is requested; the rest responds without delay."""
+"""Default number of modes of a time basis; the response of the higher modes is quasi-static."""
 MOST_MODES = 100_000
-RESONANCE = 1e-9
-"""Relative distance to an undamped resonance within which a drive is refused: the response would be rounding."""
 _TAYLOR_DEGREE = 8
-"""Of the contact line in time: the fastest mode is followed to 1e-9, the others far closer."""
-_TOGETHER = 32
-"""Modes of one multiple-shooting solution."""
-_SWEPT_TOGETHER = 128
-"""Frequencies of one such solution."""
-_SAME = 1e-9
-"""Relative distance at which two frequencies are one, with a plane of shapes."""
+"""Degree of the polynomials of shapes in time: error 1e-9 for the highest mode, far less for the others."""
+_TOGETHER, _SWEPT_TOGETHER = 32, 128
+"""Modes, and frequencies of a sweep, in one multiple-shooting solution."""
+_SAME_PLACE = 1e-9
+"""Distance, relative to the beam's length, at which two imposed displacements act at one place."""
+_NEAR = 1e-4
+"""Relative distance to an undamped resonance within which field and modal part differ by less than their rounding."""
+_LOSSES = 0.06 * np.arange(1.0, 7.0)
+"""Loss factors from which a tail is extrapolated to none, relative: its error is the product of their squares, 1e-9."""
 
 
 @dataclass(frozen=True)
 class ExactModel(BeamModel):
-    """The exact beam by Euler-Bernoulli's, Rayleigh's or Timoshenko's theory. Raises InputError for what that lacks."""
+    """The exact beam by the theory "euler-bernoulli", "rayleigh" or "timoshenko".
+
+    Raises InputError for section properties that the theory needs and the beam lacks, and for an axial force by the
+    last two.
+    """
 
     name: ClassVar[str] = "analytic"
     parts: ClassVar[str] = "exact beam"
@@ -65,7 +77,7 @@ class ExactModel(BeamModel):
 
     @property
     def n_elastic(self) -> int:
-        """Number of elastic modes that can be requested; the beam's own number is infinite."""
+        """Largest number of modes of one request; the beam has infinitely many."""
         return MOST_MODES
 
     @cached_property
@@ -156,9 +168,9 @@ class ExactModel(BeamModel):
         drives, stationed = self.check_stationed(displacements, devices)
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
-        held = [at for at, support in zip((0.0, length), self.beam.supports, strict=True) if support[:4] in "pinnclam"]
-        close = [b - a <= _SAME * length for a, b in pairwise(places)]
-        if any(close) or any(abs(at - end) <= _SAME * length for at in places for end in held):
+        fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if HOLDS[end].deflection]
+        gaps = [b - a for a, b in pairwise(places)] + [abs(at - end) for at in places for end in fixed]
+        if any(gap <= _SAME_PLACE * length for gap in gaps):
             raise InputError(
                 "drive.force.position: displacements are imposed at one place twice, or at a support without "
                 "deflection: move one, or leave it out"
@@ -190,7 +202,7 @@ class ExactModel(BeamModel):
             return np.asarray(values[0] if one else values, dtype=complex)
 
         omega = 2.0 * pi * float(frequencies[0])
-        holding = [
+        constraint_forces = [
             point_force(drive.position, complex(force))
             for drive, force in zip(drives, solved[0][1][0, :, 0], strict=True)
         ]
@@ -205,7 +217,7 @@ class ExactModel(BeamModel):
             count=None,
             beam=beam,
             frequency_hz=float(frequencies[0]) if one else frequencies,
-            forces=(*holding, *forces, *reactions),
+            forces=(*constraint_forces, *forces, *reactions),
             shapes=read,
             theory=self.theory,
             rotation_shapes=(lambda x, d: read(x, d, ROTATION)) if self.theory == "timoshenko" else None,
@@ -228,7 +240,7 @@ class ExactModel(BeamModel):
         return responses
 
     def _stationed(self, positions: tuple[float, ...] = (), devices: Sequence[Device] = ()) -> BeamLayout:
-        """The layout with further stations at positions (m), and with devices."""
+        """The layout with stations at further positions (m) and at devices."""
         check_stable(self.beam)
         return layout_of(self.beam, self.theory, positions, tuple(devices))
 
@@ -239,7 +251,7 @@ class ExactModel(BeamModel):
         loads: Sequence[tuple[float, Array]],
         imposed: Sequence[tuple[int, complex]] = (),
     ) -> tuple[Motion, ComplexArray]:
-        """(motions in m under loads (position, (k,) N), forces in N of imposed displacements, (n_f, n_imposed, k))."""
+        """(motions in m under loads (position, (k,) N), forces in N at imposed displacements, (n_f, n_imposed, k))."""
         division = divide(layout, self._omega2(frequencies), self.beam.loss_factor)
         unit, n_loads = self.beam.bending_stiffness / self.beam.length**3, len(loads[0][1]) if loads else 1
         dtype = complex if any(np.iscomplexobj(values) for _, values in loads) else float
@@ -251,13 +263,13 @@ class ExactModel(BeamModel):
             states, forces = solve(division, jumps, imposed)
         except np.linalg.LinAlgError:
             raise InputError(
-                f"frequency_hz = {float(frequencies[0])!r}: a beam that no support holds moves beyond floating point, "
-                "give a higher frequency_hz or other supports"
+                f"frequency_hz = {float(frequencies[0])!r}: the rigid motion of an unsupported beam exceeds floating "
+                "point, give a higher frequency_hz or other supports"
             ) from None
         return Motion(division, states), forces * unit
 
     def _resonances(self, layout: BeamLayout, frequencies: Array) -> list[int]:
-        """Number, rigid motions included, of the undamped resonance at each frequency; 0 where there is none."""
+        """Number of the undamped resonance at each frequency, rigid motions included; 0 off resonance."""
         if self.beam.loss_factor:
             return [0] * len(frequencies)
         low, high = self._omega2(frequencies * (1.0 - RESONANCE)), self._omega2(frequencies * (1.0 + RESONANCE))
@@ -265,18 +277,17 @@ class ExactModel(BeamModel):
         return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
     def _check_resonance(self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]) -> None:
-        """Raise ResonanceError at an undamped resonance of the beam with its devices, held at imposed displacements."""
+        """Raise ResonanceError at an undamped resonance of the beam with devices, pinned at imposed displacements."""
         length = self.beam.length
         layout = self._stationed(tuple(drive.position for drive in drives), devices)
         layout = with_stations(layout, [(one.position / length, Station(support="pinned")) for one in drives])
         numbers = self._resonances(layout, frequencies)
         if any(numbers) and (damped := [one for one in devices if one.dashpot or one.rotational_dashpot]):
-            # a motion is undamped where it is also one of the beam held at its dashpots
+            # a motion is undamped where it is also a motion of the beam with its dashpots locked
             support = {(True, False): "pinned", (False, True): "guided", (True, True): "clamped"}
-            held = [Station(support=support[one.dashpot > 0.0, one.rotational_dashpot > 0.0]) for one in damped]
-            fixed = with_stations(layout, [(d.position / length, at) for d, at in zip(damped, held, strict=True)])
-            still = self._resonances(fixed, frequencies)
-            numbers = [n if m else 0 for n, m in zip(numbers, still, strict=True)]
+            locked = [Station(support=support[one.dashpot > 0.0, one.rotational_dashpot > 0.0]) for one in damped]
+            fixed = with_stations(layout, [(d.position / length, at) for d, at in zip(damped, locked, strict=True)])
+            numbers = [n if m else 0 for n, m in zip(numbers, self._resonances(fixed, frequencies), strict=True)]
         for frequency, number in zip(frequencies.tolist(), numbers, strict=True):
             if number and (mode := number if devices or drives else number - self.beam.rigid_motions):
                 where = " with its devices or imposed displacements" if devices or drives else ""
@@ -298,10 +309,11 @@ class ExactModel(BeamModel):
         return wavenumber(self.beam, frequency_hz, self.theory)
 
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
-        """The first `modes` modes (400) and what the others add to a steady field.
+        """The first `modes` modes (default 400) and the contribution of the others to a steady field.
 
-        Of beams of sections and point masses: a damping ratio is the same in every mode, so that springs, foundation
-        and axial force, which lose nothing, are refused. Raises InputError, also for rigid-body motions.
+        For Euler-Bernoulli beams with steps and point masses: the damping ratio is the same in every mode, which
+        springs, foundation and axial force, without losses, would contradict. Raises InputError, also for rigid-body
+        motions.
         """
         beam, n_modes = self.beam, EXACT_MODES if modes is None else modes
         check_in_time(beam)
@@ -322,15 +334,34 @@ class ExactModel(BeamModel):
             rounds, rest = divmod(derivative, 4)
             return np.asarray(read(x.tobytes(), rest) * fourth(omegas[:, None], x) ** rounds)
 
-        def tail(forces: Sequence[PointForce], frequency_hz: float, damping: Any) -> Callable[[Array, int], Any]:
-            """The exact field less the part of the modes: what far faster modes respond without delay."""
-            lossy = ExactModel(replace(beam, loss_factor=2.0 * float(damping)))
-            field = lossy.harmonic(forces, frequency_hz)
+        def without_modes(forces: Sequence[PointForce], frequency_hz: float, loss: float) -> Callable[..., Any]:
+            field = ExactModel(replace(beam, loss_factor=loss)).harmonic(forces, frequency_hz)
             loads = sum(phasor(one) * shapes(np.array([one.position]), 0)[:, 0] for one in forces)
-            part = loads / (omegas**2 * (1.0 + 2j * damping) - field.omega**2)
+            part = loads / (omegas**2 * (1.0 + 1j * loss) - field.omega**2)
             return lambda x, derivative: field.shapes(x, derivative) - part @ shapes(x, derivative)
 
-        # cells of 0.4 wavenumbers of the fastest mode at most
+        def tail(forces: Sequence[PointForce], frequency_hz: float, damping: Any) -> Callable[[Array, int], Any]:
+            """The exact field less the part of the modes: the quasi-static response of the higher modes.
+
+            At an undamped resonance of a mode the field does not exist, but this difference does. Its mean over the
+            loss factors +eta and -eta is a series in eta^2: extrapolated to eta = 0 from `_LOSSES` values, which lie
+            within the distance to the resonance of the first mode left out, where the series ends.
+            """
+            if damping or abs(2.0 * pi * frequency_hz / omegas - 1.0).min() > _NEAR:
+                return without_modes(forces, frequency_hz, 2.0 * float(damping))
+            losses = _LOSSES * (1.0 - (frequency_hz / self.frequency_hz(n_modes + 1)) ** 2)
+            squares = losses**2
+            weights = (squares / (squares - squares[:, None] + np.diag(squares))).prod(axis=1)  # Lagrange's, at zero
+            mirrored = [replace(force, phase_deg=-force.phase_deg) for force in forces]
+            pairs = [
+                [without_modes(some, frequency_hz, loss) for some in (forces, mirrored)] for loss in losses.tolist()
+            ]
+            return lambda x, derivative: sum(
+                0.5 * weight * (one(x, derivative) + other(x, derivative).conj())
+                for weight, (one, other) in zip(weights, pairs, strict=True)
+            )
+
+        # cells of at most 0.4 over the wavenumber of the highest mode
         stops = np.array(self.layout.positions) * beam.length
         stops[-1] = beam.length
         cells = np.ceil(np.diff(stops) * (omegas[-1] / beam.wave_constant * np.sqrt(ratios)) ** 0.5 / 0.4).astype(int)
@@ -344,7 +375,7 @@ class ExactModel(BeamModel):
             loads=lambda position: shapes(np.array([position]), 0)[:, 0],
             edges=np.concatenate([np.zeros(1), *pieces]),
             degree=_TAYLOR_DEGREE,
-            method=f"the first {n_modes} exact modes, the rest without delay",
+            method=f"the first {n_modes} exact modes, the rest quasi-static",
             tail=tail,
         )
 
@@ -357,7 +388,7 @@ def check_in_time(beam: Beam, instead: str = "give model = 'fem' or 'segment'") 
 
 @lru_cache(maxsize=256)  # a basis of 400 modes has some twenty blocks
 def _modal_motion(model: ExactModel, modes: range) -> Motion:
-    """The motions of some modes, in a row."""
+    """The motions of consecutive modes."""
     numbers, rigid = range(modes[0] - 1, modes[-1] + 2), model.beam.rigid_motions
     betas = [wavenumber_length(model.layout, mode + rigid) if mode else 0.0 for mode in numbers]
     return modal_motion(model.layout, np.array(betas), np.array(modes))

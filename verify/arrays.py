@@ -1,4 +1,4 @@
-"""The arrays of every room, by one name each: float64 and complex128, and what chooses among them."""
+"""Types of arrays: float64, complex128, and the indices and masks that select from them."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -21,7 +21,7 @@ COMMANDS = (
 
 
 class BrokenPipe(Exception):  # noqa: N818
-    """Standard output is closed. Click turns BrokenPipeError into exit status 1, which stands for a failed gate."""
+    """Standard output is closed. Click turns BrokenPipeError into exit status 1, that of a failed gate."""
 
 
 class Commands(click.Group):

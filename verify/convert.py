@@ -1,4 +1,4 @@
-"""Plain data (TOML tables, command-line words) converted to types, and what a type says about itself."""
+"""Plain data (TOML tables, command-line words) converted to types, and the annotations of types."""
 
 import re
 from collections.abc import Iterator
@@ -16,14 +16,8 @@ RELATIVE = "relative"
 """Key in `extra` of a dimensionless number, which a command line accepts in per cent as well."""
 LONGEST_RANGE = 10_000
 _WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/*^]")
-_PLAIN = {
-    "int": "a whole number",
-    "float": "a number",
-    "str": "a word",
-    "bool": "true or false",
-    "array": "a list",
-    "object": "a table",
-}
+_PLAIN = {"int": "a whole number", "float": "a number", "str": "a word", "bool": "true or false"}
+_PLAIN |= {"array": "a list", "object": "a table"}
 _LIMITS = (("gt", "above"), ("ge", "of at least"), ("lt", "below"), ("le", "of at most"))
 
 
@@ -43,17 +37,25 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
 
 
 def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
-    """A sentence for every error; values that are right by themselves are checked together last."""
-    table = table_of(kind)
+    """A sentence for every error; the constraints between fields are checked where each field is valid."""
+    table, inside = table_of(kind), list[str]()
     lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
-    inside: list[str] = []
     if table is not None and isinstance(data, dict):
-        inside = list(_table_errors(data, table, where))
+        fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
+        for key, value in data.items():
+            name = f"{where}.{key}".lstrip(".")
+            if key in fields:
+                inside += _errors(value, fields[key].type, name)
+            else:
+                inside.append(f"{name} is not a known key: {near_name(str(key), tuple(fields))}")
+        if not set(data) - set(fields):  # else a missing key may be the misspelt one
+            missing = (key for key, field in fields.items() if field.required and key not in data)
+            inside += [f"{f'{where}.{key}'.lstrip('.')} is missing: give it a value" for key in missing]
     elif lists is not None and isinstance(data, list | tuple):
-        for i, one in enumerate(data):
-            named = isinstance(one, dict) and isinstance(one.get("id"), str) and one["id"]
+        for i, item in enumerate(data):
+            named = isinstance(item, dict) and isinstance(item.get("id"), str) and item["id"]
             entry = lists[0] if lists[-1] is Ellipsis else lists[min(i, len(lists) - 1)]
-            inside += _errors(one, entry, f"{where}.{named}" if named else f"{where}[{i}]")
+            inside += _errors(item, entry, f"{where}.{named}" if named else f"{where}[{i}]")
     if inside:
         yield from inside
         return
@@ -64,21 +66,6 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
             yield from error.__cause__.sentences
         else:
             yield sentence(where, data, kind, str(error))
-
-
-def _table_errors(data: dict[str, Any], table: type[msgspec.Struct], where: str) -> Iterator[str]:
-    """Errors key by key. A missing key may be a misspelt one: it is named where no key is unknown."""
-    fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
-    for key, value in data.items():
-        name = f"{where}.{key}".lstrip(".")
-        if key in fields:
-            yield from _errors(value, fields[key].type, name)
-        else:
-            yield f"{name} is not a known key: {near_name(str(key), tuple(fields))}"
-    if not set(data) - set(fields):
-        for key, field in fields.items():
-            if field.required and key not in data:
-                yield f"{f'{where}.{key}'.lstrip('.')} is missing: give it a value"
 
 
 def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
@@ -133,7 +120,7 @@ def entry_of(kind: Any) -> Any:
 
 
 def extra_of(kind: Any, key: str) -> Any:
-    """What the annotations of a type hold under `key` of their `extra`; None where they have no such key."""
+    """The value of `key` in the `extra` of a type's annotations; None without that key."""
     return next((meta.extra[key] for meta in metas_of(kind) if meta.extra and key in meta.extra), None)
 
 
@@ -176,11 +163,9 @@ def typed(text: str, kind: Any, field: str) -> Any:
 
     What does not fit stays as it is; `convert` then refuses it. Raises InputError for an empty or a long range.
     """
-    value = literal(text, field)
-    entry = entry_of(kind)
+    value, entry = literal(text, field), entry_of(kind)
     if entry is not None and int in arms_of(entry):
-        parts = value if isinstance(value, list) else [value]
-        return [one for part in parts for one in _spelt_out(part, field)]
+        return [one for part in (value if isinstance(value, list) else [value]) for one in _spelt_out(part, field)]
     if extra_of(kind, RELATIVE) and isinstance(value, str) and value.endswith("%"):
         number = literal(value[:-1].strip(), field)
         return number / 100.0 if isinstance(number, float | int) else value

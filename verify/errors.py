@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 from reprlib import Repr
 
-SENTENCE = 1600
-"""Longest message, characters."""
+SENTENCE, VALUE = 1600, 120
+"""Longest message, and longest value in a message, characters."""
 NAMES = 12
 """Known names that a message lists."""
-VALUE = 120
-"""Longest value in a message, characters."""
 
 
 class InputError(ValueError):
@@ -79,10 +77,6 @@ def printable(text: str) -> str:
 class _Short(Repr):
     """`repr` of the first parts of a long or deep value."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self.maxlevel, self.maxstring, self.maxother = 3, VALUE // 2, VALUE // 2
-
     def repr_int(self, x: int, level: int) -> str:
         """A whole number, beyond 100 bits its length: Python prints at most 4300 digits."""
         return repr(x) if x.bit_length() <= 100 else f"a whole number of {x.bit_length()} bits"
@@ -90,7 +84,9 @@ class _Short(Repr):
 
 def shown(value: object) -> str:
     """A value in a message: its `repr`, shortened."""
-    return shortened(_Short().repr(value), VALUE)
+    short = _Short()
+    short.maxlevel, short.maxstring, short.maxother = 3, VALUE // 2, VALUE // 2
+    return shortened(short.repr(value), VALUE)
 
 
 def written(number: float) -> str:

@@ -12,16 +12,18 @@ equal elements are whole numbers, exact at any N.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import pi, sqrt
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.arrays import Array, Indices
-from verify.errors import NoFigureError
-from verify.linear.base import DiscreteModel
+from verify.linear.discrete import DiscreteModel
+from verify.linear.factored import sparse_rows
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
+from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem
 from verify.options import Theory
 from verify.problem.beam import Beam
@@ -88,12 +90,6 @@ class HermiteModel(DiscreteModel):
         pieces = cut_pieces(self.beam)
         return divide(self.beam, self.n_elements, self.grading, pieces if len(pieces) > len(self.beam.pieces) else ())
 
-    def of_elements(self, field: str, scale: float) -> Array:
-        """A property of each element's section over `scale`, (N,)."""
-        ends = np.cumsum([piece.length for piece in self.beam.pieces])[:-1] / self.unit
-        figures = np.array([getattr(piece, field) for piece in self.beam.pieces]) / scale
-        return np.asarray(figures[ends.searchsorted(self.mesh.nodes[:-1] + 0.5 * self.mesh.lengths)])
-
     @cached_property
     def basis(self) -> Any:
         """scikit-fem's basis: w and psi of each node in turn, then the shear strains of each element."""
@@ -103,13 +99,15 @@ class HermiteModel(DiscreteModel):
         return cached_basis(nodes.tobytes(), self.shear) if len(nodes) <= 4000 else line_basis(nodes, self.shear)
 
     @cached_property
-    def free(self) -> Indices:
-        """Degrees of freedom that the supports leave, (n,) ascending."""
-        names = [
-            [name for name, held in zip(("u", "u_x"), HOLDS[end], strict=True) if held] for end in self.beam.supports
+    def unknowns(self) -> Indices:
+        """Number of each degree of freedom among the unknowns, (n_all,); -1 where a support prevents it."""
+        ends = [
+            2 * self.n_elements * i + j for i, end in enumerate(self.beam.supports) for j in (0, 1) if HOLDS[end][j]
         ]
-        ends = [self.basis.get_dofs(end).all(held) for end, held in zip(("left", "right"), names, strict=True)]
-        return np.delete(np.arange(self.basis.N), np.concatenate(ends))
+        free = np.delete(np.arange((4 if self.shear else 2) * self.n_elements + 2), ends)
+        unknowns = np.full(len(free) + len(ends), -1)
+        unknowns[free] = np.arange(len(free))
+        return unknowns
 
     # --- Stiffness and mass --------------------------------------------------------------------------------------
 
@@ -122,59 +120,63 @@ class HermiteModel(DiscreteModel):
         """
         from scipy.sparse import csr_array, vstack
 
-        n, size, lengths = self.n_elements, self.basis.N, self.mesh.lengths
-        e, one = np.arange(n), np.ones(n)
-        # first factor: differences of neighbouring deflections, which are exact, then all values
-        columns, at = np.concatenate([2 * e, 2 * e + 2, np.arange(size)]), np.concatenate([e, e, n + np.arange(size)])
-        first = csr_array((np.concatenate([-one, one, np.ones(size)]), (at, columns)), shape=(n + size, size))
-        left, right, constant = n + 2 * e + 1, n + 2 * e + 3, n + 2 * n + 2 + 2 * e
-        chord = [(e, 1.0 / lengths)]
-        mean, gradient = [(left, -one), (right, one)], [(left, one), (right, one), (e, -2.0 / lengths)]
-        strains, stiffness = [mean, gradient], [self.own_stiffness]
+        n, free, lengths, every = self.n_elements, self.n_unknowns, self.mesh.lengths, self.unknowns
+        # first factor: differences of neighbouring deflections, which are exact, then all unknowns
+        e, own = np.arange(n), np.arange(free)
+        ends = np.concatenate([np.stack([every[2 * e], every[2 * e + 2]], 1), np.stack([own, own], 1)])
+        signs = np.repeat([[-1.0, 1.0], [1.0, 0.0]], [n, free], axis=0)
+        # second: strains of the elements, each a list of (column, value)
+        columns = np.where(every < 0, -1, n + every)
+        left, right, constant = columns[2 * e + 1], columns[2 * e + 3], columns[2 * n + 2 :: 2]
+        mean, chord = [(left, -1.0), (right, 1.0)], [(e, 1.0 / lengths)]
+        gradient: list[Any] = [(left, 1.0), (right, 1.0), (e, -2.0 / lengths)]
+        strains: list[list[Any]] = [mean, gradient]
+        stiffness = [self.own_stiffness]
         if self.shear:
-            strains = [mean, [*gradient, (constant, 2.0 * one)], [(constant, one)], [(constant + 1, one)]]
+            strains = [mean, [*gradient, (constant, 2.0)], [(constant, 1.0)], [(constant + 1, 1.0)]]
         if self.beam.tension:
             # w'^2 has the mean chord^2 + mean^2/12 + gradient^2/20
-            force = self.beam.tension * self.unit**2 / self.beam.bending_stiffness * lengths
-            strains, stiffness = [*strains, chord, mean, gradient], [*stiffness, force, force / 12.0, force / 20.0]
-        places, values = zip(*(entry for strain in strains for entry in strain), strict=True)
-        at = np.concatenate([i * n + e for i, strain in enumerate(strains) for _ in strain])
-        rows = [csr_array((np.concatenate(values), (at, np.concatenate(places))), shape=(len(strains) * n, n + size))]
+            force = self._tension * lengths
+            strains += [chord, mean, gradient]
+            stiffness += [force, force / 12.0, force / 20.0]
+        places, values = np.full((len(strains), n, 4), -1), np.zeros((len(strains), n, 4))
+        for i, strain in enumerate(strains):
+            for j, (place, value) in enumerate(strain):
+                places[i, :, j], values[i, :, j] = place, value
+        rows = [sparse_rows(places.reshape(-1, 4), values.reshape(-1, 4), n + free)]
         for row, value in self._foundation_and_spring_strains():
-            rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + size)))
+            rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + free)))
             stiffness.append(value)
         mass, bodies = self._mass(), self._bodies()
         return StructuralSystem(
-            [first[:, self.free], vstack(rows, format="csr") if len(rows) > 1 else rows[0]],
+            [sparse_rows(ends, signs, free), vstack(rows, format="csr") if len(rows) > 1 else rows[0]],
             np.concatenate(stiffness),
-            (mass if bodies is None else mass + bodies.T @ bodies).tocsr()[self.free][:, self.free].tocsc(),
+            mass if bodies is None else (mass + bodies.T @ bodies).tocsc(),
             self._rigid(),
             self._lower_bound(),
-            None if bodies is None else bodies[:, self.free],
+            bodies,
         )
 
     @property
     def own_stiffness(self) -> Array:
-        """D of the elements' own strains, (2N,) or (4N,), read off what scikit-fem assembles.
+        """D of the elements' own strains, (2N,) or (4N,), read off the element matrices of scikit-fem.
 
-        Between its two nodes K has one element alone: -4 d_1 / l^2 for the deflections, d_1 - d_0 for the slopes.
+        K of an element has -4 d_1 / l^2 between its deflections and d_1 - d_0 between its slopes.
         """
         from verify.elements import element as el
 
-        n, unit, stiffness = self.n_elements, self.unit, self.beam.bending_stiffness
-        bending = el.assemble(self.basis, el.bending, self.mesh.stiffnesses)[: 2 * n + 2, : 2 * n + 2]
-        between = bending.diagonal(2)
-        gradient = -0.25 * self.mesh.lengths**2 * between[::2]
-        own = [gradient - between[1::2], gradient]
+        stiffness = self.beam.bending_stiffness / self.unit**2
+        bending = el.element_matrices(self.basis, el.bending, self.mesh.stiffnesses).tolocal()
+        gradient = -0.25 * self.mesh.lengths**2 * bending[:, 0, 2]
+        own = [gradient - bending[:, 1, 3], gradient]
         if self.shear:
-            shear = self.of_elements("shear_stiffness", stiffness / unit**2)
-            shear = np.minimum(shear, RIGID * self.mesh.stiffnesses.max())
-            inside = el.assemble(self.basis, el.shear, shear).diagonal()[2 * n + 2 :]
-            own += [inside[::2], inside[1::2]]
+            shear = np.minimum(self.mesh.of("shear_stiffness") / stiffness, RIGID * self.mesh.stiffnesses.max())
+            inside = el.element_matrices(self.basis, el.shear, shear).tolocal()
+            own += [inside[:, 4, 4], inside[:, 5, 5]]
         return np.concatenate(own)
 
     def _foundation_and_spring_strains(self) -> list[tuple[Any, Array]]:
-        """(rows over all values, stiffness of each) of foundation and springs.
+        """(rows over the unknowns, stiffness of each) of foundation and springs.
 
         A foundation is read at four points of Gauss in each element, which integrate the square of a cubic.
         """
@@ -189,7 +191,7 @@ class HermiteModel(DiscreteModel):
             points, weights = np.polynomial.legendre.leggauss(4)
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
             shares = (lengths[:, None] * 0.5 * weights).ravel()
-            found.append((self._rows(x), beam.foundation * self.unit**3 * scale * shares))
+            found.append((self._rows(x), self._foundation * shares))
         for spring in beam.spring:
             at = np.array([spring.position / self.unit])
             for value, rotation in ((spring.stiffness * self.unit**2, False), (spring.rotational, True)):
@@ -199,17 +201,21 @@ class HermiteModel(DiscreteModel):
         return found
 
     def _mass(self) -> Any:
-        """M of the elements over all degrees of freedom by scikit-fem, with rotary inertia."""
+        """M of the elements over the unknowns by scikit-fem, with rotary inertia."""
+        from scipy.sparse import csc_array
+
         from verify.elements import element as el
 
-        mass = el.assemble(self.basis, el.inertia, self.mesh.masses_per_length)
+        mass = el.element_matrices(self.basis, el.inertia, self.mesh.masses_per_length)
+        data, (rows, columns) = mass.data, self.unknowns[mass.indices]
         if self.theory != "euler-bernoulli":
-            rotary = self.of_elements("rotary_inertia", self.beam.mass_per_length * self.unit**2)
-            mass = mass + el.assemble(self.basis, el.rotary_inertia, rotary)
-        return mass
+            rotary = self.mesh.of("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
+            data = data + el.element_matrices(self.basis, el.rotary_inertia, rotary).data
+        free = (rows >= 0) & (columns >= 0)
+        return csc_array((data[free], (rows[free], columns[free])), shape=(self.n_unknowns,) * 2)
 
     def _bodies(self) -> Any:
-        """Rows (r, all degrees of freedom) whose squares are the masses and rotary inertias of attached bodies."""
+        """Rows (r, n) whose squares are the masses and rotary inertias of attached bodies."""
         from scipy.sparse import vstack
 
         beam, unit = self.beam, self.unit
@@ -222,20 +228,20 @@ class HermiteModel(DiscreteModel):
         return vstack(rows, format="csr") if rows else None
 
     def _rigid(self) -> Array:
-        """Rigid motions over the free degrees of freedom, (n, 0 to 2)."""
+        """Rigid motions, (n, 0 to 2)."""
         lines, nodes = self.beam.rigid_lines, self.mesh.nodes
-        shapes = np.zeros((self.basis.N, len(lines)))
+        shapes = np.zeros((len(self.unknowns), len(lines)))
         for j, (a, b) in enumerate(lines):
             shapes[: 2 * len(nodes) : 2, j] = a / self.unit + b * nodes if b else a
             shapes[1 : 2 * len(nodes) : 2, j] = b
-        return shapes[self.free]
+        return shapes[self.unknowns >= 0]
 
     def _lower_bound(self) -> float:
         """Lower bound k_f / (rho A) of omega^2 by the foundation, without attached bodies; 0 under compression."""
         beam = self.beam
         if not beam.foundation or beam.tension < 0.0 or self.theory != "euler-bernoulli":
             return 0.0
-        return beam.foundation * self.unit**4 / beam.bending_stiffness / float(self.mesh.masses_per_length.max())
+        return self._foundation / float(self.mesh.masses_per_length.max())
 
     def lossy_stiffness(self, omega: float) -> Any:
         """D with the beam's loss factor on its own bending and shear, (m,)."""
@@ -249,36 +255,37 @@ class HermiteModel(DiscreteModel):
     def _rows(self, x: Array, derivative: int = 0, *, rotation: bool = False) -> Any:
         from verify.elements.element import rows
 
-        return rows(self.mesh.nodes, x, self.shear, derivative, rotation=rotation)
+        return rows(self.mesh.nodes, x, self.unknowns, derivative, rotation=rotation)
 
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
-        """Weights of the free degrees of freedom at positions in m, sparse (n_positions, n)."""
-        return self._rows(np.asarray(positions) / self.unit, rotation=rotation)[:, self.free]
+        """Weights of the unknowns at positions in m, sparse (n_positions, n)."""
+        return self._rows(np.asarray(positions) / self.unit, rotation=rotation)
 
-    def _polynomials(self, unknowns: Any) -> Any:
-        """Deflection and rotation of unknowns (n, k) as piecewise polynomials of x in m."""
-        from verify.elements.element import piecewise
+    def _read(self, unknowns: Any, which: int) -> Callable[[Array, int], Any]:
+        """Deflection (0) or rotation (1) of unknowns (n, k); at a node by the element on its right."""
 
-        values = np.zeros((self.basis.N, unknowns.shape[1]), dtype=unknowns.dtype)
-        values[self.free] = unknowns
-        return piecewise(self.mesh.nodes, values, self.unit)
+        @cache
+        def polynomials() -> Any:
+            from verify.elements.element import piecewise
+
+            values = np.zeros((len(self.unknowns), unknowns.shape[1]), dtype=unknowns.dtype)
+            values[self.unknowns >= 0] = unknowns
+            return piecewise(self.mesh.nodes, values, self.unit)[which]
+
+        return lambda x, derivative: np.ascontiguousarray(polynomials()(x, derivative).T)
 
     def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
-        """The elements' own cubics, (x in m, derivative) -> (k, len(x)); at a node the element on its right."""
-        deflection = self._polynomials(unknowns)[0]
-        return lambda x, derivative: np.ascontiguousarray(deflection(x, derivative).T)
+        """The elements' own cubics, (x in m, derivative) -> (k, len(x))."""
+        return self._read(unknowns, 0)
 
     def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
         """The rotation of Timoshenko elements likewise; None where it is the slope."""
-        if not self.shear:
-            return None
-        rotation = self._polynomials(unknowns)[1]
-        return lambda x, derivative: np.ascontiguousarray(rotation(x, derivative).T)
+        return self._read(unknowns, 1) if self.shear else None
 
     def leading_sign(self, vectors: Array) -> Array:
         """+-1 for each mode: by the first of deflection, slope, curvature that the left end leaves free."""
         clamped = self.beam.supports[0] == "clamped"
-        leading = (self._rows(np.zeros(1), 2)[:, self.free] @ vectors)[0] if clamped else vectors[0]
+        leading = (self._rows(np.zeros(1), 2) @ vectors)[0] if clamped else vectors[0]
         return np.where(leading < 0.0, -1.0, 1.0)
 
     def modes_of(self, vectors: Array) -> dict[str, Any]:
@@ -325,11 +332,28 @@ class HermiteModel(DiscreteModel):
         k = complex(2.0 * np.arcsin(np.sqrt(2.0 * c / (b + np.sqrt(b * b + 4.0 * a * c + 0j)))) / self.unit)
         return k if k.imag <= 0.0 else k.conjugate()
 
-    def check_propagates(self, frequency_hz: float) -> None:
-        """Raise NoFigureError at and beyond omega^2 = (1680/17) EI/(rho A l^4), a half wave on each element."""
-        n, of_one = self.n_elements, sqrt(1680.0 / 17.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
-        if frequency_hz >= of_one * n**2:
-            raise NoFigureError(
-                f"count = {n}: {n} elements carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
-                f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
-            )
+    @property
+    def cut_off_hz(self) -> float:
+        """Where a half wave fits on the worst element, (1680/17) EI/(rho A l^4) = omega^2 of a plain one.
+
+        Otherwise from one element whose ends move oppositely, as those of all elements do at that wavelength.
+        """
+        plain = self.theory == "euler-bernoulli" and not (
+            self.beam.section or self.beam.tension or self.beam.foundation
+        )
+        if plain:  # scenes are checked by it: neither scipy nor scikit-fem is loaded
+            return float(np.sqrt(1680.0 / 17.0) * self._omega_unit / (2.0 * pi) / self.mesh.lengths.max() ** 2)
+        from scipy.linalg import eigh
+
+        limits, last = list[float](), np.cumsum(self.mesh.shares) - 1
+        for first, stop in zip([0, *(last[:-1] + 1)], last + 1, strict=True):
+            lengths = self.mesh.lengths[first:stop]
+            section = section_at(self.beam, self.mesh.nodes[first] * self.unit)
+            alone = replace(section, length=lengths.max() * self.unit, supports=("free", "free"), mass=(), spring=())
+            model = HermiteModel(alone, 1, theory=self.theory)
+            system, opposite = model.system, np.eye(model.n_unknowns)[:, [0, 1, *range(4, model.n_unknowns)]]
+            opposite[[2, 3], [0, 1]] = -1.0
+            strain, mass = system.strain(opposite), opposite.T @ (system.mass @ opposite)
+            value = eigh(strain.T @ (system.stiffness[:, None] * strain), mass, eigvals_only=True)[0]
+            limits.append(float(np.sqrt(max(value, 0.0))) * model._omega_unit / (2.0 * pi))
+        return min(limits)

@@ -13,7 +13,7 @@ from verify.errors import InputError, shown
 
 
 def exists(path: Path, field: str) -> bool:
-    """Whether there is a file or folder. Raises InputError for an impossible name: too long, or with a null byte."""
+    """Whether a file or folder exists. Raises InputError for an impossible name: too long, or with a null byte."""
     try:
         path.stat()
     except (FileNotFoundError, NotADirectoryError):
@@ -36,7 +36,7 @@ def _written(path: Path, field: str) -> Iterator[None]:
 
 
 def writable_folder(folder: Path, field: str) -> Path:
-    """Make `folder` and check that a file can be written there. Raises InputError naming `field`."""
+    """Make `folder` and check that a file can be written in it. Raises InputError naming `field`."""
     with _written(folder, field):
         exists(folder, field)
         folder.mkdir(parents=True, exist_ok=True)

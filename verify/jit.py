@@ -2,9 +2,9 @@
 
 Kernels allocate nothing, so numba's reference counting is off (`_nrt`), which doubles the speed of a motor run.
 
-Numba's cache checks the file of the entry point alone, while all that it calls is compiled into it. The cache folder
-therefore carries a digest of all kernel modules. It stands in `NUMBA_CACHE_DIR` where that is set, else beside this
-file; where neither is writable, numba's user-wide cache or none is used.
+Numba's cache checks the file of the entry point alone, while all that it calls is compiled into it. So the name of the
+cache folder has a digest of all kernel modules. It is in `NUMBA_CACHE_DIR` or, by default, in this package; where
+neither is writable, numba's user-wide cache or none is used.
 """
 
 from collections.abc import Callable
@@ -29,23 +29,23 @@ FAST = {"reassoc", "contract", "nsz"}
 """`fastmath` of sums over modes, whose order is free."""
 
 
-@overload
+@overload  # `@inline`: the decorated function keeps its type
 def inline(function: Function) -> Function: ...
-@overload
+@overload  # `@inline(fastmath=FAST)`: a decorator
 def inline(**options: Any) -> Callable[[Function], Function]: ...
 def inline(function: Any = None, **options: Any) -> Any:
-    """Compile a function into the kernels that call it: `@inline` or `@inline(fastmath=FAST)`."""
+    """Compile a function into the kernels that call it, with numba's `options`."""
     options = {"error_model": "numpy", "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, **options}
     compiled = partial(njit, **options)
     return compiled if function is None else compiled(function)
 
 
-@overload
+@overload  # `@jit`: the decorated function keeps its type
 def jit(function: Function) -> Function: ...
-@overload
+@overload  # `@jit(fastmath=FAST)`: a decorator
 def jit(**options: Any) -> Callable[[Function], Function]: ...
 def jit(function: Any = None, **options: Any) -> Any:
-    """Compile a kernel at its first call and cache it on disk: `@jit` or `@jit(fastmath=FAST)`."""
+    """Compile a kernel at its first call, with numba's `options`, and cache it on disk."""
     if function is None:
         return partial(jit, **options)
     options = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, **options}

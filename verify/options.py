@@ -1,4 +1,4 @@
-"""Options of scenes, scripts and commands that are one of a list of words."""
+"""Options of scenes, scripts and commands whose values are words."""
 
 from typing import Literal, get_args
 

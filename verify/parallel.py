@@ -30,8 +30,8 @@ def map_processes(
     """`[function(item) for item in items]`, shared among `max_workers` processes, VERIFY_JOBS unless set.
 
     `progress` is called with the number of items done, after each. The first item is done in this process, so that
-    what it compiles and caches is there for all workers. Function and items are picklable where the platform cannot
-    fork. Raises whatever `function` raises of the first item that fails; pending items are cancelled.
+    workers inherit what it compiles and caches. Function and items are picklable where the platform cannot fork.
+    Raises the error of the first item that fails; pending items are cancelled.
     """
     todo = list(items)
     workers = min(max_workers or n_jobs(), len(todo) - 1)

@@ -74,10 +74,10 @@ class GateItem(pytest.Item):
         from verify.scene.gates import run_gate
 
         result = run_gate(self.gate, self.scene, self.cache)
-        fraction = "" if result.fraction is None else f"{result.fraction:.6g}"
-        values = {"measured": result.value, "expected": result.expected, "unit": result.unit, "fraction": fraction}
+        values = {"measured": result.value, "expected": result.expected, "unit": result.unit}
+        values["fraction"] = "" if result.fraction is None else f"{result.fraction:.6g}"
+        values["seconds"] = f"{result.seconds:.6g}"
         self.user_properties += [(name, str(value)) for name, value in values.items()]
-        self.user_properties.append(("seconds", f"{result.seconds:.6g}"))
         if not result.passed:
             raise GateFailedError(
                 f"gate {result.id}: {result.reason} (expected {result.expected} {result.unit}; {result.gate.why})"

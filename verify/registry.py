@@ -1,7 +1,6 @@
 """Registries of models, quantities and studies by name, extended by entry points of other packages."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, Generic, TypeVar
 
@@ -13,10 +12,10 @@ T = TypeVar("T")
 class Registry(Mapping[str, T], Generic[T]):
     """Members by name, each imported at its first use.
 
-    `what` is a member's name in messages, `group` that of the entry points, which are looked up for an unknown name or
-    where all members are listed. `own` are members with a `name`, `homes` are 'module:attribute' by name. `refuses`
-    returns what is wrong with a member of another package, '' if nothing. A class that is imported is called to make
-    the member unless `classes`. An entry point that cannot be used is left out; `named` raises InputError with why.
+    `what` is a member's name in messages. Members of this package are `own`, objects with a `name`, and `homes`,
+    'module:attribute' by name; others come from entry points of `group`, which are looked up for an unknown name or
+    where all members are listed. `refuses` returns what is wrong with a member of another package, '' if nothing. A
+    class that is imported is called to make the member unless `classes`.
     """
 
     def __init__(
@@ -25,7 +24,7 @@ class Registry(Mapping[str, T], Generic[T]):
         group: str,
         own: Iterable[T] = (),
         homes: Mapping[str, str] | None = None,
-        refuses: Callable[[T], str] = lambda one: "",
+        refuses: Callable[[T], str] = lambda member: "",
         classes: bool = False,
     ) -> None:
         self._what, self._group, self._refuses, self._classes = what, group, refuses, classes
@@ -35,7 +34,7 @@ class Registry(Mapping[str, T], Generic[T]):
         """Names of the package's own members."""
 
     def named(self, name: str, field: str = "") -> T:
-        """The member of that name. Raises InputError, with the nearest name, for an unknown one."""
+        """The member of that name. Raises InputError for an unknown one, and for an entry point that fails."""
         if isinstance(name, str) and name in self:
             return self[name]
         if why := (self._unusable or {}).get(str(name)):
@@ -43,37 +42,26 @@ class Registry(Mapping[str, T], Generic[T]):
         nearest = near_name(name if isinstance(name, str) else "", tuple(self))
         raise InputError(f"{field or self._what} = {shown(name)} is not known: {nearest}")
 
-    def register(self, one: T) -> T:
+    def register(self, member: T) -> T:
         """Add a member, or replace the one of its name; returns it. Raises InputError."""
-        name = getattr(one, "name", None)
+        name = getattr(member, "name", None)
         if not isinstance(name, str) or not name:
-            raise InputError(f"{self._what} = {one!r} has no name: give it one")
-        if why := self._refuses(one):
+            raise InputError(f"{self._what} = {member!r} has no name: give it one")
+        if why := self._refuses(member):
             raise InputError(f"{self._what} = {name!r} {why}")
-        self._members[name] = one
-        return one
-
-    @contextmanager
-    def registered(self, *ones: T) -> Iterator[None]:
-        """Register members within a `with` block."""
-        before = dict(self._members)
-        try:
-            for one in ones:
-                self.register(one)
-            yield
-        finally:
-            self._members = before
+        self._members[name] = member
+        return member
 
     def __getitem__(self, name: str) -> T:
         if name not in self:
             raise KeyError(name)
         if isinstance(home := self._members[name], str):
             self._members[name] = self._import(home)
-        one: T = self._members[name]
-        return one
+        member: T = self._members[name]
+        return member
 
     def __iter__(self) -> Iterator[str]:
-        self._search()
+        self._load_entry_points()
         return iter(tuple(self._members))
 
     def __len__(self) -> int:
@@ -81,11 +69,11 @@ class Registry(Mapping[str, T], Generic[T]):
 
     def __contains__(self, name: object) -> bool:
         if name not in self._members:
-            self._search()
+            self._load_entry_points()
         return name in self._members
 
-    def _search(self) -> None:
-        """Load the entry points, once; a name of the package's own stays its own."""
+    def _load_entry_points(self) -> None:
+        """Load the entry points, once; one of a known name, or that cannot be used, is left out."""
         if self._unusable is not None:
             return
         self._unusable = {}
@@ -95,12 +83,12 @@ class Registry(Mapping[str, T], Generic[T]):
             if point.name in self._members:
                 continue
             try:
-                one = self._import(point.value)
-                if not self._classes and getattr(one, "name", point.name) != point.name:
+                member = self._import(point.value)
+                if not self._classes and getattr(member, "name", point.name) != point.name:
                     raise InputError(f"it is no {self._what} of that name")
-                if why := self._refuses(one):
+                if why := self._refuses(member):
                     raise InputError(f"it {why}")
-                self._members[point.name] = one
+                self._members[point.name] = member
             except Exception as error:  # whatever a foreign module raises
                 package = point.dist.name if point.dist else "another package"
                 why = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
@@ -111,5 +99,5 @@ class Registry(Mapping[str, T], Generic[T]):
 
     def _import(self, home: str) -> T:
         module, _, attribute = home.partition(":")
-        found: Any = getattr(import_module(module), attribute)
-        return found() if isinstance(found, type) and not self._classes else found  # type: ignore[no-any-return]
+        imported: Any = getattr(import_module(module), attribute)
+        return imported() if isinstance(imported, type) and not self._classes else imported  # type: ignore[no-any-return]

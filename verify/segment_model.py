@@ -21,36 +21,24 @@ Quantities over the unknowns are dimensionless: lengths in `unit` = L/N, stiffne
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
-from math import pi, sqrt
+from math import pi
 from typing import Any, ClassVar, Literal
 
 import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.errors import InputError, NoFigureError
-from verify.linear.base import DiscreteModel
-from verify.linear.mesh import Parts, check_division, divide, part_counts
-from verify.linear.system import StructuralSystem
+from verify.errors import InputError
+from verify.linear.mesh import Parts, check_division, divide
 from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
 from verify.problem.beam import Beam
-from verify.problem.supports import HOLDS
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights, joint_weights
-from verify.segments.bodies import Attached
-from verify.segments.chain import (
-    Chain,
-    Motions,
-    at_joints,
-    link_inertia,
-    link_mass,
-    plain_factors,
-    right_of,
-    selection,
-    squares,
-)
+from verify.segments.chain import Chain, link_inertia, right_of
+from verify.segments.dispersion import cut_off2, phase
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
+from verify.segments.structure import ChainStructure
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
 from verify.validation import MOST_PARTS, check_number, check_whole, check_word, plain
 
@@ -62,7 +50,7 @@ _PASSES, _CONVERGED = 60, 1e-13
 
 
 @dataclass(frozen=True)
-class SegmentModel(DiscreteModel):
+class SegmentModel(ChainStructure):
     """A beam as `n_segments` rigid links. Raises InputError for settings that are unknown or contradict each other."""
 
     name: ClassVar[str] = "segment"
@@ -138,7 +126,7 @@ class SegmentModel(DiscreteModel):
         compliances = self._own_compliances.copy()
         compliances[[0, -1]] += self.attached.end_springs
         inertias = link_inertia(masses, lengths)
-        if self.theory != "euler-bernoulli":
+        if self._thick:
             inertias = inertias + self._rotary_inertias
         return Chain(
             supports=self.beam.supports,
@@ -177,169 +165,22 @@ class SegmentModel(DiscreteModel):
 
     @cached_property
     def _own_compliances(self) -> Array:
-        """Compliances with EI - T l^2/12 in tensioned joints, reduced further at a clamped wall (`tension_excess`)."""
+        """Those of tensioned joints: EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
         if self.joints != "tensioned" or not self.beam.tension:
             return self._beam_compliances
-        tension, lengths, factors = self._tension, self.links.lengths, self._wall_factors
-        stiffnesses = self.links.stiffnesses - tension * lengths**2 / 12.0
-        found = self._joint_compliances(stiffnesses)
+        lengths, stiffnesses = self.links.lengths, self.links.stiffnesses - self._tension * self.links.lengths**2 / 12.0
+        compliances = self._joint_compliances(stiffnesses)
         for end, (support, turns) in enumerate(zip(self.beam.supports, self.attached.elastic, strict=True)):
             if support == "clamped" or turns:
-                excess = tension * lengths[-end] * tension_excess(self.wall) / 12.0 / factors[-end] ** 2
-                found[-end] = 1.0 / (1.0 / found[-end] - excess)
-        if stiffnesses.min() <= 0.0 or found.min() <= 0.0:
+                excess = self._tension * lengths[-end] * tension_excess(self.wall) / 12.0
+                compliances[-end] = 1.0 / (1.0 / compliances[-end] - excess / self._wall_factors[-end] ** 2)
+        if stiffnesses.min() <= 0.0 or compliances.min() <= 0.0:
             raise InputError(
                 f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
                 f"{self.n_segments} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of "
                 "it: give more segments or choose joints = 'series'"
             )
-        return found
-
-    @property
-    def _tension(self) -> float:
-        return self.beam.tension * self.unit**2 / self.beam.bending_stiffness
-
-    @property
-    def _foundation(self) -> float:
-        return self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
-
-    def _of_links(self, figure: str) -> Array:
-        """A property of the beam's pieces for every link, (N,), SI."""
-        counts = part_counts([piece.length for piece in self.beam.pieces], self.n_segments)
-        return np.repeat([float(getattr(piece, figure)) for piece in self.beam.pieces], counts)
-
-    @cached_property
-    def _rotary_inertias(self) -> Array:
-        """Rotary inertia rho I l of the links, (N,)."""
-        return self.links.lengths * self._of_links("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
-
-    # --- Attachments ---------------------------------------------------------------------------------------------
-
-    @cached_property
-    def attached(self) -> Attached:
-        """Bodies and springs."""
-        return Attached(self.beam, self.unit, self.attachment)
-
-    @property
-    def n_unknowns(self) -> int:
-        """Free joint positions, rotations beyond elastic ends, slips of joints and of bodies."""
-        held = sum(HOLDS[support].deflection for support in self.beam.supports)
-        found = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self.attached.at_ends)
-        if self.theory == "timoshenko":
-            bodies = int(self.attached.massive.sum()) if self.attachment == "reciprocal" else 0
-            found += self.n_segments - 1 + held + bodies
-        return found
-
-    @cached_property
-    def _weights(self) -> tuple[Any, Any]:
-        return self.attached.weights(self.chain)
-
-    @cached_property
-    def _rotations(self) -> Any:
-        return self.attached.rotations(self._weights[1], self.motions)
-
-    # --- Stiffness and mass --------------------------------------------------------------------------------------
-
-    @cached_property
-    def _shears(self) -> Array:
-        """Kappa G A of the links, (N,)."""
-        return self._of_links("shear_stiffness") * self.unit**2 / self.beam.bending_stiffness
-
-    @cached_property
-    def _shear_compliances(self) -> Array:
-        """Compliances of joints 0..N against slip by Eq. (1), without walls, (N + 1,)."""
-        return at_joints(self.links.lengths / self._shears)
-
-    @cached_property
-    def _slips(self) -> tuple[Array, Array]:
-        """Compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without."""
-        if self.theory != "timoshenko":
-            return np.zeros(0), np.zeros(len(self.attached.bodies))
-        bodies = self.attached.bodies if self.attachment == "reciprocal" else ()
-        return shear.slip_compliances(
-            self.chain, self._shear_compliances, bodies, self._weights[0].toarray(), self.wall
-        )
-
-    @cached_property
-    def motions(self) -> Motions:
-        """Positions, rotations and slips as linear maps of the unknowns."""
-        slips, gives = self._slips
-        rotating = [end for end, body in enumerate(self.attached.at_ends) if body.rotary_inertia]
-        return Motions(self.chain, rotating, slips, gives[(gives > 0.0) & self.attached.massive])
-
-    @cached_property
-    def system(self) -> StructuralSystem:
-        """Stiffness and mass of links, joints and what is attached."""
-        from scipy.sparse import csc_array, vstack
-
-        beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
-        if not (motions.n_slips or beam.foundation or beam.tension or self.attached.bodies) and self.joints == "series":
-            stiffness = 1.0 / chain.compliances[self._springs]
-            return StructuralSystem(plain_factors(chain), stiffness, link_mass(motions), self._rigid(None))
-        # strains over (rotations of the links, unknowns v), and what resists them
-        links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
-        own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
-        strains = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
-        strains.append((own[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
-        bound = 0.0
-        if beam.foundation:
-            ground = self._foundation * lengths
-            strains += [(motions.middles @ own, ground), (links, ground * lengths**2 / 12.0)]
-            if beam.tension >= 0.0:
-                bound = np.minimum(ground / chain.masses, ground * lengths**2 / (12.0 * chain.inertias)).min()
-        if beam.tension:
-            strains.append((links, self._tension * lengths))
-        mass, across, bodies = link_mass(motions), None, None
-        if self.joints == "tensioned" and self.theory != "euler-bernoulli":
-            inertias = shear.joint_inertias(self._rotary_inertias, self._wall_factors, self._own_share, self.wall)
-            mass = mass - squares(motions.angles_of @ motions.both, inertias)
-            if motions.n_slips:
-                mass = mass - squares(motions.joint_slips, shear.slip_masses(chain, motions.slips))
-        if self.attached.bodies:
-            gives = self._slips[1]
-            across = self.attached.deflections(self._weights[0], motions, gives)
-            attached, bodies = self.attached.energies(across, self._rotations, motions, gives)
-            strains, mass = strains + attached, mass + bodies.T @ bodies
-        rows, stiffnesses = zip(*strains, strict=True)
-        factors = [*motions.factors, vstack(rows, format="csr")]
-        stiffness, rigid = np.concatenate(stiffnesses), self._rigid(across)
-        return StructuralSystem(factors, stiffness, csc_array(mass), rigid, bound, bodies)
-
-    @cached_property
-    def _springs(self) -> Any:
-        """Joints that have a spring."""
-        return np.flatnonzero(np.isfinite(self.chain.compliances))
-
-    @cached_property
-    def _own_share(self) -> Array:
-        """Part of each joint's angle that is the beam's and not a spring's beyond its end, (N + 1,)."""
-        own, whole = self._own_compliances, self.chain.compliances
-        return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
-
-    def _rigid(self, across: Any) -> Array:
-        """Rigid-body modes, (n, 0 to 2)."""
-        x, motions = self.chain.nodes / self.unit, self.motions
-        found = np.zeros((motions.n, self.beam.rigid_motions))
-        for column, (start, tilt) in enumerate(self.beam.rigid_lines):
-            found[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
-        springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
-        if (
-            springs and found.size
-        ):  # without strain of a single spring, whose interpolated position errs on unequal links
-            found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
-        return found
-
-    def lossy_stiffness(self, omega: float) -> Any:
-        """D with the beam's loss factor and the dashpots of joints; springs, ground and tension have no loss."""
-        d, dashpots = self.system.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
-        if not (self.beam.loss_factor or dashpots):
-            return d
-        there, series, found = self._springs, np.zeros(self.n_segments + 1), d.astype(complex)
-        series[[0, -1]] = self.attached.end_springs
-        loss = self.beam.loss_factor / self._beam_compliances[there] + dashpots
-        found[: len(there)] = 1.0 / (1.0 / (1.0 / self._own_compliances[there] + 1j * loss) + series[there])
-        found[len(there) : len(there) + self.motions.n_slips] *= 1.0 + 1j * self.beam.loss_factor
-        return found
+        return compliances
 
     # --- Loads and readings --------------------------------------------------------------------------------------
 
@@ -438,16 +279,14 @@ class SegmentModel(DiscreteModel):
             rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
             return np.asarray((rows @ self.motions.both @ vectors).T / self.unit)
 
+        raw = line == "raw"
+        shapes = (
+            self._links(vectors, both_sides=False)
+            if raw
+            else line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
+        )
         turns = rotations if self.beam.mass else None
-        if line == "raw":
-            return {
-                "shapes": self._links(vectors, both_sides=False),
-                "edges": self.chain.nodes,
-                "degree": 1,
-                "turns": turns,
-            }
-        shapes = line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
-        return {"shapes": shapes, "edges": self.chain.nodes, "degree": 3, "turns": turns}
+        return {"shapes": shapes, "edges": self.chain.nodes, "degree": 1 if raw else 3, "turns": turns}
 
     # --- Buckling, order, waves ----------------------------------------------------------------------------------
 
@@ -470,24 +309,28 @@ class SegmentModel(DiscreteModel):
         return order_of(self.beam, **{name: getattr(self, name) for name in self.modal_settings})
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of waves along equal links of the beam's own section, 1/m.
+        """Wavenumber of waves along equal links of the beam's own section, 1/m, with the losses of the joints."""
+        omega, own, loss = 2.0 * pi * frequency_hz, self.beam.own, 1.0 + 1j * self.beam.loss_factor
+        rigidity, inertia = own.shear_stiffness or 0.0, own.rotary_inertia or 0.0
+        k = phase(
+            (omega / self._omega_unit) ** 2,
+            loss + 1j * self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness,
+            self.beam.bending_stiffness / (rigidity * self.unit**2 * loss) if self.theory == "timoshenko" else 0.0,
+            spin=self._thick * inertia / (self.beam.mass_per_length * self.unit**2),
+            tension=self._tension,
+            foundation=self._foundation,
+            tensioned=self.joints == "tensioned",
+        )
+        return (k if k.imag <= 0.0 else k.conjugate()) / self.unit
 
-        With s = sin(k l/2): 16 s^4 EI/l^4 + 4 s^2 T/l^2 = (rho A omega^2 - k_f) (1 - 2 s^2/3). Thick beams: the exact.
-        """
-        if self.theory != "euler-bernoulli":
-            return super().wavenumber(frequency_hz)
-        load = (2.0 * pi * frequency_hz / self._omega_unit) ** 2 - self._foundation
-        a, b = 16.0 * (1.0 + 1j * self.beam.loss_factor), 4.0 * self._tension + 2.0 * load / 3.0
-        if self.joints == "tensioned":
-            a -= 4.0 * self._tension / 3.0
-        k = complex(2.0 * np.arcsin(np.sqrt(2.0 * load / (b + np.sqrt(b * b + 4.0 * a * load + 0j)))) / self.unit)
-        return k if k.imag <= 0.0 else k.conjugate()
-
-    def check_propagates(self, frequency_hz: float) -> None:
-        """Raise NoFigureError at and beyond omega^2 = 48 EI/(rho A l^4), a half wave on each link."""
-        n, of_one = self.n_segments, sqrt(48.0) * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
-        if frequency_hz >= of_one * n**2:
-            raise NoFigureError(
-                f"count = {n}: {n} segments carry waves up to {of_one * n**2:.6g} Hz and frequency_hz = "
-                f"{frequency_hz!r} lies beyond, give count = {int(sqrt(frequency_hz / of_one)) + 1} or more"
-            )
+    @property
+    def cut_off_hz(self) -> float:
+        """Frequency of a half wave on the worst link, Hz."""
+        share = 2.0 / 3.0 if self.joints == "tensioned" else 1.0  # 1 - 4/12: a joint bends twice the link's rotation
+        lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
+        inertias = link_inertia(masses, lengths) + (share * self._rotary_inertias if self._thick else 0.0)
+        slips, masses = (self._shears, share * masses) if self.theory == "timoshenko" else (np.inf, masses)
+        square = cut_off2(
+            lengths, self.links.stiffnesses, masses, inertias, slips, share * self._tension, self._foundation
+        )
+        return float(np.sqrt(square)) * self._omega_unit / (2.0 * pi)

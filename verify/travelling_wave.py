@@ -1,14 +1,19 @@
-"""The travelling wave that a driven beam carries, and what drives or absorbs it.
+"""The travelling wave on a driven beam, the principle of the motor (Section I of the paper), and its measures.
 
-A point of the beam's line moves by Re(w(x) e^{i omega t}). Between the forces, away from near fields,
-w = A+ e^{-ik(x - m)} + A- e^{+ik(x - m)} about the middle m of a window: a wave towards +x and one towards -x.
-`measure` fits both. With the reflection Gamma = |weaker| / |stronger| the standing-wave ratio is (1 + Gamma) /
-(1 - Gamma): 1 for a travelling wave, infinite for a standing one.
+Two actuators a quarter period apart (Section III: 4276 Hz, d = 11.6 mm from both ends) drive the beam's line,
+Re(w(x) e^{i omega t}). Between them, away from near fields,
 
-A point of the surface moves by u_x = -(h/2) psi, u_y = w, with the rotation psi of its section (w' without shear). Its
-path is an ellipse with the signed area S3 = 2 Im(conj(u_x) u_y) (times pi/2) and the axis ratio tan chi, sin 2 chi =
-S3 / (|u_x|^2 + |u_y|^2); both are negative for a wave towards +x, whose surface points turn counter-clockwise and move
-backwards at the crests, where a slider touches them.
+    w = A+ e^{-ik(x - m)} + A- e^{+ik(x - m)}
+
+about the middle m of a window: a wave towards +x and a wave towards -x, which `measure` fits. With the reflection
+Gamma = |weaker| / |stronger| the standing-wave ratio is (1 + Gamma) / (1 - Gamma): 1 for a travelling wave, infinite
+for a standing wave.
+
+A point of the surface, h/2 above the line, moves by u_x = -(h/2) psi and u_y = w, where psi is the rotation of its
+section (w' without shear), on the elliptic path of the paper's introduction. Its Stokes parameters are
+S0 = |u_x|^2 + |u_y|^2 and S3 = 2 Im(conj(u_x) u_y), the area of the ellipse being pi/2 |S3|; the axis ratio is tan chi
+with sin 2 chi = S3 / S0. A wave towards +x has S3 < 0: its points turn counter-clockwise and move backwards at the
+crests, where they touch a slider, which therefore runs against the wave.
 
     field = ExactModel(beam).harmonic(forces, 4276.0)
     measure(field, middle_half(beam)).standing_wave_ratio
@@ -24,34 +29,31 @@ from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, wavenumber
 from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
-from verify.linear.positions import Numbers, positions_on
+from verify.linear.positions import Numbers, positions_on, real_array
 from verify.linear.surface import surface_distance_at
 from verify.problem.beam import Beam
 from verify.validation import check_number
 from verify.waves.best_drive import BestDrive, best_drive
-from verify.waves.best_frequency import best_frequency
 from verify.waves.driven_case import DrivenCase
-from verify.waves.from_time_series import phasors
 from verify.waves.impedance_matching import matched_device
-from verify.waves.operating_point import OperatingMap, OperatingPoint, maximum_crest_speed
-from verify.waves.two_waves import ROUNDING, TwoWaves, fit_waves, fitted_wavenumber, two_waves
-from verify.waves.waveguide import Waveguide
-from verify.waves.window import Window, check_clear, middle_half
+from verify.waves.operating_point import OperatingPoint, best_frequency, maximum_crest_speed
+from verify.waves.two_waves import ROUNDING, TwoWaves, Waveguide, fit_waves, fitted_wavenumber, two_waves
+from verify.waves.window import Window, check_clear, check_wavenumber, middle_half
 
 __all__ = [
-    "BestDrive", "DrivenCase", "OperatingMap", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
+    "BestDrive", "DrivenCase", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
     "best_frequency", "ellipse", "fit_waves", "matched_device", "maximum_crest_speed", "measure", "measure_series",
     "middle_half", "phasors", "power_imbalance", "surface_motion", "two_waves",
 ]  # fmt: skip
-SHARPNESS = 24
-"""Points for each half wavelength of the window, for charts and to start the search for extremes from."""
-POINTS_OF_A_PART = 8
-"""The same for each segment or element: a discrete field ripples at their length."""
+POINTS_PER_HALF_WAVE = 24
+"""Points in half a wavelength at which surface quantities are tabulated and the search for extremes starts."""
+POINTS_PER_PART = 8
+"""Points in a segment or element in that search: the field of a discrete model ripples at their length."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class WaveMeasures:
-    """The wave that a field carries in a window, and the motion of the surface there; each figure on first use."""
+    """The wave in a window of a field and the motion of the surface; figures are computed on first use."""
 
     guide: Waveguide
     omega: float
@@ -62,9 +64,9 @@ class WaveMeasures:
     deflection: Callable[[Array], ComplexArray]
     """w at any x of the window, m."""
     section_rotation: Callable[[Array], ComplexArray]
-    """psi there, rad."""
+    """psi at any x of the window, rad."""
     x: Array
-    """(n,), m: where surface quantities are listed, 24 points for each half wavelength of the exact beam."""
+    """(n,), m: 24 points in each half wavelength of the exact beam; those of a time series."""
     fine: Array
     """(m,), m: fine enough to separate the extremes of the field."""
 
@@ -80,15 +82,15 @@ class WaveMeasures:
 
     @cached_property
     def envelope(self) -> float:
-        """(max - min) / (max + min) of |w| over the window: Gamma for two waves."""
+        """(max - min) / (max + min) of |w| over the window; equals Gamma for two waves without near fields."""
         least, largest = extremes(lambda x: np.abs(self.deflection(x)), self.fine)
         return (largest - least) / (largest + least)
 
     @cached_property
     def travelling_index(self) -> float:
-        """1 / cond of [Re w, Im w] in the mean square (Feeny's complex orthogonal decomposition), 0 to 1.
+        """1 / cond of [Re w, Im w] in the mean square, 0 to 1 (Feeny, J. Sound Vib. 310 (2008) 77).
 
-        Over whole half wavelengths, the most that fit in the middle of the window: there, and only there, it equals
+        The interval is the largest whole number of half wavelengths in the middle of the window, over which it equals
         (1 - Gamma) / (1 + Gamma) for two waves.
         """
         whole, halves = whole_halves(self.window, self.waves.wavenumber.real)
@@ -99,7 +101,7 @@ class WaveMeasures:
 
     @cached_property
     def ellipses(self) -> tuple[Array, Array, Array]:
-        """(signed axis ratio, tilt in degrees, signed area S3 in m^2) of the surface ellipses at `x`, (n,) each."""
+        """(signed axis ratio, tilt in degrees, Stokes parameter S3 in m^2) of the surface paths at `x`, (n,) arrays."""
         return self._ellipse(self.x)
 
     def _ellipse(self, x: Array) -> tuple[Array, Array, Array]:
@@ -107,59 +109,59 @@ class WaveMeasures:
 
     @cached_property
     def mean_axis_ratio(self) -> float:
-        """Of the signed axis ratio over the same whole half wavelengths: -+ `ideal_axis_ratio` as kh goes to 0."""
+        """Mean signed axis ratio over whole half wavelengths; -+ `ideal_axis_ratio` for thin beams, kh -> 0.
+
+        1/|w|^2 has the mean 1/||A+|^2 - |A-|^2| over half a wavelength, and S3 is constant.
+        """
         whole, halves = whole_halves(self.window, self.waves.wavenumber.real)
         return mean_over(lambda x: self._ellipse(x)[0], whole, 2 * halves)
 
     @cached_property
     def ideal_axis_ratio(self) -> float:
-        """Of a pure wave, unsigned: k h/2, by Timoshenko's theory times psi/w' of a running wave."""
+        """Axis ratio of a pure wave, unsigned: k h/2, times psi/w' of a travelling wave by Timoshenko's theory."""
         return float(self.guide.axis_ratio(self.omega, self.waves.wavenumber))
 
     @cached_property
-    def signed_area_range(self) -> tuple[float, float, float]:
-        """Least, mean and largest signed area over the window, m^2."""
+    def s3_range(self) -> tuple[float, float, float]:
+        """Least, mean and largest Stokes parameter S3 over the window, m^2."""
         halves = whole_halves(self.window, self.waves.wavenumber.real)[1]
         low, high = extremes(lambda x: self._ellipse(x)[2], self.fine)
         return low, mean_over(lambda x: self._ellipse(x)[2], self.window, 2 * halves), high
 
     @property
     def signed_area_spread(self) -> float:
-        """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends.
+        """(max - min) / |mean| of S3, or of the signed area of the ellipses; 0 for undamped waves without near fields.
 
-        Raises NoFigureError where the wave stands.
+        There S3 is proportional to the energy flux, which is constant. Raises NoFigureError for a standing wave.
         """
         self.waves.check_travelling()
-        least, mean, largest = self.signed_area_range
+        least, mean, largest = self.s3_range
         return (largest - least) / abs(mean)
 
     @cached_property
     def crest_speed(self) -> float:
-        """Of the surface at the crests, m/s along +x: -omega r (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2).
-
-        r is the `ideal_axis_ratio`.
-        """
-        one = self.waves
-        return float(self.guide.crest_speed(self.omega, one.wavenumber, one.forward, one.backward))
+        """Velocity of the surface along +x at the crests, m/s: `Waveguide.crest_speed`; negative towards +x."""
+        waves = self.waves
+        return float(self.guide.crest_speed(self.omega, waves.wavenumber, waves.forward, waves.backward))
 
     @cached_property
     def energy_flux(self) -> float:
-        """Power that both waves carry towards +x through the middle of the window, W."""
-        one = self.waves
-        return float(self.guide.energy_flux(self.omega, one.wavenumber, one.forward, one.backward))
+        """Power transmitted towards +x through the middle of the window, W: `Waveguide.energy_flux`."""
+        waves = self.waves
+        return float(self.guide.energy_flux(self.omega, waves.wavenumber, waves.forward, waves.backward))
 
 
 def measure(field: HarmonicField, window: Window, wave_number: complex | None = None) -> WaveMeasures:
-    """Measure the wave that a field carries in a window (a, b) between the forces, m.
+    """The wave of a field in a window (a, b) between the forces, m.
 
-    The wavenumber is fitted unless stated (complex for a damped wave), 1/m. Raises InputError for a window that is not
-    between two neighbouring forces, holds a device or an attachment or less than half a wavelength, for a field that is
-    zero there and for a fit that ends at its edge.
+    The wavenumber (1/m, complex for a damped wave) is fitted by default. Raises InputError for a window that is not
+    between two neighbouring forces, contains a device or an attachment, or is shorter than half a wavelength, for a
+    field that is zero in it, and for a fit that ends at the edge of its search.
     """
     waves = two_waves(field, window, wave_number)
     start, end = map(float, window)
-    n = int(np.ceil(SHARPNESS * (end - start) * field.wavenumber.real / np.pi)) + 1
-    n_fine = int(POINTS_OF_A_PART * (field.count or 0) * (end - start) / field.beam.length) + 1
+    n = int(np.ceil(POINTS_PER_HALF_WAVE * (end - start) * field.wavenumber.real / np.pi)) + 1
+    n_fine = int(POINTS_PER_PART * (field.count or 0) * (end - start) / field.beam.length) + 1
     return WaveMeasures(
         guide=Waveguide(field.beam, field.theory),
         omega=field.omega,
@@ -172,14 +174,46 @@ def measure(field: HarmonicField, window: Window, wave_number: complex | None = 
     )
 
 
+def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
+    """Complex amplitudes (n_points,) of series at one frequency over the last whole number of periods.
+
+    times (n_times,) ascending, s; values (n_times, n_points). A constant and a linear trend are fitted as well. Raises
+    InputError for less than one period, fewer than eight samples, two samples or fewer in a period (Nyquist), and for
+    arrays that are empty, not finite or not ascending.
+    """
+    check_number("frequency_hz", frequency_hz, "hertz", above=0)
+    t, values = real_array("times", times, "seconds"), real_array("values", values, "metres")
+    if t.ndim != 1 or values.ndim != 2 or len(values) != len(t) or not values.size:
+        raise InputError(f"times, {t.shape}, and values, {values.shape}: give (n_times,) and (n_times, n_points)")
+    if not (np.isfinite(t).all() and np.isfinite(values).all() and (np.diff(t) > 0).all()):
+        raise InputError("times and values have to be finite and times ascending: leave out what is not")
+    step = float(t[-1] - t[0]) / max(len(t) - 1, 1)
+    if step * frequency_hz > 0.5 * (1.0 - 1e-9):
+        raise InputError(f"times have {1.0 / (step * frequency_hz):.4g} samples in each period: give more than two")
+    # the last sample stands for a step of its own, so that n samples of a period cover it
+    periods = int(np.floor((t[-1] - t[0] + step) * frequency_hz * (1.0 + 1e-9)))
+    used = t > t[-1] - periods / frequency_hz + 0.5 * step * (1.0 - 1e-6)
+    if periods < 1 or used.sum() < 8:
+        raise InputError(
+            f"times cover {(t[-1] - t[0]) * frequency_hz:.2f} periods in {len(t)} samples: give at least one whole "
+            "period and eight samples"
+        )
+    angle, trend = 2.0 * np.pi * frequency_hz * t[used], (t[used] - t[used].mean()) * frequency_hz
+    basis = np.column_stack([np.ones_like(trend), trend, np.cos(angle), -np.sin(angle)])
+    fitted = np.linalg.lstsq(basis, values[used], rcond=None)[0]
+    return np.asarray(fitted[2] + 1j * fitted[3])
+
+
 def measure_series(
     beam: Beam, x: Array, times: Array, values: Array, frequency_hz: float, k: complex | None = None
 ) -> WaveMeasures:
-    """The same measures from time series at positions x (m, ascending), values (n_times, n_positions), m.
+    """The wave in time series at positions x (m, ascending), values (n_times, n_positions), m; by Euler-Bernoulli.
 
-    Between the positions the field is a cubic spline through their phasors, and its slope that of the two fitted waves.
-    Forces and devices between them are not known here: a large `waves.residual` indicates them. Raises InputError for
-    series or spans that are too short and positions off the beam, WindowError for an attachment between them.
+    Between the positions the field is a cubic spline through their phasors; its slope is that of the two fitted waves.
+    Forces and devices between the positions are unknown to it: a large `waves.residual` indicates them. Raises
+    InputError for a sampling in time or space with two points or fewer in a period or wavelength (Nyquist), for
+    shorter series than one period and half a wavelength, and for positions off the beam; WindowError for an attachment
+    between them.
     """
     from scipy.interpolate import CubicSpline
 
@@ -190,12 +224,15 @@ def measure_series(
     own = wavenumber(beam, frequency_hz)
     if len(at) < 4 or (at[-1] - at[0]) * own.real < np.pi:
         raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
+    stated = None if k is None else check_wavenumber("k", k, (float(at[0]), float(at[-1])))
+    if (gap := float(np.diff(at).max())) >= (half := float(np.pi / (stated or own).real)):
+        raise InputError(f"x has a gap of {gap:.4g} m, half a wavelength ({half:.4g} m) or more: give points within it")
     start, end = float(at[0]), float(at[-1])
     check_clear(beam, (start, end), f"x from {start:.6g} to {end:.6g} m")
     measured = phasors(times, values, frequency_hz)
     if not abs(measured).max() > ROUNDING * abs(np.asarray(values)).max():
         raise NoFigureError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
-    waves = fit_waves(at, measured, fitted_wavenumber(at, measured, own) if k is None else k)
+    waves = fit_waves(at, measured, stated or fitted_wavenumber(at, measured, own))
 
     def slope(x: Array) -> ComplexArray:
         phase = np.exp(1j * waves.wavenumber * (x - 0.5 * (start + end)))
@@ -214,18 +251,18 @@ def measure_series(
 
 
 def surface_motion(beam: Beam, rotation: ComplexArray, x: Numbers) -> ComplexArray:
-    """u_x of the upper surface at x (m): -(h/2) times the rotation of the section there (rad), of one shape.
+    """u_x of the upper surface at x, m: -(h/2) times the rotation of the section (rad, of the shape of x).
 
-    Where two sections meet, h is that of the right one. Raises InputError off the beam.
+    Where two sections meet, h is that of the right section. Raises InputError off the beam.
     """
     return np.asarray(-surface_distance_at(beam, x) * np.asarray(rotation, dtype=complex))
 
 
 def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
-    """(signed axis ratio tan chi, tilt in degrees, signed area S3) of the paths of surface points, of their shape each.
+    """(signed axis ratio tan chi, tilt in degrees, S3) of the paths u_x = `across`, u_y = `up` of any one shape, m.
 
-    Stokes parameters of u_x = `across` and u_y = `up`: S0, S1 = |u_x|^2 +- |u_y|^2, S2 + i S3 = 2 conj(u_x) u_y,
-    sin 2 chi = S3/S0.
+    Stokes parameters (Born and Wolf, Principles of Optics, section 1.4): S0, S1 = |u_x|^2 +- |u_y|^2,
+    S2 + i S3 = 2 conj(u_x) u_y, tan 2 tilt = S2/S1, sin 2 chi = S3/S0. The path encloses -pi/2 S3, counter-clockwise.
     """
     across, up = np.asarray(across, dtype=complex), np.asarray(up, dtype=complex)
     total, difference = abs(across) ** 2 + abs(up) ** 2, abs(across) ** 2 - abs(up) ** 2
@@ -238,8 +275,8 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
 def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     """(power of the forces left of the window - losses up to its middle - flux through it) over that flux.
 
-    The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError where the wave
-    stands, and InputError for a beam with sections and for devices against rotation.
+    The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError for a standing
+    wave, and InputError for a beam with sections and for devices against rotation.
     """
     beam, middle = field.beam, 0.5 * sum(measures.window)
     if field.couples:
@@ -252,7 +289,7 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
     power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
     # the third derivative jumps at a force, the second at a couple: quadrature in between
-    jumps = [f.position for f in field.forces] + [m.position for m in beam.mass] + [s.position for s in beam.spring]
+    jumps = [one.position for one in (*field.forces, *beam.attached)]
     cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
     edges = np.unique([*cells, *(x for x in jumps if x < middle)])
     points, weights = np.polynomial.legendre.leggauss(8)

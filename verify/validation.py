@@ -13,7 +13,7 @@ from verify.convert import RELATIVE, convert, entry_of, sentence
 from verify.errors import InputError, near_name, shown
 
 MOST_PARTS = 10**9
-"""Segments or elements of a model."""
+"""Largest number of segments or elements."""
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
 """A dimensionless number, which a command line accepts in per cent as well: 0.001 or 0.1%."""
 Kind = TypeVar("Kind")
@@ -31,16 +31,16 @@ def validate(value: msgspec.Struct, where: str) -> None:
     `where` is its name in messages. Raises InputError with a sentence for each field that does not fit.
     """
     same, fields = _unchecked(type(value))
-    given = {name: _python(one) for name, one in msgspec.structs.asdict(value).items()}
+    given = {name: _python(field) for name, field in msgspec.structs.asdict(value).items()}
     for name, (kind, _) in fields.items():
         if isinstance(given[name], msgspec.Struct) and entry_of(kind) is not None:
             given[name] = (given[name],)
     fitted = convert(given, same, where)
     for name, (kind, slot) in fields.items():
-        one = getattr(fitted, name)
-        if isinstance(one, float) and not isfinite(one):
-            raise InputError(sentence(f"{where}.{name}", one, kind))
-        slot.__set__(value, one)
+        field = getattr(fitted, name)
+        if isinstance(field, float) and not isfinite(field):
+            raise InputError(sentence(f"{where}.{name}", field, kind))
+        slot.__set__(value, field)
 
 
 @cache
@@ -55,7 +55,7 @@ def _unchecked(kind: type[msgspec.Struct]) -> tuple[type[msgspec.Struct], dict[s
 
 
 def _python(value: Any) -> Any:
-    """Numpy's numbers and arrays as Python's; a masked one is None."""
+    """Numbers and arrays of numpy as those of Python; a masked number is None."""
     if isinstance(value, list | tuple):
         return tuple(map(_python, value))
     return value.tolist() if hasattr(value, "tolist") else value
@@ -67,7 +67,7 @@ def plain(value: Any) -> Any:
 
 
 def check_unmasked(field: str, value: object, unit: str = "") -> None:
-    """Raise InputError for an array with a mask, which `numpy.asarray` would drop."""
+    """Raise InputError for a masked array, whose mask `numpy.asarray` would drop."""
     mask: Any = getattr(value, "mask", None)
     if mask is not None and mask.any():
         raise InputError(f"{field} has numbers under a mask: leave them out or unmask them{unit and f' ({unit})'}")
@@ -83,7 +83,7 @@ def check_number(
     at_least: float | None = None,
     at_most: float | None = None,
 ) -> None:
-    """Raise InputError unless `value` is a finite number (unit `of`) within these limits, `above` and `below` open."""
+    """Raise InputError unless `value` (unit `of`) is finite and within the limits; `above` and `below` are open."""
     kind: Any = Annotated[float, unit(of, gt=above, ge=at_least, lt=below, le=at_most)]
     convert(plain(value), kind, field)
 
@@ -120,10 +120,10 @@ def check_sizes(field: str, sizes: Sequence[float]) -> None:
 
 
 def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
-    """One value of a type, or many, as a tuple. Raises InputError for anything else."""
-    one = isinstance(given, kind) or not hasattr(given, "__iter__") or getattr(given, "shape", None) == ()
-    many = (given,) if one else tuple(given)
-    for each in many:
-        if not isinstance(each, kind):
-            raise InputError(f"{field} has {shown(each)}: give a {kind.__name__}, or a list of them")
-    return many
+    """A value of a type, or several, as a tuple. Raises InputError for anything else."""
+    single = isinstance(given, kind) or not hasattr(given, "__iter__") or getattr(given, "shape", None) == ()
+    values = (given,) if single else tuple(given)
+    for value in values:
+        if not isinstance(value, kind):
+            raise InputError(f"{field} has {shown(value)}: give a {kind.__name__}, or a list of them")
+    return values

@@ -43,13 +43,12 @@ def test_broken_entry_points_are_left_out(models):
         models.named("nea")
 
 
-def test_members_are_registered_for_a_while(models):
+def test_a_registered_member_replaces_the_one_of_its_name(models):
     other = SimpleNamespace(name="near")
-    with models.registered(other, SimpleNamespace(name="third")):
-        assert models["near"] is other
-        assert "third" in models
-    assert models["near"] is NEAR
-    assert "third" not in models
+    assert models.register(other) is other
+    assert models["near"] is other
+    with pytest.raises(InputError, match="has no name"):
+        models.register(SimpleNamespace())
 
 
 def _cube(x):

@@ -155,7 +155,7 @@ def waves_of(beam: Beam, frequency_hz: float) -> Iterator[tuple[str, Any]]:
             ],
         )  # fmt: skip
         yield f"{name}/amplitudes", [found.waves.forward, found.waves.backward]
-        yield f"{name}/area", found.signed_area_range
+        yield f"{name}/area", found.s3_range
 
 
 def buckling_of(beam: Beam) -> Iterator[tuple[str, Any]]:

@@ -1,6 +1,4 @@
-"""Exact beams with attachments, axial force and foundation, and their buckling."""
-
-from itertools import product
+"""Exact frequencies and buckling loads against the closed forms of textbooks and papers."""
 
 import mpmath
 import numpy as np
@@ -8,270 +6,349 @@ import pytest
 from msgspec.structs import replace
 from scipy.optimize import brentq
 
+from tests.beams import BEAMS, PAIRS, mass, spring, supported
+from tests.reference import dense
 from tests.reference.transfer import has_frequency_within
-from verify.analytic_modes import ExactModel
+from verify import Beam, ExactModel, HermiteModel, PointForce, Section, SegmentModel
 from verify.errors import InputError
-from verify.exact import closed_forms
-from verify.exact.characteristic import check_stable
-from verify.options import SUPPORTS
-from verify.problem.beam import Beam, PointForce
-from verify.problem.cross_section import Section
-from verify.problem.point_attachments import PointMass, PointSpring
+from verify.exact.closed_forms import frequency_hz
 
-# --- Textbook beams ---
-
-PAIRS = list(product(SUPPORTS, SUPPORTS))
 BAR = Beam(length=0.61, width=0.023, thickness=0.0047, youngs_modulus=113e9, density=4470.0)
-DIGITS = 1e-13
-"""Relative. Seen: 7e-16 where nothing is ill-conditioned."""
+L, EI = BAR.length, BAR.bending_stiffness
+DIGITS = 1e-13  # relative; 7e-16 where the problem is well conditioned
 
 
-def wavenumber_length(beam, hertz):
-    return float(np.sqrt(2 * np.pi * hertz / beam.wave_constant) * beam.length)
+def on(letters, **changes):
+    return supported(BAR, letters, **changes)
 
 
-def hertz_of(beam, y):
-    return float(y) ** 2 * beam.wave_constant / (2 * np.pi * beam.length**2)
+def frequency(beam, mode, theory="euler-bernoulli"):
+    return ExactModel(beam, theory).frequency_hz(mode)
 
 
-def solves(equation, beam, mode, theory="euler-bernoulli", rel=DIGITS):
-    """The figure of a mode is a root of an equation in beta L, in extended precision."""
-    found = ExactModel(beam, theory).frequency_hz(mode)
-    with mpmath.workdps(60):
-        start = mpmath.mpf(wavenumber_length(beam, found))
-        root = mpmath.findroot(equation, (start * (1 - mpmath.mpf("1e-8")), start), tol=1e-50, verify=False)
-        assert hertz_of(beam, root) == pytest.approx(found, rel=rel)
-    return wavenumber_length(beam, found)
+# --- Frequencies of Euler-Bernoulli beams ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("mode", [1, 2, 3, 7, 19])
-def test_a_cantilever_with_a_tip_mass_that_turns(mode):
-    """1 + c ch + M y (c sh - s ch) - J y^3 (s ch + c sh) + M J y^4 (1 - c ch) = 0 (Laura, J. Sound Vib. 37, 1974)."""
-    m, j = 0.31, 0.0017
-    whole = BAR.mass_per_length * BAR.length
-    tip = PointMass(position=BAR.length, mass=m * whole, rotary_inertia=j * whole * BAR.length**2)
-    beam = replace(BAR, supports=("clamped", "free"), mass=(tip,))
+def tip_body(m, j):
+    """Laura, Pombo and Susemihl, J. Sound Vib. 37, 1974, with rotary inertia."""
 
     def equation(y):
         c, s, ch, sh = mpmath.cos(y), mpmath.sin(y), mpmath.cosh(y), mpmath.sinh(y)
         turning = -j * y**3 * (s * ch + c * sh) + m * j * y**4 * (1 - c * ch)
         return 1 + c * ch + m * y * (c * sh - s * ch) + turning
 
-    solves(equation, beam, mode)
-    assert ExactModel(beam).frequency_hz(mode) < ExactModel(replace(beam, mass=())).frequency_hz(mode)
+    return equation
 
 
-@pytest.mark.parametrize("mode", [1, 2, 3, 6, 14])
-def test_a_pinned_beam_with_a_spring_off_its_middle(mode):
-    """1 + k G(a, a) = 0, Green's function by sines and hyperbolic sines."""
-    part, size = 0.37, 830.0
-    stiffness = size * BAR.bending_stiffness / BAR.length**3
-    beam = replace(BAR, spring=(PointSpring(position=part * BAR.length, stiffness=stiffness),))
-    at, size = (mpmath.mpf(v) for v in (beam.spring[0].position / BAR.length, size))
+def spring_off_the_middle(at, size):
+    """1 + k G(a, a) = 0 with Green's function of the pinned beam."""
 
     def equation(y):
         waves = mpmath.sin(y * at) * mpmath.sin(y * (1 - at)) / mpmath.sin(y)
         decays = mpmath.sinh(y * at) * mpmath.sinh(y * (1 - at)) / mpmath.sinh(y)
         return (1 + size * (waves - decays) / (2 * y**3)) * mpmath.sin(y)
 
-    solves(equation, beam, mode)
+    return equation
 
 
-@pytest.mark.parametrize("mode", [1, 2, 3, 4, 9])
-def test_a_free_beam_on_equal_end_springs(mode):
-    """Tan z + tanh z = 2 k / (EI beta^3) of even modes, coth z - cot z of odd ones, z = beta L / 2; rigid ones count."""
-    size = 3.7
-    spring = [
-        PointSpring(position=at, stiffness=size * BAR.bending_stiffness / BAR.length**3) for at in (0.0, BAR.length)
-    ]
-    beam = replace(BAR, supports=("free", "free"), spring=tuple(spring))
-    assert beam.rigid_motions == 0
+def end_springs(size, odd):
+    """Even modes: tan z + tanh z = 2 k / (EI beta^3), odd ones coth z - cot z, z = beta L / 2."""
+    if odd:
+        return lambda y: mpmath.coth(y / 2) - mpmath.cot(y / 2) - 2 * size / y**3
+    return lambda y: mpmath.tan(y / 2) + mpmath.tanh(y / 2) - 2 * size / y**3
 
-    def even(y):
-        return mpmath.tan(y / 2) + mpmath.tanh(y / 2) - 2 * size / y**3
 
-    def odd(y):
-        return mpmath.coth(y / 2) - mpmath.cot(y / 2) - 2 * size / y**3
+def clamped_in_tension(beam):
+    """Bokaian, J. Sound Vib. 142, 1990: 2 a g (1 - cosh a cos g) + (a^2 - g^2) sinh a sin g = 0."""
 
-    solves(even if mode % 2 else odd, beam, mode)
-    bare = replace(beam, spring=())
-    if mode < 3:
-        rigid = np.sqrt(2 * beam.spring[0].stiffness / (BAR.mass_per_length * BAR.length) * (1, 3)[mode - 1])
-        assert ExactModel(beam).frequency_hz(mode) == pytest.approx(rigid / (2 * np.pi), rel=0.03)
-    else:
-        assert ExactModel(beam).frequency_hz(mode) > ExactModel(bare).frequency_hz(mode - 2)
+    def equation(y):
+        half = mpmath.mpf(beam.tension) * L**2 / EI / 2
+        root = mpmath.sqrt(half**2 + y**4)
+        a, g = mpmath.sqrt(root + half), mpmath.sqrt(root - half)
+        waves = (a**2 - g**2) * mpmath.tanh(a) * mpmath.sin(g)
+        return 2 * a * g * (1 / mpmath.cosh(a) - mpmath.cos(g)) + waves
+
+    return equation
+
+
+TENSIONED = {pull: on("CC", tension=pull * np.pi**2 * EI / L**2) for pull in (-3.9, 5.0, 2e3)}
+OFF_MIDDLE = on("PP", spring=spring(BAR, 0.37, 830.0))
+ON_SPRINGS = on("FF", spring=spring(BAR, 0.0, 3.7) + spring(BAR, 1.0, 3.7))
+EQUATIONS = [
+    *((on("CF", mass=mass(BAR, 1.0, 0.31, 0.0017)), mode, tip_body(0.31, 0.0017)) for mode in (1, 2, 3, 7, 19)),
+    *((OFF_MIDDLE, mode, spring_off_the_middle(OFF_MIDDLE.spring[0].position / L, 830.0)) for mode in (1, 2, 3, 6, 14)),
+    *((ON_SPRINGS, mode, end_springs(3.7, mode % 2 == 0)) for mode in (1, 2, 3, 4, 9)),
+    *((beam, mode, clamped_in_tension(beam)) for beam in TENSIONED.values() for mode in (1, 2, 3, 11)),
+]
+
+
+@pytest.mark.parametrize(("beam", "mode", "equation"), EQUATIONS)
+def test_frequencies_are_roots_of_published_equations_in_beta_l(beam, mode, equation):
+    found = frequency(beam, mode)
+    with mpmath.workdps(60):
+        start = mpmath.mpf(np.sqrt(2 * np.pi * found / BAR.wave_constant) * L)
+        root = mpmath.findroot(equation, (start * (1 - mpmath.mpf("1e-8")), start), tol=1e-50, verify=False)
+    assert float(root) ** 2 * BAR.wave_constant / (2 * np.pi * L**2) == pytest.approx(found, rel=DIGITS)
+
+
+def test_a_bar_on_soft_end_springs_has_two_nearly_rigid_modes_below_its_elastic_ones():
+    """omega^2 = 2 k / m and 6 k / m."""
+    assert ON_SPRINGS.rigid_motions == 0
+    rigid = np.sqrt(2 * ON_SPRINGS.spring[0].stiffness / (BAR.mass_per_length * L) * np.array([1, 3])) / (2 * np.pi)
+    assert [frequency(ON_SPRINGS, mode) for mode in (1, 2)] == pytest.approx(rigid, rel=0.03)
+    for mode in (3, 4, 9):
+        assert frequency(ON_SPRINGS, mode) > frequency(on("FF"), mode - 2)
 
 
 @pytest.mark.parametrize("supports", PAIRS, ids="-".join)
-def test_a_foundation_shifts_every_square_by_its_own(supports):
+def test_a_foundation_adds_its_stiffness_over_the_mass_to_all_squares(supports):
     """omega^2 = omega_0^2 + k_f / (rho A), rigid motions included: the first two of a free beam coincide."""
     bare = replace(BAR, supports=supports)
     beam = replace(bare, foundation=2.3e5)
     own = beam.foundation / beam.mass_per_length / (2 * np.pi) ** 2
     for mode in (1, 2, 3, 8):
         elastic = mode - bare.rigid_motions
-        square = own + (closed_forms.frequency_hz(bare, elastic) ** 2 if elastic > 0 else 0.0)
-        assert ExactModel(beam).frequency_hz(mode) == pytest.approx(np.sqrt(square), rel=DIGITS)
+        square = own + (frequency_hz(bare, elastic) ** 2 if elastic > 0 else 0.0)
+        assert frequency(beam, mode) == pytest.approx(np.sqrt(square), rel=DIGITS)
 
 
 @pytest.mark.parametrize("mode", [1, 2, 5, 21])
 @pytest.mark.parametrize("pull", [-0.999, -0.6, 0.01, 7.0, 1e3, 1e5])
 def test_a_pinned_beam_under_axial_force(pull, mode):
-    """omega^2 = (EI b^4 + T b^2) / rho A. At 0.999 of the buckling load 1000 eps of the force are in mode 1."""
-    force = pull * np.pi**2 * BAR.bending_stiffness / BAR.length**2
-    beam = replace(BAR, tension=force)
-    b2 = (mode * np.pi / BAR.length) ** 2
-    omega = np.sqrt((BAR.bending_stiffness * b2 + force) * b2 / BAR.mass_per_length)
+    """omega^2 = (EI b^4 + T b^2) / rho A. At 0.999 of the buckling load mode 1 loses three digits."""
+    force = pull * np.pi**2 * EI / L**2
+    b2 = (mode * np.pi / L) ** 2
+    omega = np.sqrt((EI * b2 + force) * b2 / BAR.mass_per_length)
     loss = 1e3 if pull == -0.999 and mode == 1 else 1.0
-    assert ExactModel(beam).frequency_hz(mode) == pytest.approx(omega / (2 * np.pi), rel=DIGITS * loss)
+    assert frequency(on("PP", tension=force), mode) == pytest.approx(omega / (2 * np.pi), rel=DIGITS * loss)
 
 
-@pytest.mark.parametrize("mode", [1, 2, 3, 11])
-@pytest.mark.parametrize("pull", [-3.9, 5.0, 2e3])
-def test_a_clamped_beam_under_axial_force(pull, mode):
-    """2 a g (1 - cosh a cos g) + (a^2 - g^2) sinh a sin g = 0, a^2 - g^2 = T L^2 / EI (Bokaian, J. Sound Vib. 142, 1990)."""
-    t = pull * np.pi**2
-    force = t * BAR.bending_stiffness / BAR.length**2
-    beam = replace(BAR, supports=("clamped", "clamped"), tension=force)
-
-    def equation(y):
-        half = mpmath.mpf(beam.tension) * BAR.length**2 / BAR.bending_stiffness / 2
-        root = mpmath.sqrt(half**2 + y**4)
-        a, g = mpmath.sqrt(root + half), mpmath.sqrt(root - half)
-        waves = (a**2 - g**2) * mpmath.tanh(a) * mpmath.sin(g)
-        return 2 * a * g * (1 / mpmath.cosh(a) - mpmath.cos(g)) + waves
-
-    solves(equation, beam, mode)
-
-
-def test_a_beam_pulled_very_hard_is_a_string_with_stiff_ends():
+def test_a_clamped_beam_under_high_tension_is_a_string_with_stiff_ends():
     """omega_n = n pi c / L (1 + 2 e + (4 + n^2 pi^2 / 2) e^2), e^2 = EI / (T L^2) (Morse, Vibration and Sound, 1948)."""
     e = 1e-3
-    force = BAR.bending_stiffness / (e * BAR.length) ** 2
-    beam = replace(BAR, supports=("clamped", "clamped"), tension=force)
+    beam = on("CC", tension=EI / (e * L) ** 2)
     for n in (1, 2, 3):
-        string = n / (2 * BAR.length) * np.sqrt(force / BAR.mass_per_length)
+        string = n / (2 * L) * np.sqrt(beam.tension / BAR.mass_per_length)
         expected = string * (1 + 2 * e + (4 + n**2 * np.pi**2 / 2) * e**2)
-        assert ExactModel(beam).frequency_hz(n) == pytest.approx(expected, rel=3e-7)
+        assert frequency(beam, n) == pytest.approx(expected, rel=3e-7)
 
 
-def test_stiff_springs_at_a_free_end_become_the_support():
-    """As 1 / k, for all ways in which an end can be held."""
-    held = {"pinned": (1.0, 0.0), "clamped": (1.0, 1.0), "guided": (0.0, 1.0)}
-    sizes = BAR.bending_stiffness / BAR.length**3, BAR.bending_stiffness / BAR.length
-    for support, (along, around) in held.items():
-        exact = ExactModel(replace(BAR, supports=(support, "free"))).frequency_hz(3)
-        errors = []
-        for k in (1e6, 1e8):
-            spring = PointSpring(position=0.0, stiffness=k * along * sizes[0], rotational=k * around * sizes[1])
-            beam = replace(BAR, supports=("free", "free"), spring=(spring,))
-            free = beam.rigid_motions - replace(BAR, supports=(support, "free")).rigid_motions
-            errors.append(1 - ExactModel(beam).frequency_hz(3 - free) / exact)
-        assert errors[0] > 0
-        assert errors[0] / errors[1] == pytest.approx(100.0, rel=0.01)
+@pytest.mark.parametrize(("letter", "along", "around"), [("P", 1.0, 0.0), ("C", 1.0, 1.0), ("G", 0.0, 1.0)])
+def test_stiff_springs_at_a_free_end_become_the_support_as_1_over_k(letter, along, around):
+    support = on(letter + "F")
+    errors = []
+    for k in (1e6, 1e8):
+        beam = on("FF", spring=spring(BAR, 0.0, k * along, k * around))
+        errors.append(1 - frequency(beam, 3 - beam.rigid_motions + support.rigid_motions) / frequency(support, 3))
+    assert errors[0] > 0
+    assert errors[0] / errors[1] == pytest.approx(100.0, rel=0.01)
 
 
-def test_the_frequency_of_a_compressed_beam_vanishes_as_it_buckles():
-    """omega^2 goes as 1 - P / P_c: by a mean value, linear to first order in what is left of the load."""
-    beam = replace(BAR, supports=("clamped", "pinned"))
-    load = ExactModel(beam).buckling_load()
-    squares = [ExactModel(replace(beam, tension=-load * (1 - part))).frequency_hz(1) ** 2 for part in (1e-3, 1e-4)]
-    assert squares[0] / squares[1] == pytest.approx(10.0, rel=1e-3)
-    nearly = replace(beam, tension=-0.999 * load)
-    assert has_frequency_within(nearly, "euler-bernoulli", ExactModel(nearly).frequency_hz(1), 2e-13)
+@pytest.mark.parametrize(("model", "size"), [(SegmentModel, 1e16), (HermiteModel, 1e13), (HermiteModel, 1e30)])
+def test_stiff_springs_cost_discrete_models_no_digit(model, size):
+    for count in (20, 400):
+        stiff = model(on("FP", spring=spring(BAR, 0.0, size, size)), count).modes(4).frequencies_hz
+        off = stiff / model(on("CP"), count).modes(4).frequencies_hz - 1
+        assert off == pytest.approx(np.zeros(4), abs=3000 / size + 1e-12)
 
 
-# --- Buckling ---
+# --- Frequencies of Timoshenko beams ---------------------------------------------------------------------------------
 
-STRUT = Beam(length=0.83, width=0.021, thickness=0.0037, youngs_modulus=113e9, density=4470.0)
-EULER = np.pi**2 * STRUT.bending_stiffness / STRUT.length**2
-
-
-def test_eulers_four_columns_and_two_more():
-    """(L / effective length)^2; tan x = x for clamped-pinned."""
-    root = brentq(lambda x: np.sin(x) - x * np.cos(x), 4.0, 4.6, xtol=1e-15)
-    expected = {
-        ("pinned", "pinned"): 1.0,
-        ("clamped", "free"): 0.25,
-        ("clamped", "clamped"): 4.0,
-        ("pinned", "clamped"): (root / np.pi) ** 2,
-        ("clamped", "guided"): 1.0,
-        ("guided", "pinned"): 0.25,
-        ("guided", "guided"): 1.0,
-        ("free", "guided"): 0.25,
-    }
-    for supports, factor in expected.items():
-        for beam in (replace(STRUT, supports=supports), replace(STRUT, supports=supports[::-1])):
-            assert ExactModel(beam).buckling_load() == pytest.approx(factor * EULER, rel=1e-14)
+BLOCK = Beam(length=0.43, width=0.019, thickness=0.061, youngs_modulus=113e9, density=4470.0, poissons_ratio=0.31)
+OWN = BLOCK.own
+CUT_OFF = np.sqrt(OWN.shear_stiffness / OWN.rotary_inertia) / (2 * np.pi)
 
 
-def test_what_can_turn_as_a_whole_carries_no_compression():
-    for supports in (("free", "free"), ("pinned", "free")):
-        assert ExactModel(replace(STRUT, supports=supports)).buckling_load() == 0.0
-        with pytest.raises(InputError, match="buckling load of 0 N"):
-            ExactModel(replace(STRUT, supports=supports, tension=-1e-3)).frequency_hz(1)
+def huang(supports, b):
+    """The equation of a pair of ends, b^2 = rho A L^4 omega^2 / EI (Huang, J. Appl. Mech. 28, 1961, Eqs. 28 to 33)."""
+    length = mpmath.mpf(BLOCK.length)
+    r2 = mpmath.mpf(OWN.rotary_inertia) / OWN.mass_per_length / length**2
+    s2 = mpmath.mpf(OWN.bending_stiffness) / OWN.shear_stiffness / length**2
+    root = mpmath.sqrt((r2 - s2) ** 2 + 4 / b**2)
+    alpha, beta = (mpmath.sqrt((side * (r2 + s2) + root) / 2) for side in (-1, 1))
+    ch, sh = mpmath.cosh(b * alpha), mpmath.sinh(b * alpha)
+    c, s, x = mpmath.cos(b * beta), mpmath.sin(b * beta), mpmath.sqrt(1 - b**2 * r2 * s2)
+    if supports == "CC":
+        return 2 - 2 * ch * c + b / x * (b**2 * s2 * (r2 - s2) ** 2 + 3 * s2 - r2) * sh * s
+    if supports == "FF":
+        return 2 - 2 * ch * c + b / x * (b**2 * r2 * (r2 - s2) ** 2 + 3 * r2 - s2) * sh * s
+    return 2 + (b**2 * (r2 - s2) ** 2 + 2) * ch * c - b * (r2 + s2) / x * sh * s
+
+
+@pytest.mark.parametrize("supports", ["CC", "FF", "CF"])
+@pytest.mark.parametrize("mode", [1, 2, 5, 8, 17, 40])
+def test_timoshenko_frequencies_are_roots_of_huangs_equations(supports, mode):
+    """Modes 17 and 40 lie above the cut-off, where alpha is imaginary."""
+    found = frequency(supported(BLOCK, supports), mode, "timoshenko")
+    assert (found > CUT_OFF) == (mode > 8)
+    with mpmath.workdps(40):
+        unit = mpmath.sqrt(mpmath.mpf(OWN.mass_per_length) / OWN.bending_stiffness) * mpmath.mpf(BLOCK.length) ** 2
+        b = 2 * mpmath.pi * found * unit
+        sides = [mpmath.re(huang(supports, b * (1 + side * mpmath.mpf("1e-13")))) for side in (-1, 1)]
+    assert sides[0] * sides[1] < 0
+
+
+@pytest.mark.parametrize("supports", ["CP", "FF", "GC"])
+def test_no_mode_is_missed_across_the_cut_off(supports):
+    beam = supported(BLOCK, supports)
+    others = dense.TimoshenkoElements(beam, np.linspace(0.0, beam.length, 41)).frequencies_hz(22)
+    found = ExactModel(beam, "timoshenko").modes(22).frequencies_hz
+    assert found[-1] > 1.5 * CUT_OFF
+    assert others == pytest.approx(found, rel=2e-3)
+
+
+def test_a_pinned_timoshenko_beam_has_two_families_and_a_mode_of_pure_rotation():
+    """b^2 = (n pi / L)^2: both roots of g r^2 x^2 - (1 + b^2 (g + r^2)) x + b^4, and the cut-off."""
+    g, r2 = OWN.bending_stiffness / OWN.shear_stiffness, OWN.rotary_inertia / OWN.mass_per_length
+    b2 = (np.arange(1, 40) * np.pi / BLOCK.length) ** 2
+    half = 1 + b2 * (g + r2)
+    high = (half + np.sqrt(half**2 - 4 * b2**2 * g * r2)) / (2 * g * r2)
+    squares = np.concatenate([high, b2**2 / (g * r2) / high]) * OWN.bending_stiffness / OWN.mass_per_length
+    families = np.sort([CUT_OFF, *np.sqrt(squares) / (2 * np.pi)])[:30]
+    assert ExactModel(BLOCK, "timoshenko").modes(30).frequencies_hz == pytest.approx(families, rel=1e-13)
+    cut = replace(BLOCK, section=(Section(length=0.1), Section(length=0.33)), foundation=1e-9)
+    rayleigh = np.sqrt(OWN.bending_stiffness / OWN.mass_per_length * b2**2 / (1 + r2 * b2)) / (2 * np.pi)
+    for mode in (1, 4, 8):  # by the general equation of several sections
+        assert frequency(cut, mode, "timoshenko") == pytest.approx(families[mode - 1], rel=1e-13)
+        assert frequency(cut, mode, "rayleigh") == pytest.approx(rayleigh[mode - 1], rel=1e-13)
+
+
+def test_mode_22_of_the_beam_of_the_paper_by_three_theories(paper_beam):
+    by_hand = (22 * np.pi) ** 2 / (2 * np.pi * 0.25) * np.sqrt(70e9 / 2700 / 12) * 1e-3
+    b2 = (22 * np.pi * 0.001 / 0.5) ** 2 / 12
+    for hertz in (frequency, frequency_hz):
+        assert hertz(paper_beam, 22) == pytest.approx(by_hand, rel=1e-14)
+        assert hertz(paper_beam, 22, "rayleigh") == pytest.approx(by_hand / np.sqrt(1 + b2), rel=1e-14)
+        assert hertz(paper_beam, 22, "timoshenko") == pytest.approx(4455.11, abs=0.005)
+
+
+MODELS = {
+    "exact": lambda beam, count, theory: ExactModel(beam, theory),
+    "segment": lambda beam, count, theory: SegmentModel(beam, count, theory=theory),
+    "fem": lambda beam, count, theory: HermiteModel(beam, count, theory=theory),
+}
+
+
+@pytest.mark.parametrize("count", [7, 49, 300])
+@pytest.mark.parametrize("letters", ["PP", "CF", "FF", "CC", "GC"])
+@pytest.mark.parametrize("model", MODELS)
+def test_theories_agree_in_their_limits(model, letters, count):
+    """Timoshenko approaches Rayleigh as 1 / (kappa G A), Rayleigh approaches Euler-Bernoulli as rho I."""
+    body = {"mass": mass(BLOCK, 0.37, 0.2, 0.003)}
+    plain = Beam(length=0.43, bending_stiffness=4100.0, mass_per_length=3.3, rotary_inertia=1e-3, shear_stiffness=1e15)
+    beam = supported(plain, letters, **body)
+
+    def hertz(theory, **changes):
+        return MODELS[model](replace(beam, **changes), count, theory).modes(4).frequencies_hz
+
+    rayleigh, euler = hertz("rayleigh"), hertz("euler-bernoulli")
+    sheared = [1 - hertz("timoshenko", shear_stiffness=k) / rayleigh for k in (1e10, 1e12)]
+    assert sheared[0] / sheared[1] == pytest.approx(100.0, rel=1e-3)
+    rotary = [1 - hertz("rayleigh", rotary_inertia=j) / euler for j in (1e-5, 1e-7)]
+    assert rotary[0] / rotary[1] == pytest.approx(100.0, rel=0.01)
+    assert hertz("timoshenko", shear_stiffness=1e19) == pytest.approx(rayleigh, rel=1e-12)
+    assert hertz("rayleigh", rotary_inertia=1e-25) == pytest.approx(euler, rel=1e-13)
+
+
+@pytest.mark.parametrize("letters", ["CF", "FP", "CG"])
+def test_rotary_inertia_and_shear_lower_all_frequencies(letters):
+    for mode in (1, 3, 6):
+        found = [frequency(supported(BLOCK, letters), mode, theory) for theory in ("timoshenko", "rayleigh")]
+        euler = frequency(supported(BLOCK, letters), mode)
+        assert found[0] < found[1] < euler
+        assert found[0] < 0.999 * euler
+
+
+# --- Buckling --------------------------------------------------------------------------------------------------------
+
+EULER = np.pi**2 * EI / L**2
+
+
+def load(beam):
+    return ExactModel(beam).buckling_load() / EULER
+
+
+@pytest.mark.parametrize(
+    ("letters", "factor"),
+    [
+        ("PP", 1.0),
+        ("CF", 0.25),
+        ("CC", 4.0),
+        ("PC", (4.493409457909064 / np.pi) ** 2),  # tan x = x
+        ("CG", 1.0),
+        ("GP", 0.25),
+        ("GG", 1.0),
+        ("FG", 0.25),
+    ],
+)
+def test_eulers_columns_buckle_at_their_effective_length(letters, factor):
+    assert [load(on(pair)) for pair in (letters, letters[::-1])] == pytest.approx([factor, factor], rel=1e-14)
 
 
 @pytest.mark.parametrize("size", [0.03, 2.7, 410.0])
-def test_an_elastic_clamp_at_a_pinned_end(size):
-    """Tan x = x / (1 + x^2 / k), k = k_r L / EI: from pinned-pinned to clamped-pinned (Timoshenko and Gere, 2.3)."""
-    spring = PointSpring(position=STRUT.length, rotational=size * STRUT.bending_stiffness / STRUT.length)
+def test_a_column_with_an_elastic_clamp(size):
+    """Tan x = x / (1 + x^2 / k), k = k_r L / EI (Timoshenko and Gere, 2.3)."""
     root = brentq(lambda x: np.sin(x) * (1 + x**2 / size) - x * np.cos(x), 3.1, 4.6, xtol=1e-15)
-    assert ExactModel(replace(STRUT, spring=(spring,))).buckling_load() == pytest.approx(
-        (root / np.pi) ** 2 * EULER, rel=1e-13
-    )
+    assert load(on("PP", spring=spring(BAR, 1.0, rotational=size))) == pytest.approx((root / np.pi) ** 2, rel=1e-13)
 
 
-def test_a_strut_on_a_foundation_buckles_into_the_waves_that_cost_least():
-    """Min over n of n^2 + k / (n^2 pi^4), k = k_f L^4 / EI."""
-    for k in (30.0, 4e3, 7e5):
-        beam = replace(STRUT, foundation=k * STRUT.bending_stiffness / STRUT.length**4)
-        expected = min(n**2 + k / (np.pi**4 * n**2) for n in range(1, 30))
-        assert ExactModel(beam).buckling_load() == pytest.approx(expected * EULER, rel=1e-13)
+@pytest.mark.parametrize("k", [30.0, 1900.0, 7e5])
+def test_a_column_on_a_foundation_buckles_in_the_waves_of_least_load(k):
+    """Min over n of n^2 + k / (n^2 pi^4), k = k_f L^4 / EI; elements above it by order four."""
+    beam = on("PP", foundation=k * EI / L**4)
+    expected = min(n**2 + k / (np.pi**4 * n**2) for n in range(1, 30))
+    assert load(beam) == pytest.approx(expected, rel=1e-13)
+    if k < 2e3:
+        assert HermiteModel(beam, 40).buckling_load() / EULER == pytest.approx(expected, rel=2e-6)
 
 
-def test_a_soft_spring_in_the_middle_and_a_stiff_one():
-    """From 16 pi^2 EI / L^3 on the strut buckles in two halves, at 4 times Euler's load; before, by its middle too.
+def test_a_column_with_a_spring_at_mid_span():
+    """From 16 pi^2 EI / L^3 on two half waves, 4 times Euler's load; below tan(x / 2) / (x / 2) = 1 - 4 x^2 EI / (k L^3).
 
-    Then tan(x / 2) / (x / 2) = 1 - 4 x^2 EI / (k L^3) with x^2 = P L^2 / EI (Timoshenko and Gere, 2.5).
+    x^2 = P L^2 / EI (Timoshenko and Gere, 2.5).
     """
-    middle, unit = STRUT.length / 2, STRUT.bending_stiffness / STRUT.length**3
-    stiff = replace(STRUT, spring=(PointSpring(position=middle, stiffness=16.1 * np.pi**2 * unit),))
-    assert ExactModel(stiff).buckling_load() == pytest.approx(4 * EULER, rel=1e-13)
-    soft = replace(STRUT, spring=(PointSpring(position=middle, stiffness=90.0 * unit),))
+    assert load(on("PP", spring=spring(BAR, 0.5, 16.1 * np.pi**2))) == pytest.approx(4, rel=1e-13)
     root = brentq(lambda x: np.tan(x / 2) / (x / 2) - 1 + 4 * x**2 / 90.0, 3.3, 6.2, xtol=1e-15)
-    assert ExactModel(soft).buckling_load() == pytest.approx((root / np.pi) ** 2 * EULER, rel=1e-12)
+    assert load(on("PP", spring=spring(BAR, 0.5, 90.0))) == pytest.approx((root / np.pi) ** 2, rel=1e-12)
 
 
 def test_a_stepped_column():
-    """tan(x a) tan(y b) = y / x, x^2 = P / EI_1, y^2 = P / EI_2, clamped below, free above (Timoshenko and Gere, 2.14).
-
-    A moment that goes on over the step, EI_1 x^2 = EI_2 y^2, is all that couples them.
-    """
-    column = replace(
-        STRUT, supports=("clamped", "free"), section=(Section(length=0.31), Section(length=0.52, thickness=0.0029))
-    )
+    """tan(x a) tan(y b) = y / x, x^2 = P / EI_1, y^2 = P / EI_2 (Timoshenko and Gere, 2.14)."""
+    column = on("CF", section=(Section(length=0.23), Section(length=0.38, thickness=0.0037)))
     lower, upper = (piece.bending_stiffness for piece in column.pieces)
 
     def equation(force):
-        x, y = np.sqrt(force / lower), np.sqrt(force / upper)
-        return np.tan(x * 0.31) * np.tan(y * 0.52) - y / x
+        x, y = np.sqrt(force * EULER / lower), np.sqrt(force * EULER / upper)
+        return np.tan(x * 0.23) * np.tan(y * 0.38) - y / x
 
-    expected = brentq(equation, 0.1 * EULER, 0.25 * EULER, xtol=1e-14)
-    assert ExactModel(column).buckling_load() == pytest.approx(expected, rel=1e-13)
+    assert load(column) == pytest.approx(brentq(equation, 0.1, 0.25, xtol=1e-14), rel=1e-13)
 
 
-def test_compression_at_and_beyond_buckling_is_refused_everywhere():
-    load = ExactModel(STRUT).buckling_load()
-    check_stable(replace(STRUT, tension=-load * (1 - 1e-12)))
-    for force in (-load, -3 * load):
-        beam = replace(STRUT, tension=force)
-        for ask in (
-            lambda beam=beam: check_stable(beam),
-            lambda beam=beam: ExactModel(beam).frequency_hz(1),
-            lambda beam=beam: ExactModel(beam).modes(3),
-            lambda beam=beam: ExactModel(beam).mode_shape(1, np.zeros(1)),
-            lambda beam=beam: ExactModel(beam).harmonic([PointForce(position=0.1)], 50.0),
-        ):
-            with pytest.raises(InputError, match=rf"beam\.tension = {force!r} N compresses the beam beyond"):
-                ask()
+def test_the_frequency_of_a_compressed_beam_vanishes_at_buckling():
+    """omega^2 goes as 1 - P / P_c to first order."""
+    critical = load(on("CP")) * EULER
+    squares = [frequency(on("CP", tension=-critical * (1 - part)), 1) ** 2 for part in (1e-3, 1e-4)]
+    assert squares[0] / squares[1] == pytest.approx(10.0, rel=1e-3)
+    nearly = on("CP", tension=-0.999 * critical)
+    assert has_frequency_within(nearly, "euler-bernoulli", frequency(nearly, 1), 2e-13)
+
+
+@pytest.mark.parametrize("part", [1.0, 3.0])
+def test_compression_at_and_beyond_buckling_is_an_input_error(part):
+    beam = on("PP", tension=-part * ExactModel(on("PP")).buckling_load())
+    for work in (
+        lambda: frequency(beam, 1),
+        lambda: ExactModel(beam).modes(3),
+        lambda: ExactModel(beam).mode_shape(1, np.zeros(1)),
+        lambda: ExactModel(beam).harmonic([PointForce(position=0.1)], 50.0),
+    ):
+        with pytest.raises(InputError, match=rf"beam\.tension = {beam.tension!r} N compresses the beam beyond"):
+            work()
+
+
+@pytest.mark.parametrize("mode", [0, -3, 2.5, "2", None, 10**31, 10**400])
+@pytest.mark.parametrize("beam", [on("CF"), BEAMS["stepped"]])
+def test_a_mode_that_does_not_exist_is_an_input_error(beam, mode):
+    for verb in (ExactModel(beam).frequency_hz, lambda mode: ExactModel(beam).mode_shape(mode, 0.1)):
+        with pytest.raises(InputError, match="mode = "):
+            verb(mode)

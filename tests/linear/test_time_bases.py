@@ -1,4 +1,4 @@
-"""The free modes that models bring to time, against each model's modes and harmonic field."""
+"""Modes of models for motion in time against their harmonic fields."""
 
 import numpy as np
 import pytest
@@ -11,8 +11,7 @@ from verify.fem_beam import HermiteModel
 from verify.linear.field import phasor
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
-from verify.problem.cross_section import Section
-from verify.problem.point_attachments import PointMass, PointSpring
+from verify.problem.point_attachments import PointMass
 from verify.segment_model import SegmentModel
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
@@ -22,14 +21,7 @@ FORCES = (
     PointForce(position=0.402, amplitude=0.8, phase_deg=101.0),
 )
 BODY = PointMass(position=0.11, mass=0.03, rotary_inertia=4e-6)
-LOADED = [
-    {},
-    {"supports": ("guided", "clamped")},
-    {"supports": ("pinned", "clamped"), "tension": 20.0},
-    {"supports": ("clamped", "free"), "spring": (PointSpring(position=0.3, stiffness=300.0, rotational=2.0),)},
-    {"foundation": 700.0, "mass": (BODY,)},
-    {"supports": ("clamped", "free"), "section": (Section(length=0.13, thickness=0.002), Section(length=0.3))},
-]
+LOADED = ("pinned-pinned", "guided-clamped", "stepped", "masses-springs-steps", "tension-masses", "foundation")
 
 
 def steady(basis, frequency=FREQUENCY):
@@ -38,13 +30,13 @@ def steady(basis, frequency=FREQUENCY):
     return loads / (basis.omegas**2 - (2 * np.pi * frequency) ** 2)
 
 
-@pytest.mark.parametrize("change", LOADED)
+@pytest.mark.parametrize("name", LOADED)
 @pytest.mark.parametrize(("model", "count"), [(SegmentModel, 33), (HermiteModel, 21)])
-def test_the_sum_over_all_modes_is_the_harmonic_field(model, count, change):
+def test_the_sum_over_all_modes_is_the_harmonic_field(model, count, name):
     """Undamped: modes, their loads and their reading along the beam together."""
-    model = model(replace(STRIP, **change), count)
+    model = model(BEAMS[name], count)
     basis, field = model.time_basis(), model.harmonic(FORCES, FREQUENCY)
-    x, every = np.array([0.013, 0.1417, 0.25, 0.3999]), np.linspace(0, STRIP.length, 99)
+    x, every = np.array([0.013, 0.1417, 0.25, 0.3999]), np.linspace(0, model.beam.length, 99)
     for derivative in (0, 1, 2):
         bound = 1e-9 * abs(field.shapes(every, derivative)).max()
         assert steady(basis) @ basis.shapes(x, derivative) == pytest.approx(field.shapes(x, derivative), abs=bound)
@@ -60,6 +52,22 @@ def test_exact_modes_with_their_tail_are_the_exact_field():
         modal = steady(basis) @ basis.shapes(x, derivative)
         assert modal + rest(x, derivative) == pytest.approx(exact.shapes(x, derivative), rel=1e-9)
         assert abs(rest(x, derivative)).max() < 1e-2 * abs(modal).max()
+
+
+@pytest.mark.parametrize(("kept", "driven"), [(25, 3), (25, 25), (3, 3)])
+@pytest.mark.parametrize("off", [0.0, 3e-11, 7e-5])
+def test_the_tail_of_the_exact_modes_exists_at_an_undamped_resonance_of_one_of_them(kept, driven, off):
+    """Between pinned ends: the sum of sine modes from the first that is left out on."""
+    model = ExactModel(STRIP)
+    frequency = (1.0 + off) * model.frequency_hz(driven)
+    basis, x = model.time_basis(modes=kept), np.array([0.0163, 0.0371, 0.211, 0.4])
+    k = np.arange(kept + 1, 100_000) * np.pi / STRIP.length
+    receptances = 2.0 / STRIP.mass_per_length / STRIP.length
+    receptances = receptances / ((k**2 * STRIP.wave_constant) ** 2 - (2.0 * np.pi * frequency) ** 2)
+    for derivative, shapes in ((0, np.sin(np.outer(x, k))), (1, k * np.cos(np.outer(x, k)))):
+        expected = sum(phasor(one) * (shapes @ (receptances * np.sin(k * one.position))) for one in FORCES)
+        found = basis.tail(FORCES, frequency, 0.0)(x, derivative)
+        assert found == pytest.approx(expected, abs=2e-7 * abs(expected).max())
 
 
 def test_models_of_a_stepped_beam_agree():
@@ -81,7 +89,7 @@ def test_a_body_rotates_as_the_beam_does(position):
 
 
 @pytest.mark.parametrize(("model", "order"), [(SegmentModel, 3), (HermiteModel, 2)])
-def test_the_contact_line_is_smooth_up_to_one_derivative(model, order):
+def test_the_contact_line_of_links_is_of_class_c2_and_of_elements_c1(model, order):
     """C2 spline through the joints (Section II.B); C1 Hermite elements; the next derivative jumps."""
     basis = model(STRIP, 12).time_basis()
     nodes, tiny = basis.edges[1:-1], 1e-9

@@ -24,10 +24,10 @@ def phasor(force: PointForce) -> complex:
 
 
 HELD = {"pinned": (0,), "clamped": (0, 1), "guided": (1,), "free": ()}
-"""Which of deflection and slope an end holds."""
+"""Deflection 0 and slope 1 that an end prescribes."""
 WALLS, MIRRORS = ("clamped", "guided"), ("pinned", "guided")
 GREGORY = np.array([3.0 / 8.0, 7.0 / 6.0, 23.0 / 24.0])
-"""How soft joints are from a clamp on, over those of links alike inside."""
+"""Compliance of the joints next to a clamp over that of inner joints."""
 CUBICS = np.array([[1.0, 0.0, -3.0, 2.0], [0.0, 1.0, -2.0, 1.0], [0.0, 0.0, 3.0, -2.0], [0.0, 0.0, -1.0, 1.0]])
 """Hermite's, of deflection and slope at both ends, over the length."""
 
@@ -113,7 +113,7 @@ class Elements(DenseModel):
             matrix += value * np.outer(row, row)
 
     def row(self, x: float, derivative: int) -> Array:
-        """What reads a derivative at x off the nodal values."""
+        """Row of a derivative at x over the nodal values."""
         i = int(np.clip(np.searchsorted(self.nodes, x + 1e-12, side="right") - 1, 0, len(self.lengths) - 1))
         n, z = float(self.lengths[i]), (x - float(self.nodes[i])) / float(self.lengths[i])
         powers = ((1.0, z, z**2, z**3), (0.0, 1.0, 2.0 * z, 3.0 * z**2), (0.0, 0.0, 2.0, 6.0 * z))[derivative]
@@ -141,7 +141,7 @@ def _hermite(n: float) -> tuple[Array, Array, Array]:
 
 
 class Links(DenseModel):
-    """Rigid links, half of each one's give in the joint at either end; what stands on one moves as it does there."""
+    """Rigid links with half their compliance in the joint at either end; attachments move with their link."""
 
     def __init__(self, beam: Beam, nodes: Array, wall: Array = GREGORY) -> None:
         super().__init__(beam, nodes)
@@ -154,10 +154,14 @@ class Links(DenseModel):
         half = np.array([0.5 * a / piece.bending_stiffness for piece, a in zip(self.pieces, self.lengths, strict=True)])
         compliance = half[1:] + half[:-1]
         self.compliance = np.concatenate([2.0 * half[: left in WALLS], compliance, 2.0 * half[n - (right in WALLS) :]])
+        factors = np.ones(len(self.compliance))
         for side, support in ((1, left), (-1, right)):
-            along = self.compliance[::side]
-            along[: len(wall) if support == "clamped" else 0] *= wall[: len(wall) if support == "clamped" else 0]
-            along[: int(support == "guided")] *= 0.5
+            along = factors[::side]
+            if support == "clamped":
+                along[: len(wall)] += wall[: len(along)] - 1.0
+            elif support == "guided":
+                along[0] *= 0.5
+        self.compliance *= factors
         self.bending = (self.bend.T / self.compliance) @ self.bend
         line = np.array([piece.mass_per_length for piece in self.pieces]) * self.lengths
         bed = beam.foundation * self.lengths
@@ -201,7 +205,7 @@ class Links(DenseModel):
 
 
 class ReciprocalLinks(Links):
-    """Equal links alone: loads on four joints, and a line through what these joints stand for, mirrored at ends."""
+    """Equal links: loads on four joints, and a line through corrected joints, mirrored at ends."""
 
     def row(self, x: float) -> Array:
         """Cubic Lagrange shares of the four joints around a place and a twelfth of their second derivative."""
@@ -219,7 +223,7 @@ class ReciprocalLinks(Links):
         return row
 
     def values_at(self, solution: Any, x: Array, derivative: int) -> Any:
-        """At places of the same spline through y + delta^2 y / 12, a guided end's joint beside its image."""
+        """At places of the same spline through y + delta^2 y / 12, the joint of a guided end next to its image."""
         bends = np.zeros(solution.shape, dtype=solution.dtype)
         bends[1:-1] = np.diff(solution, 2, axis=0)
         for end, inner, support in ((0, 1, self.beam.supports[0]), (-1, -2, self.beam.supports[1])):
@@ -228,7 +232,7 @@ class ReciprocalLinks(Links):
 
 
 class TimoshenkoElements(DenseModel):
-    """Elements of a cubic line and a linear shear strain each, tied at their ends: over what the ties leave free."""
+    """Elements of cubic deflection and linear shear strain without attachments, tied at their ends."""
 
     def __init__(self, beam: Beam, nodes: Array) -> None:
         super().__init__(beam, nodes)
@@ -248,14 +252,8 @@ class TimoshenkoElements(DenseModel):
             )
         for end, z, support in ((0, 0.0, beam.supports[0]), (count - 1, 1.0, beam.supports[1])):
             ties += [self._rows(end, z)[k] for k in HELD[support]]
-        for body in beam.mass:
-            w, turn = self._at(body.position)
-            mass += body.mass * np.outer(w, w) + body.rotary_inertia * np.outer(turn, turn)
-        for spring in beam.spring:
-            w, turn = self._at(spring.position)
-            rest += spring.stiffness * np.outer(w, w) + spring.rotational * np.outer(turn, turn)
-        self.basis = null_space(np.array(ties))
-        self.bending, self.rest, self.mass = (self.basis.T @ one @ self.basis for one in (bent, rest, mass))
+        basis = null_space(np.array(ties))
+        self.bending, self.rest, self.mass = (basis.T @ one @ basis for one in (bent, rest, mass))
         self.free = list(range(len(self.mass)))
 
     def _rows(self, i: int, z: float) -> tuple[Array, Array, Array, Array]:
@@ -268,15 +266,3 @@ class TimoshenkoElements(DenseModel):
         strain[6 * i + 4 : 6 * i + 6] = 1.0, z
         bend[6 * i + 5] -= 1.0 / length
         return w, slope - strain, bend, strain
-
-    def _at(self, x: float) -> tuple[Array, Array]:
-        i = int(np.clip(np.searchsorted(self.nodes, x + 1e-12, side="right") - 1, 0, len(self.lengths) - 1))
-        return self._rows(i, (x - float(self.nodes[i])) / float(self.lengths[i]))[:2]
-
-    def load(self, forces: Sequence[PointForce]) -> Array:
-        """Of point forces."""
-        return np.asarray(self.basis.T @ sum(phasor(one) * self._at(one.position)[0] for one in forces), dtype=complex)
-
-    def values_at(self, solution: Any, x: Array) -> Any:
-        """Deflections at places."""
-        return np.array([self._at(float(at))[0] for at in x]) @ self.basis @ solution

@@ -36,7 +36,7 @@ def next_landing(ratio, theta, speed, after=1e-7, looks=400):
 
 
 class Landed(NamedTuple):
-    """One landing."""
+    """A landing."""
 
     phase: float
     closing: float
@@ -87,7 +87,7 @@ class Waves(NamedTuple):
 
 
 def waves_of(shapes, k, omega, near, half_length=0.02):
-    """The Waves that a complex field is between two places beside `near`, x measured as the field does."""
+    """Waves fitted to a complex field around `near`, x of the field."""
     x = np.linspace(near - half_length, near + half_length, 41)
     rows = np.stack([np.exp(-1j * k * x), np.exp(1j * k * x)], axis=1)
     found, *_ = np.linalg.lstsq(rows, shapes(x), rcond=None)
@@ -102,11 +102,11 @@ def felt(at, x, t, half):
     return w, rise + slope * half * turn, slope * (1.0 + half * bend), along
 
 
-# --- a point on a spring and a dashpot, on a surface or on a beam that feels it
+# --- a point on a spring and a dashpot, on a surface or on a two-way coupled beam
 
 
 class Point(NamedTuple):
-    """A body that touches at one point."""
+    """A body with a single point of contact."""
 
     mass: float
     across: float
@@ -117,23 +117,23 @@ class Point(NamedTuple):
     damping: float = 0.0
     mu: float = 0.2
     slope: float | None = None
-    """Of tanh friction, s/m; Coulomb's unless given."""
+    """Of tanh friction, s/m; Coulomb's without."""
     give: float | None = None
     """Stiffness along the surface, N/m."""
     pull: float = 0.0
     held: float | None = None
-    """Speed at which it is kept."""
+    """Prescribed speed."""
     half: float = 0.0
     load_stiffness: float = 0.0
 
 
-X, V, Z, ZD, Y, PRESSED, DRAGGED, TOUCHED, STUCK, RUBBED, DASHED, ACROSS, ALONG = range(13)
-"""Of a state, counted from its body's first entry: motion, stretch along, impulses, times, works."""
-BODY = 13
+X, V, Z, ZD, Y, PRESSED, DRAGGED, TOUCHED, STUCK = range(9)
+"""Entries of the state of a body: motion, stretch along, impulses, times."""
+BODY = 9
 
 
 class OneWay:
-    """A surface that does not feel the body."""
+    """A surface without reaction to the body."""
 
     beam = 0
 
@@ -150,10 +150,7 @@ class OneWay:
 
 
 class Modes:
-    """A beam of a few modes that feels the body: mass 1 in each, forces F cos(omega t + phase) at places.
-
-    `shape` gives all modes at a place, or a derivative of them.
-    """
+    """A two-way coupled beam of a few modes of unit mass, `shape`(place, derivative), forces F cos(omega t + phase)."""
 
     def __init__(self, own, shape, damping, forces, omega, half, grow=0.0):
         self.own, self.shape, self.damping, self.omega = np.asarray(own), shape, damping, omega
@@ -162,11 +159,11 @@ class Modes:
         self.beam = 2 * len(own)
 
     def height(self, q, x):
-        """Of what the body at x stands on: w(X), X = x + (h/2) w'(x)."""
+        """Of the surface below the body at x: w(X), X = x + (h/2) w'(x)."""
         return q @ self.shape(x + self.half * (q @ self.shape(x, 1)), 0)
 
     def lifted(self, q, x):
-        """How that changes with every mode: what a force across does of work, all that its contact's depth reads."""
+        """Derivatives of the height by the modes, which are the modal forces of a unit force across."""
         here = x + self.half * (q @ self.shape(x, 1))
         return self.shape(here, 0) + (q @ self.shape(here, 1)) * self.half * self.shape(x, 1)
 
@@ -205,14 +202,14 @@ class Modes:
 
 
 class Ridden(NamedTuple):
-    """A run: states (rows) at the asked times, and (time, mode) of each change."""
+    """States (rows) at the requested times, and (time, mode) of all changes."""
 
     states: np.ndarray
     events: list
 
 
 class Rider:
-    """A Point on a surface as an ODE in pieces: free or pressed; and stuck, or slipping one way or the other."""
+    """A Point on a surface as an ODE in pieces: free or pressed, stuck or slipping with either sign."""
 
     def __init__(self, point, surface):
         self.p, self.on, self.tick = point, surface, 0.0
@@ -232,7 +229,7 @@ class Rider:
         return self.on.seen(t, s)[3] - s[self.on.beam + V]
 
     def rates(self, t, s, mode):
-        """Of the state in this mode; where it sticks by the friction that keeps it there."""
+        """Of the state in this mode; while it sticks, with the friction that constrains it."""
         normal = self.force(t, s) if mode[0] == "pressed" else 0.0
         return self.with_friction(t, s, mode, normal, self.friction(t, s, mode, normal))
 
@@ -261,7 +258,7 @@ class Rider:
         return mode[1] * self.p.mu * self.force_rate(t, s) / self.p.give
 
     def force_rate(self, t, s):
-        """Of k pen + c pen' along the motion; friction as it is does not depend on what is asked."""
+        """Rate of k pen + c pen' along the motion under the present friction."""
         way = self.tick * self.with_friction(
             t, s, ("pressed", "stuck"), self.force(t, s), self.p.give * s[self.on.beam + Y]
         )
@@ -270,7 +267,6 @@ class Rider:
     def with_friction(self, t, s, mode, normal, friction):
         """Rates under known forces."""
         p, b = self.p, s[self.on.beam :]
-        _, rise, tilt, u = self.on.seen(t, s)
         out = np.zeros(BODY)
         out[X], out[Z] = b[V], b[ZD]
         out[V] = 0.0 if p.held is not None else (friction + p.pull) / p.mass
@@ -278,10 +274,6 @@ class Rider:
         touches = mode[0] == "pressed"
         out[PRESSED], out[DRAGGED], out[TOUCHED] = normal, friction, float(touches)
         out[STUCK] = float(touches and mode[1] == "stuck")
-        closing = rise + tilt * b[V] - b[ZD]
-        out[DASHED] = p.damping * closing**2 * touches
-        out[ACROSS], out[ALONG] = normal * (rise + tilt * b[V]), friction * u
-        out[RUBBED] = friction * (u - b[V])
         return np.concatenate([self.on.pushed(t, s, normal, friction), out])
 
     def whole(self, t, s, mode):
@@ -321,7 +313,7 @@ class Rider:
         return "stuck" if abs(needed) <= self.p.mu * normal else (1 if needed > 0.0 else -1)
 
     def over(self, t, s, way):
-        """What the stretch pulls one way beyond what friction holds."""
+        """Force of the stretch beyond the friction limit with a sign."""
         return way * self.p.give * s[self.on.beam + Y] - self.p.mu * self.force(t, s)
 
     def ends(self, mode):
@@ -345,7 +337,7 @@ class Rider:
             return [*found, (spare, 1)]
         return [*found, (lambda t, s: mode[1] * self.slip(t, s), -1)]
 
-    def run(self, start, duration, at, period, max_step=0.02, rtol=1e-10, atol=None):
+    def run(self, start, duration, at, period, max_step=0.02, rtol=1e-10):
         """States at the times `at`, from 0 to `duration`."""
         self.tick = 1e-5 * period
         self.speed = max(abs(self.on.seen(t, start)[3]) for t in np.linspace(0.0, period, 17))
@@ -359,7 +351,7 @@ class Rider:
                 s,
                 method="DOP853",
                 rtol=rtol,
-                atol=1e-15 if atol is None else atol,
+                atol=1e-15,
                 max_step=max_step * period,
                 events=ends,
                 dense_output=True,
@@ -428,7 +420,7 @@ def body(x=0.0, v=0.0, z=0.0, zd=0.0, beam=0):
 
 
 class Foot(NamedTuple):
-    """Points on springs below a rigid foot at a held speed along; what moves across and turns."""
+    """Points on springs below a rigid foot at a prescribed speed, which moves across and rotates."""
 
     mass: float
     inertia: float
@@ -449,18 +441,15 @@ def cells(length, n):
     return length * ((np.arange(n) + 0.5) / n - 0.5)
 
 
-def foot_ridden(foot, waves, x, start, times, rtol=1e-9, max_step=np.inf, moving=True):
-    """Rows z, z_t, theta, theta_t, impulses of N and of Coulomb's friction, points' time in contact over their number.
-
-    `moving` False: the place along is held though the speed is that given, so that the motion is periodic.
-    """
+def foot_ridden(foot, waves, x, start, times, rtol=1e-9, max_step=np.inf):
+    """Rows z, z_t, theta, theta_t, impulses of N and of Coulomb's friction, points' time in contact over their number."""
     n, s = len(foot.places), foot.places
 
     def rates(t, y):
-        at = x + moving * foot.speed * t + s
+        at = x + foot.speed * t + s
         w, rise, tilt, u = felt(waves.at, at, t, foot.half)
         pen = w - y[0] - y[2] * s
-        closing = rise + moving * tilt * foot.speed - y[1] - y[3] * s
+        closing = rise + tilt * foot.speed - y[1] - y[3] * s
         push = (foot.stiffness * pen + foot.damping * closing) / n
         push = np.where(pen > 0.0, np.maximum(push, 0.0), 0.0)
         drag = foot.mu * push * np.sign(u - foot.speed)
@@ -473,17 +462,16 @@ def foot_ridden(foot, waves, x, start, times, rtol=1e-9, max_step=np.inf, moving
             push.sum(),
             drag.sum(),
             np.mean(push > 0.0),
-            drag @ u,
         ]
 
-    y0 = np.concatenate([start, np.zeros(4)])
+    y0 = np.concatenate([start, np.zeros(3)])
     found = solve_ivp(
         rates, (0.0, times[-1]), y0, method="DOP853", rtol=rtol, atol=1e-16, t_eval=times, max_step=max_step
     )
     return found.y.T
 
 
-# --- springs in a row under a slider that is held at a speed, on crests cos s
+# --- springs in a row under a slider at a prescribed speed, on crests cos s
 
 
 def lain_on(depths, load):
@@ -494,23 +482,17 @@ def lain_on(depths, load):
     return heights[np.argmax(heights >= below)]
 
 
-def row_of_springs(n, r, epsilon, steps, height=None, load=None, span=2.0 * pi):
-    """Mean F/(mu N) over a period of n springs over `span` radians of the wave at r times the crest speed.
+def row_of_springs(n, r, epsilon, steps, height):
+    """Mean F/(mu N) over a period of n springs on a wavelength at r times the crest speed, `height` over A.
 
-    Heights over A: held, or such that the springs carry `load` (over kappa A times the length) at every instant.
-    Stretch by return mapping in `steps` of a period, over V/omega; epsilon = 0 is Coulomb's. Each spring sees cos(s -
-    tau) as the wave runs below it.
+    Stretch by return mapping in `steps` of a period, over V/omega; epsilon = 0 is Coulomb's. The wave moves each spring
+    by cos(s - tau).
     """
-    place, step = (np.arange(n) + 0.5) * span / n, 2.0 * pi / steps
-    stretch, dragged, pressed = np.zeros(n), 0.0, 0.0
-
-    def depths(i):
+    place, step = (np.arange(n) + 0.5) * 2.0 * pi / n, 2.0 * pi / steps
+    stretch, dragged, pressed, before = np.zeros(n), 0.0, 0.0, np.cos(place) - height
+    for i in range(1, 2 * steps + 1):  # the first period damps the start
         top = np.cos(place - step * i)
-        return top, top - (height if load is None else lain_on(top, load))
-
-    before = depths(0)[1]
-    for i in range(1, 2 * steps + 1):  # the first period forgets the start
-        top, deep = depths(i)
+        deep = top - height
         pen = np.maximum(deep, 0.0)
         if epsilon:
             passed = np.sin(place - step * (i - 1)) - np.sin(place - step * i) - r * step

@@ -20,7 +20,7 @@ def hub(system, t):
 
 
 def reach_of(system, link, at):
-    """How far a point lies from each joint before it, along the links: its y is reach @ sin(theta)."""
+    """Distances of a point from the joints before it along the links: its y is reach @ sin(theta)."""
     reach = np.zeros(system.n_links)
     reach[: link - 1] = system.lengths[: link - 1]
     reach[link - 1] = at
@@ -166,7 +166,7 @@ def stretching_motion(system, axial, duration):
 
 
 def ridden(system, seen, slider, half, duration, max_step=1e-6):
-    """(way, speed, friction's work at the slider) of a tanh slider on equal links between hinges, by DOP853.
+    """(displacement, speed, work of friction at the slider) of a tanh slider on equal links between hinges, by DOP853.
 
     The surface is a natural cubic spline through y + delta^2 y / 12; the material under x stands at x + h/2 w'(x), and
     goes along with the link's own point there.

@@ -1,6 +1,6 @@
 """A slider on a vibrating beam as one system of equations, by scipy's DOP853.
 
-Hermite elements written out, friction by Eq. (3), the normal reaction of a held slider from the acceleration of the
+Hermite elements, friction by Eq. (3), the normal reaction of a bilateral slider from the acceleration of the
 surface along its path, powers integrated with the motion. Of verify value types alone.
 """
 
@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.linalg import eigh
+
+from tests.reference.dense import CUBICS, Elements
 
 LINES = ("work_in", "damped", "contact_on_beam", "normal_on_beam", "rubbed", "turned")
 """Of the energy balance, integrated with the motion."""
@@ -22,35 +23,19 @@ class Modes(NamedTuple):
 
 
 def hermite_modes(beam, parts):
-    """Modes of equal Hermite elements of a uniform beam, pinned or clamped at its left end, free or pinned right."""
-    length, line = beam.length / parts, beam.density * beam.width * beam.thickness
-    bending = beam.youngs_modulus * beam.width * beam.thickness**3 / 12
-    cubics = [[1, 0, -3, 2], [0, length, -2 * length, length], [0, 0, 3, -2], [0, 0, -length, length]]
-    table, powers = np.zeros((4, 4, 4)), np.arange(4)  # (derivative, cubic, power of the share of its length)
-    for derivative in range(4):
-        for one, coefficients in enumerate(cubics):
-            found = np.polynomial.polynomial.polyder(coefficients, derivative) / length**derivative
-            table[derivative, one, : len(found)] = found
-    points, weights = np.polynomial.legendre.leggauss(4)
-    size = 2 * parts + 2
-    mass, stiff = np.zeros((2, size, size))
+    """Modes of equal Hermite elements."""
+    elements, length = Elements(beam, np.linspace(0.0, beam.length, parts + 1)), beam.length / parts
+    values, vectors = elements.modes
+    powers = np.arange(4)
+    pieces = []  # (part, derivative): values of all modes by power of the share of the part
     for e in range(parts):
-        for point, weight in zip((points + 1) / 2, weights / 2, strict=True):
-            here = slice(2 * e, 2 * e + 4)
-            for matrix, factor, derivative in ((mass, line, 0), (stiff, bending, 2)):
-                row = table[derivative] @ point**powers
-                matrix[here, here] += weight * length * factor * np.outer(row, row)
-    fixed = {"pinned": [0], "clamped": [0, 1], "free": []}
-    fixed = fixed[beam.supports[0]] + [size - 2 + i for i in fixed[beam.supports[1]]]
-    free = np.setdiff1d(np.arange(size), fixed)
-    values, vectors = eigh(stiff[np.ix_(free, free)], mass[np.ix_(free, free)])
-    whole = np.zeros((size, len(free)))
-    whole[free] = vectors
-    pieces = [[whole[2 * e : 2 * e + 4].T @ table[d] for d in range(4)] for e in range(parts)]
+        cubics = (CUBICS.T * (1.0, length, 1.0, length)) @ vectors[2 * e : 2 * e + 4]
+        derivatives = [np.polynomial.polynomial.polyder(cubics, d, scl=1 / length) for d in range(4)]
+        pieces.append([np.vstack([one, np.zeros((4 - len(one), len(values)))]) for one in derivatives])
 
     def shape(x, derivative):
         e = min(max(int(x / length), 0), parts - 1)
-        return pieces[e][derivative] @ (x / length - e) ** powers
+        return (x / length - e) ** powers @ pieces[e][derivative]
 
     return Modes(np.sqrt(np.maximum(values, 0.0)), shape)
 
@@ -92,13 +77,13 @@ class Ridden(NamedTuple):
     ledger: dict
 
 
-def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.0, two_way=True, at_rest=True):
+def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.0, two_way=True):
     """A tanh slider on the beam; `half` is half the thickness, `soft` the periods over which the forces grow.
 
-    One-way, or coupled two-way, held on the surface or massless, tangential or following. The material under it stands
-    at X = x + (h/2) w'(x); a held slider's reaction is square to the surface, so that it works on every mode by as much
-    as that mode moves w(X). Its acceleration across is a central difference of its speed across, linear in the reaction.
-    Friction is limited by mu times a held slider's reaction where that presses, else by mu (m g + preload).
+    One-way or two-way coupled, bilateral or massless, tangential or following. The material under it is at
+    X = x + (h/2) w'(x); the reaction of a bilateral slider is normal to the surface, its modal forces are the
+    derivatives of w(X). Its acceleration across is a central difference of its speed, linear in the reaction.
+    Friction is limited by mu times the reaction of a bilateral slider where that presses, else by mu (m g + preload).
     """
     own, shape = modes
     n, omega, start = len(own), 2 * np.pi * hertz, slider.position

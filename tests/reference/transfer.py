@@ -5,7 +5,6 @@ S' = (k_f - omega^2 rho A) w; S jumps by (k - omega^2 m) w - F and M by (k_r - o
 units of L, forces in EI / L^2; EI and kappa G A carry 1 + i eta. Independent of the package but for its value types.
 """
 
-from itertools import pairwise
 from typing import Any
 
 import mpmath as mp
@@ -53,32 +52,6 @@ def deflection(beam: Beam, theory: str, hertz: float, forces: tuple[PointForce, 
     )
 
 
-def shape(beam: Beam, theory: str, hertz: float, x: Any) -> Any:
-    """Deflection of the mode nearest to a frequency at places x, unit modal mass, positive off the left end."""
-    hertz = frequency_near(beam, theory, hertz)
-    with mp.workdps(DIGITS):
-        end = _at_right_end(beam, _states(beam, theory, hertz)[:, :2])
-        row = 0 if abs(end[0, 0]) + abs(end[0, 1]) > abs(end[1, 0]) + abs(end[1, 1]) else 1
-        start = mp.matrix([end[row, 1], -end[row, 0]])
-
-        def at(place: float) -> tuple[float, float]:
-            found = _states(beam, theory, hertz, None, place)[:, :2] * start
-            return float(found[0]), float(found[1]) / beam.length
-
-        mass = 0.0
-        points, weights = np.polynomial.legendre.leggauss(14)
-        for piece, begin, length in _stretches(beam, 1):
-            for z, weight in zip(points, weights, strict=True):
-                w, turn = at(begin + length / 2 * (z + 1))
-                inertia = 0.0 if theory == "euler-bernoulli" else piece.rotary_inertia
-                mass += weight * length / 2 * (piece.mass_per_length * w * w + inertia * turn * turn)
-        for one in beam.mass:
-            w, turn = at(one.position)
-            mass += one.mass * w * w + one.rotary_inertia * turn * turn
-        sign = np.sign(at(1e-3 * beam.length)[0])
-        return np.array([at(float(one))[0] for one in x]) * sign / np.sqrt(mass)
-
-
 def buckling_load(beam: Beam, guess: float) -> float:
     """The compression nearest to a guess at which the beam is in neutral equilibrium, N."""
     from msgspec.structs import replace
@@ -100,18 +73,6 @@ class _Compressed:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._beam, name)
-
-
-def _stretches(beam: Beam, parts: int) -> list[tuple[Any, float, float]]:
-    """(piece, begin, length) between section steps and attachments, each cut into equal parts."""
-    steps = np.cumsum([piece.length for piece in beam.pieces])
-    stops = sorted({0.0, beam.length, *steps[:-1].tolist(), *(one.position for one in (*beam.mass, *beam.spring))})
-    found = []
-    for a, b in pairwise(stops):
-        if b - a > 1e-9 * beam.length:
-            piece = beam.pieces[min(int(np.searchsorted(steps, 0.5 * (a + b))), len(beam.pieces) - 1)]
-            found += [(piece, a + (b - a) * i / parts, (b - a) / parts) for i in range(parts)]
-    return found
 
 
 def _determinant(beam: Any, theory: str, hertz: Any) -> Any:

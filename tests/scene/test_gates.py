@@ -17,15 +17,20 @@ from verify.scene.run import plan
 
 # --- Bands ---
 
+
+@pytest.fixture(autouse=True)
+def _own_quantities(monkeypatch):
+    monkeypatch.setattr(QUANTITIES, "_members", dict(QUANTITIES._members))
+
+
 SCENE = Scene(name="strip", beam=Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0))
 
 
 def judged(value, **band):
     """The result of a gate on a quantity that has this value."""
-    with QUANTITIES.registered():
-        quantity("test.value", unit="m", reads=())(lambda scene, cache: value)
-        gate = Gate(id="g", quantity="test.value", why="test", **band)
-        return run_gate(gate, SCENE, SolutionCache(SCENE.beam))
+    quantity("test.value", unit="m", reads=())(lambda scene, cache: value)
+    gate = Gate(id="g", quantity="test.value", why="test", **band)
+    return run_gate(gate, SCENE, SolutionCache(SCENE.beam))
 
 
 @pytest.mark.parametrize(
@@ -85,10 +90,9 @@ def test_defect_in_a_quantity_is_a_failed_gate():
     def broken(scene, cache):
         raise ZeroDivisionError("by nothing")
 
-    with QUANTITIES.registered():
-        quantity("test.broken", unit="1", reads=())(broken)
-        gate = Gate(id="g", quantity="test.broken", at_most=1.0, why="test")
-        result = run_gate(gate, SCENE, SolutionCache(SCENE.beam))
+    quantity("test.broken", unit="1", reads=())(broken)
+    gate = Gate(id="g", quantity="test.broken", at_most=1.0, why="test")
+    result = run_gate(gate, SCENE, SolutionCache(SCENE.beam))
     assert result.passed is False
     assert "ZeroDivisionError: by nothing" in result.reason
 

@@ -26,11 +26,7 @@ from verify.travelling_wave import (
     power_imbalance,
     surface_motion,
 )
-from verify.travelling_wave import (
-    two_waves as fitted_waves,
-)
-from verify.waves.two_waves import fitted_wavenumber
-from verify.waves.waveguide import Waveguide
+from verify.waves.two_waves import Waveguide, fitted_wavenumber
 
 # --- Travelling wave ---
 
@@ -75,7 +71,7 @@ def measured(one):
 
 @settings(max_examples=60, deadline=None)
 @given(st.floats(0, 0.99), st.floats(-3.1, 3.1), st.booleans(), st.floats(0.985, 1.015))
-def test_two_waves_are_found_exactly_and_their_wavenumber_is_fitted(gamma, phase, reversed_, factor):
+def test_the_fit_of_two_waves_is_exact_and_so_is_their_fitted_wavenumber(gamma, phase, reversed_, factor):
     k = 135.2 * factor
     amplitudes = (2e-6 * np.exp(0.4j), 2e-6 * gamma * np.exp(1j * phase))
     forward, backward = amplitudes[::-1] if reversed_ else amplitudes
@@ -102,6 +98,17 @@ def test_the_same_from_time_series_with_trend_noise_and_broken_periods(gamma, pe
     assert found.crest_speed == pytest.approx(measure(field, WINDOW, 135.2).crest_speed, rel=5e-3)
     wanted = measure(field, WINDOW, 135.2)
     assert found.ellipses[0].mean() == pytest.approx(wanted.ellipses[0].mean(), rel=0.04)
+
+
+@pytest.mark.parametrize(
+    ("points", "rate", "message"),
+    [(33, 1.9, r"times have 1\.9 samples in each period"), (11, 31.3, r"x has a gap of 0\.025 m, half a wavelength")],
+)
+def test_series_sampled_below_nyquist_in_time_or_space_are_refused(points, rate, message):
+    x, times = np.linspace(*WINDOW, points), np.arange(0.0, 20.0, 1.0 / rate) / 4276.0
+    series = (two_waves(1e-6, 1e-7).deflection(x)[None] * np.exp(2j * np.pi * 4276.0 * times)[:, None]).real
+    with pytest.raises(InputError, match=message):
+        measure_series(BEAM, x, times, series, 4276.0)
 
 
 def test_series_too_short_to_measure_are_refused():
@@ -132,7 +139,7 @@ def test_the_ellipse_of_a_point_is_that_of_its_path():
 
 def test_a_wave_towards_plus_x_turns_counter_clockwise_and_moves_crests_backwards():
     found = measure(two_waves(1e-6, 0.0), WINDOW, 135.2)
-    assert found.signed_area_range[2] < 0.0
+    assert found.s3_range[2] < 0.0
     assert found.ellipses[0] == pytest.approx(np.full(len(found.x), -found.ideal_axis_ratio), rel=1e-12)
     assert found.crest_speed == pytest.approx(-2 * np.pi * 4276 * 0.0005 * 135.2 * 1e-6, rel=1e-12)
     field = two_waves(1e-6, 0.0)
@@ -265,7 +272,7 @@ STEPS = (Section(length=0.2), Section(length=0.1, thickness=0.0013), Section(len
 def test_a_window_holds_no_attachment_no_device_and_a_wave(beam, devices, message):
     field = ExactModel(beam).harmonic(driven().forces, 4276.0, devices=devices)
     with pytest.raises(WindowError, match=message):
-        fitted_waves(field, WINDOW)
+        measure(field, WINDOW)
 
 
 # --- Rotations of thick beams ---
@@ -293,7 +300,7 @@ def solve(model, beam, forces=FORCE, hertz=23000.0, theory="timoshenko"):
 
 
 @pytest.mark.parametrize("supports", [("free", "clamped"), ("pinned", "guided"), ("guided", "free")], ids="-".join)
-def test_every_model_turns_as_the_states_along_the_beam_do(supports):
+def test_sections_of_all_models_rotate_as_by_transfer_matrices(supports):
     beam = replace(BAR, supports=supports, mass=(PointMass(position=0.13, mass=0.02, rotary_inertia=3e-6),))
     places = [0.003, 0.043, 0.11, 0.187]
     exact = np.array([transfer.state(beam, "timoshenko", 23000.0, 0.045, x)[1] for x in places])
@@ -301,7 +308,7 @@ def test_every_model_turns_as_the_states_along_the_beam_do(supports):
         assert abs(solve(model, beam).rotation(places) - exact).max() < within * abs(exact).max()
 
 
-def test_a_pure_wave_turns_its_sections_as_the_medium_says_with_losses_too():
+def test_a_pure_wave_has_the_rotation_ratio_of_its_waveguide_with_losses_too():
     """Far from the force on a long bar with an end that swallows nothing in time: e^{-ikx} times what is left of it."""
     beam = replace(BAR, length=3.0, loss_factor=0.08, supports=("pinned", "pinned"))
     field = solve("analytic", beam, (PointForce(position=0.1),), 30000.0)

@@ -1,4 +1,1 @@
-"""Judgement: models solved once for all who ask, modes paired, errors, orders, bounds, sizes, eigenvalues counted.
-
-Takes results of the models, gives figures. Quantities and studies call it; it draws and prints nothing.
-"""
+"""Comparison of models: stored solutions, paired modes, errors, orders, bounds, sizes, grid convergence index."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from math import ceil
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import msgspec
 
@@ -13,23 +13,18 @@ from verify.exact.error_laws import LAWS, expected_error, has_law, sine_fits, sm
 from verify.linear.registry import MODELS, discrete
 from verify.timing import interleaved_medians
 
-if TYPE_CHECKING:
-    from verify.problem.beam import Beam
-
-LARGEST = 200_000
-"""Largest size of the models with an error law."""
-LARGEST_WITHOUT_LAW = 2000
-"""The same of other packages' models."""
+LARGEST, LARGEST_WITHOUT_LAW = 200_000, 2000
+"""Largest size of models with an error law, and of those of other packages."""
 LARGEST_ALTERNATIVE = 500
-"""The same of rules other than the defaults, or five times the size of the defaults."""
+"""Largest size of rules other than the defaults, or five times the size of the defaults."""
 LAW_FROM = 60
 """Size from which on the error law replaces the scan (measured: within a third of its terms from 20 parts on)."""
 EVERY, FINE, COARSE = 60, 1.05, 1.5
-"""Every size is solved up to the first; then 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %."""
+"""A scan tries every size up to the first, then sizes 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %."""
 LOWER_MODES = 100
-"""Mode up to which those below are checked."""
+"""Highest mode below which all lower modes are checked."""
 ROUNDING = 1e-12
-"""Smallest error that is no rounding."""
+"""Smallest error that is not rounding."""
 
 PROVEN = "every larger N meets it by the discrete dispersion"
 BY_LAW = "larger N meet it by the error law"
@@ -44,13 +39,12 @@ class Sufficient(msgspec.Struct, frozen=True, kw_only=True):
     """The size from which on the error stays within a limit."""
 
     count: int
-    """From this size on the error is within the limit, as far as `known_by` says."""
+    """From this size on the error is within the limit; `known_by` says why."""
     mode: int
     """The mode that requires it."""
     smaller: int | None = None
     """The smallest size below it within the limit, though one between is not."""
     known_by: str
-    """Why larger sizes are within the limit."""
 
 
 class Choice(msgspec.Struct, frozen=True, kw_only=True):
@@ -92,66 +86,57 @@ def sufficient_size(
         except InputError:  # too few parts
             return False
 
-    solved: dict[int, bool] = {}
-    lawful = model in LAWS and beam.uniform and not settings
-    guess, dips = _by_law(model, beam, modes, error) if lawful else (0, ())
-    if lawful and (sine_fits(beam.supports) or guess >= LAW_FROM) and has_law(beam, modes[-1], guess):
-        count = _around(within, guess, smallest, largest)
+    def lawful(count: int) -> bool:
+        return all(abs(expected_error(model, beam, one, count)) <= error for one in modes)
+
+    guess, dip = 0, None
+    has_guess = model in LAWS and beam.uniform and not settings
+    if has_guess:
+        # beyond 300 parts at each clamped end, and beyond the elements' hump at mu = 2.98, errors only fall
+        first = smallest_count(beam, modes[-1])
+        guess, dip, _ = _scan(lawful, first, max(4 * first, 300 * beam.supports.count("clamped")), largest)
+    if has_guess and (sine_fits(beam.supports) or guess >= LAW_FROM) and has_law(beam, modes[-1], guess):
+        # next to the guess: one that is right costs two solves
+        low, high, step = guess - 1, guess, 1
+        while not within(high):
+            if high > largest:
+                raise InputError(f"error = {error!r}: the {model} model does not reach it up to count = {largest}")
+            low, high, step = high, high + step, 2 * step
+        step = 1
+        while low >= smallest and within(low):
+            high, low, step = low, max(low - 2 * step, smallest - 1), 2 * step
+        count = _between(within, low, high)
         known_by = PROVEN if sine_fits(beam.supports) else BY_LAW
     else:
-        count, failed = smallest, smallest - 1
-        while count <= max(2 * failed, guess, smallest + 4):
-            if count > largest:
-                raise InputError(f"error = {error!r}: the {model} model does not reach it up to count = {largest}")
-            solved[count] = within(count)
-            failed = failed if solved[count] else count
-            ratio = FINE if count < LARGEST_WITHOUT_LAW else COARSE
-            count = count + 1 if count < EVERY else ceil(ratio * count)
-        count = _between(within, failed, min(n for n in solved if n > failed))
-        dips = tuple(n for n in solved if n < failed and solved[n])
-        known_by = f"sizes up to {max(solved)} were solved, from {EVERY} on 5 % apart"
+        count, dip, last = _scan(within, smallest, max(guess, smallest + 4), largest)
+        known_by = f"sizes up to {last} were solved, from {EVERY} on 5 % apart"
     errors = {one: cache.error_or_reason(model, count - 1, one, settings)[0] for one in modes} if count > 1 else {}
     worst = max(modes, key=lambda one: (abs(off) if (off := errors.get(one)) is not None else float("inf"), one))
-    smaller = next((n for n in dips if n < count - 1 and within(n)), None)
+    smaller = dip if dip is not None and dip < count - 1 and within(dip) else None
     return Sufficient(count=count, mode=worst, smaller=smaller, known_by=known_by)
 
 
-def _by_law(model: str, beam: "Beam", modes: range, error: float) -> tuple[int, tuple[int, ...]]:
-    """(the size from which on the expected errors are within, up to one size below it that is within as well)."""
+def _scan(within: Within, first: int, up_to: int, largest: int) -> tuple[int, int | None, int]:
+    """(size from which on the error is within the limit, the smallest size within if smaller, the largest size tried).
 
-    def within(count: int) -> bool:
-        return all(abs(expected_error(model, beam, one, count)) <= error for one in modes)
-
-    # beyond 300 parts at each clamped end, and beyond the elements' hump at mu = 2.98, errors only fall
-    first = size = smallest_count(beam, modes[-1])
-    sizes, last = dict[int, bool](), first - 1
-    while size <= max(2 * last, 4 * first, 300 * beam.supports.count("clamped")):
+    Sizes up to `up_to`, or twice the last size beyond the limit.
+    """
+    sizes, last, size = dict[int, bool](), first - 1, first
+    while size <= max(2 * last, up_to):
+        if size > largest:
+            raise InputError(f"error: the model does not reach it up to count = {largest}, give a larger one")
         sizes[size] = within(size)
         last = last if sizes[size] else size
-        size = max(size + 1, int(1.02 * size))
-    count = _between(within, last, min(n for n in sizes if n > last))
-    if (dip := next((n for n in sizes if n < last and sizes[n]), None)) is None:
-        return count, ()
-    return count, (_between(within, max((n for n in sizes if n < dip), default=dip - 1), dip),)
-
-
-def _around(within: Within, guess: int, smallest: int, largest: int) -> int:
-    """The size within the limit with one part less beyond it, next to a guess: an exact guess costs two solves."""
-    low = high = guess
-    step = 1
-    if within(guess):
-        while (low := high - step) >= smallest and within(low):
-            high, step = low, 2 * step
-        return _between(within, max(low, smallest - 1), high)
-    while not within(high := low + step):
-        low, step = high, 2 * step
-        if low > largest:
-            raise InputError(f"error: the model does not reach it up to count = {largest}, give a larger one")
-    return _between(within, low, high)
+        size = size + 1 if size < EVERY else ceil((FINE if size < LARGEST_WITHOUT_LAW else COARSE) * size)
+    good = [n for n in sizes if sizes[n]]
+    count = _between(within, last, min(n for n in good if n > last))
+    if (dip := min(good)) > last:
+        return count, None, max(sizes)
+    return count, _between(within, max((n for n in sizes if n < dip), default=dip - 1), dip), max(sizes)
 
 
 def _between(within: Within, low: int, high: int) -> int:
-    """The first size within the limit between one beyond it and one within."""
+    """The first size within the limit between `low`, beyond it, and `high`, within."""
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if within(middle) else (middle, high)

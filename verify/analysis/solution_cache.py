@@ -1,4 +1,4 @@
-"""Solutions of one beam by every model: each computed on first use and stored, and the comparisons made from them."""
+"""Solutions of one beam by every model, computed on first use and stored, and their errors against the exact beam."""
 
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -43,36 +43,23 @@ def theory_of(settings: Settings) -> str:
     return str(dict(settings).get("theory", EULER))
 
 
-def check_bracket(beam: Beam, settings: Settings = ()) -> None:
-    """Raise NoBracketError, with the reason, where segments below and elements above is not proven."""
-    chosen = dict(settings)
-    wall, theory = chosen.get("wall", "gregory"), theory_of(settings)
-    reason = "the chain may lie above the exact frequency"
-    if added := [name for name in beam.added if name != "section"]:
-        raise NoBracketError(f"mode.bracket: on a beam with beam.{added[0]} neither side is proven, leave it out")
-    if beam.section:
-        raise NoBracketError(f"mode.bracket: on a stepped beam {reason}, leave beam.section out")
-    if theory != EULER:
-        raise NoBracketError(f"mode.bracket: with theory = {theory!r} {reason}, leave theory out")
-    if "grading" in chosen:
-        raise NoBracketError(f"mode.bracket: with grading = {chosen['grading']!r} {reason}, leave grading out")
-    if "clamped" in beam.supports and wall != "half":
-        raise NoBracketError(f"mode.bracket: with wall = {wall!r} at a clamped end {reason}, wall=half bounds it")
-
-
-def has_bracket(beam: Beam, settings: Settings = ()) -> bool:
-    """Whether segments lie below and elements above the exact frequencies of this beam."""
-    try:
-        check_bracket(beam, settings)
-    except NoBracketError:
-        return False
-    return True
+def unproven(beam: Beam, settings: Settings = ()) -> str:
+    """Why segments below and elements above the exact frequencies is not proven for a beam; empty where it is."""
+    if added := (*beam.added, *("section",) * bool(beam.section)):
+        return f"neither side is proven on a beam with beam.{added[0]}, leave it out"
+    chosen = {"theory": EULER, "grading": 1.0, "wall": "gregory"} | dict(settings)
+    proven = {"theory": EULER, "grading": 1.0, "wall": "half" if "clamped" in beam.supports else chosen["wall"]}
+    for name, value in chosen.items():
+        if value != proven.get(name, value):
+            instead = "wall=half bounds it" if name == "wall" else f"leave {name} out"
+            return f"with {name} = {value!r} the chain may lie above the exact frequency, {instead}"
+    return ""
 
 
 def comparable(beam: Beam, counts: Iterable[int], n_modes: int) -> tuple[list[str], dict[str, str]]:
     """(discrete models that solve this beam at these sizes, reason by name for models of other packages that do not).
 
-    Raises InputError for a size that a model of this package does not have.
+    Raises InputError for a size that is impossible in a model of this package.
     """
     names, skipped, sizes = [], dict[str, str](), tuple(counts)
     for model in discrete():
@@ -106,13 +93,9 @@ class SolutionCache:
         """Steady states and free runs of a motor, likewise."""
         self._modes: dict[tuple[str, int, Settings], Modes] = {}
         self._index: dict[tuple[str, int, Settings, int], int] = {}
-        self._exact: dict[tuple[int, str], float] = {}
 
     def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> "Modes":
-        """At least `n_modes` modes of a discrete model, without the settings that it does not have.
-
-        Raises InputError.
-        """
+        """At least `n_modes` modes of a discrete model; settings of other models are ignored. Raises InputError."""
         key = self._key(model, count, settings)
         stored = self._modes.get(key)
         if stored is None or stored.n_modes < n_modes:
@@ -131,9 +114,7 @@ class SolutionCache:
 
     def exact_hz(self, mode: int, theory: str = EULER) -> float:
         """The exact frequency by a theory, Hz. Raises InputError."""
-        if (mode, theory) not in self._exact:
-            self._exact[mode, theory] = self._exact_model(theory).frequency_hz(mode)
-        return self._exact[mode, theory]
+        return self._exact_model(theory).frequency_hz(mode)  # which stores its roots
 
     def _exact_model(self, theory: str) -> "ExactModel":
         from verify.analytic_modes import ExactModel
@@ -194,7 +175,8 @@ class SolutionCache:
         from verify.analysis.comparison import EIGENVALUE_FLOOR
         from verify.exact.error_laws import leading_error
 
-        check_bracket(self.beam, settings)
+        if why := unproven(self.beam, settings):
+            raise NoBracketError(f"mode.bracket: {why}")
         lower, upper = (self.frequency_hz(model.name, count, mode, settings) for model in bounding())
         expected = 2.0 * leading_error(bounding()[1].name, self.beam.supports, mode, count)
         width = min((upper - lower) / upper, expected)

@@ -86,16 +86,16 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return tuple(dict.fromkeys(not_default(dict(zip(DEFAULTS, values, strict=True))) for values in every))
 
     def alternatives(self, beam: Beam) -> tuple[Variant, ...]:
-        """The literature's rules for this beam with each combination: the wall 2EI/l, joints for tension, the lever."""
-        return tuple(
-            dict.fromkeys(
-                Variant(model.name, not_default(dict(chosen) | {name: value}))
-                for chosen in self.combinations
-                for name, value in _alternatives(beam, dict(chosen))
-                for model in discrete()
-                if name in model.settings()
-            )
-        )
+        """Rules of the literature for this beam, with each combination: the wall 2EI/l, tensioned joints, the lever."""
+        found = []
+        for chosen in map(dict, self.combinations):
+            # axial force and shear reduce the order of joints in series by two
+            loses = bool(beam.tension) or chosen.get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
+            rules = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
+            rules += [("attachment", "lever")] * attached_within(beam)
+            able = ((model.name, *rule) for rule in rules for model in discrete() if rule[0] in model.settings())
+            found += [Variant(model, not_default(chosen | {name: value})) for model, name, value in able]
+        return tuple(dict.fromkeys(found))
 
     def without_effect(self, beam: Beam) -> dict[str, str]:
         """Settings that are not the default and change nothing on this beam, each with the reason."""
@@ -105,13 +105,6 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return {name: f"it has no effect, {why}" for name, why in reasons.items() if why and name in changed}
 
 
-def _alternatives(beam: Beam, chosen: Mapping[str, str | float]) -> list[tuple[str, str]]:
-    """Axial force and shear take two orders from joints in series."""
-    loses = bool(beam.tension) or chosen.get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
-    rules = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
-    return rules + [("attachment", "lever")] * attached_within(beam)
-
-
 def has_wall(beam: Beam) -> bool:
     """Whether a chain has a joint at a wall: an end is clamped, or has a rotational spring or rotary inertia."""
     ends = [s.position for s in beam.spring if s.rotational] + [m.position for m in beam.mass if m.rotary_inertia]
@@ -119,16 +112,14 @@ def has_wall(beam: Beam) -> bool:
 
 
 def attached_within(beam: Beam) -> bool:
-    """Whether links that carry attachments rigidly differ from others: one lies between the ends, or rotates."""
+    """Whether attachments on rigid links have an effect: an attachment lies between the ends, or rotates."""
     rotating = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
-    positions = [m.position for m in beam.mass] + [s.position for s in beam.spring]
-    return rotating or any(0.0 < position < beam.length for position in positions)
+    return rotating or any(0.0 < one.position < beam.length for one in beam.attached)
 
 
 def is_uneven(beam: Beam) -> bool:
-    """Whether errors may go up and down with N: a step or an attachment lies anywhere within a part."""
-    positions = [m.position for m in beam.mass] + [s.position for s in beam.spring]
-    return len(beam.pieces) > 1 or any(0.0 < position < beam.length for position in positions)
+    """Whether errors may oscillate with N: a step or an attachment lies within a part."""
+    return len(beam.pieces) > 1 or any(0.0 < one.position < beam.length for one in beam.attached)
 
 
 def not_default(settings: Mapping[str, str | float]) -> Settings:

@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
-from scipy.interpolate import CubicHermiteSpline, PPoly
-from scipy.sparse import csr_array
+from scipy.interpolate import PPoly
 from skfem.assembly import BilinearForm, CellBasis
 from skfem.element import DiscreteField
 from skfem.element.element import Element
 from skfem.mesh import MeshLine
 from skfem.refdom import RefLine
 
-from verify.arrays import Array
+from verify.arrays import Array, Indices
+from verify.linear.factored import sparse_rows
 
 DEFLECTION = np.array(
     [[1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1, 1], [0, 1, -3, 2], [0, -1, 1, 0]], dtype=float
@@ -107,38 +107,38 @@ def cached_basis(nodes: bytes, shear: bool) -> Any:
     return line_basis(np.frombuffer(nodes), shear)
 
 
-def assemble(basis: Any, form: Any, weight: Array) -> Any:
-    """A form with a weight of each element, (N,), over all degrees of freedom, sparse."""
-    return form.assemble(basis, weight=DiscreteField(np.broadcast_to(weight[:, None], basis.dx.shape)))
+def element_matrices(basis: Any, form: Any, weight: Array) -> Any:
+    """A form with a weight of each element, (N,), as scikit-fem's COOData: entries of every element's own matrix."""
+    return form.coo_data(basis, weight=DiscreteField(np.broadcast_to(weight[:, None], basis.dx.shape)))
 
 
-def rows(nodes: Array, x: Array, shear: bool, derivative: int = 0, *, rotation: bool = False) -> Any:
-    """Weights of all degrees of freedom in w or psi, or a derivative, at x (n,): sparse (n, n_all)."""
+def rows(nodes: Array, x: Array, unknowns: Indices, derivative: int = 0, *, rotation: bool = False) -> Any:
+    """Weights of the unknowns in w or psi, or a derivative, at x (p,): sparse (p, n).
+
+    `unknowns` (n_all,) are the numbers 0..n - 1 of the degrees of freedom, -1 for those that supports prevent.
+    """
     n = len(nodes) - 1
     cell = np.searchsorted(nodes[1:-1], x, side="right")
     length = nodes[cell + 1] - nodes[cell]
     xi, table = (x - nodes[cell]) / length, ROTATION if rotation else DEFLECTION
-    every = range(6 if shear else 4)
-    sizes = length ** -(derivative + rotation)
-    values = [polynomial(table, i, xi, derivative) * (sizes if i in (0, 2) else sizes * length) for i in every]
     columns = [*(2 * cell + i for i in range(4)), *(2 * n + 2 + 2 * cell + i for i in range(2))]
-    at = np.tile(np.arange(len(x)), len(every))
-    found = csr_array(
-        (np.concatenate(values), (at, np.concatenate(columns[: len(every)]))),
-        shape=(len(x), 2 * n + 2 + (2 * n if shear else 0)),
-    )
-    found.eliminate_zeros()
-    return found
+    columns = columns[: 6 if len(unknowns) > 2 * n + 2 else 4]
+    sizes = length ** -(derivative + rotation)
+    values = [polynomial(table, i, xi, derivative) * (sizes if i in (0, 2) else sizes * length)
+              for i in range(len(columns))]  # fmt: skip
+    return sparse_rows(unknowns[np.stack(columns, axis=1)], np.stack(values, axis=1), int(unknowns.max()) + 1)
 
 
 def piecewise(nodes: Array, values: Any, unit: float) -> tuple[PPoly, PPoly]:
     """W and psi of values of all degrees of freedom (n_all, k) as polynomials between nodes: x in m -> (n, k)."""
     n = len(nodes) - 1
-    w = CubicHermiteSpline(nodes, values[: 2 * n + 2 : 2], values[1 : 2 * n + 2 : 2]).c
+    length, deflections, slopes = np.diff(nodes)[:, None], values[: 2 * n + 2 : 2], values[1 : 2 * n + 2 : 2]
+    chord, first, second = np.diff(deflections, axis=0) / length, slopes[:-1], slopes[1:]
+    gradient = (first + second - 2.0 * chord) / length
+    w = np.array([gradient / length, (chord - first) / length - gradient, first, deflections[:-1]])
     psi = np.array([3.0 * w[0], 2.0 * w[1], w[2]])
     if len(values) > 2 * n + 2:
         g0, g1 = values[2 * n + 2 :: 2], values[2 * n + 3 :: 2]
-        length = np.diff(nodes)[:, None]
         w = w + np.array([2.0 * g0 / length**2, (g1 - 3.0 * g0) / length, g0 - g1, 0.0 * g0])
         psi = psi + np.array([6.0 * g0 / length**2, -6.0 * g0 / length, 0.0 * g0])
     powers = unit ** -np.arange(4.0)[:, None, None]

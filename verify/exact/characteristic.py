@@ -1,14 +1,14 @@
-"""The characteristic equation of any beam by the minors of its transfer, and the count of frequencies below a trial.
+"""The characteristic equation of a beam by the minors of its transfer, and the count of frequencies below a trial.
 
-The two motions that the left end leaves free are carried along the beam by their 2 x 2 minors (the delta matrix of
-Pestel and Leckie, Matrix Methods in Elastomechanics, 1963). The growing parts of long spans then are a common factor,
-nothing cancels in short ones, and no stiffness is assembled whose small eigenvalues could drown.
+The two motions that the left support leaves free are carried along the beam by their 2 x 2 minors (the delta matrix of
+Pestel and Leckie, Matrix Methods in Elastomechanics, 1963): the growing parts of long spans are a common factor, short
+spans have no cancellation, and no small eigenvalue of an assembled stiffness is lost to rounding.
 
-Minors of w, psi, M, V are listed as u = p12, p13, p14, p24, p34; p23 = p14 throughout, by reciprocity. Of the beam to
-the left of a position they hold its stiffness against w and psi there, [[u3, -u2], [-u2, u1]] / u0, determinant
-u4 / u0. The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) needs no other matrix: the negative
-eigenvalues at every station, and the frequencies of each span with both ends clamped, derived from pinned ends (Howson
-and Williams, J. Sound Vib. 26, 1973).
+Minors of (w, psi, M, V) are u = p12, p13, p14, p24, p34; p23 = p14 by reciprocity. The stiffness of the beam to the
+left of a position against w and psi there is [[u3, -u2], [-u2, u1]] / u0, with determinant u4 / u0. So the count of
+Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) needs no other matrix: the negative eigenvalues at every
+station, and the frequencies of each span with clamped ends, derived from those with pinned ends (Howson and Williams,
+J. Sound Vib. 26, 1973).
 """
 
 from collections.abc import Callable
@@ -24,26 +24,22 @@ from verify.exact.layout import BeamLayout, Station, layout_of
 from verify.problem.beam import Beam
 
 _END = {"clamped": 0, "pinned": 1, "guided": 3, "free": 4}
-"""The minor of what an end holds at zero; that of what it leaves free is 4 less this."""
-_SHORT = 2.25
-"""Of |wavenumber l|^2, up to where power series are summed."""
-_TERMS = 16
-"""Of those series, to rounding."""
+"""Minor of the quantities that a support sets to zero; that of the others is 4 less this."""
+_SHORT, _TERMS = 2.25, 16
+"""Largest |wavenumber l|^2 for which power series are summed, and their terms to rounding."""
 _CLOSE = 16.0
-"""Of (sigma1 - sigma2)^2 / (sigma1 sigma2), below which two squares of wavenumbers count as close."""
+"""(sigma1 - sigma2)^2 / (sigma1 sigma2) below which two squares of wavenumbers are close."""
 _TINY = 1e-120
-"""In place of a minor that is zero to the last digit, where a stiffness is infinite."""
+"""Replaces a minor that is exactly zero, where a stiffness is infinite."""
 _NOTHING = Station()
-_DIGITS = 4e-16
-"""Relative width of an interval at which a search ends."""
 _CANCELLED = 1e-3
-"""Of a determinant that is left of its products, below which another form of it is trusted."""
+"""Fraction of its products in a determinant below which it is taken from another form."""
 
 Minors = tuple[float, float, float, float, float]
 
 
 class Carry(NamedTuple):
-    """What takes minors over a span of length and stiffness 1, all times one positive factor."""
+    """Transfer of minors over a span of length and stiffness 1, all times one positive factor."""
 
     one: float
     both: float
@@ -57,10 +53,8 @@ class Carry(NamedTuple):
     lift: float
     turn: float
     bend: float
-    """E1 - m g3, e1 + m g3, e1 - t g3, c e1 + (2 + c m) g3, p e1 - (p m + 2 q) g3.
-
-    Of e1 = g2', m = p + c q, t = p - c q.
-    """
+    """With e1 = g2', m = p + c q, t = p - c q: the last five are e1 - m g3, e1 + m g3, e1 - t g3, c e1 + (2 + c m) g3
+    and p e1 - (p m + 2 q) g3."""
 
 
 class Count(NamedTuple):
@@ -87,9 +81,9 @@ def _waves(square: float, shift: float) -> tuple[float, float, float]:
 
 
 def carry(c: float, p: float, q: float) -> Carry:
-    """What takes minors over a span of length 1 and EI = 1, with c = 1 / (kappa G A)."""
+    """Transfer of minors over a span of length 1 and EI = 1, with c = 1 / (kappa G A)."""
     sums, m, v = p - c * q, p + c * q, 1.0 + p * c
-    product, gap = -q * v, m * m + 4.0 * q  # of the squares sigma of both wavenumbers: sums, product, (difference)^2
+    product, gap = -q * v, m * m + 4.0 * q  # sum, product and squared difference of the squares sigma of wavenumbers
     if max(abs(sums), sqrt(abs(product))) <= _SHORT:
         return _from_plain(c, p, q, *_series(sums, gap))
     if product > 0.0 and gap < _CLOSE * product:
@@ -118,7 +112,7 @@ def carry(c: float, p: float, q: float) -> Carry:
 
 
 def _from_plain(c: float, p: float, q: float, one: float, e1: float, g3: float, g2: float, h4: float) -> Carry:
-    """By the fundamental solutions of fourth order themselves."""
+    """The same by the fundamental solutions of fourth order."""
     t, m = p - c * q, p + c * q
     return Carry(
         one,
@@ -151,7 +145,7 @@ def _series(sums: float, gap: float) -> tuple[float, float, float, float, float]
 
 
 def _close(sums: float, product: float, gap: float) -> tuple[float, float, float, float, float]:
-    """The same where the squares of both wavenumbers lie close to each other, by their sum and difference."""
+    """The same where the squares of both wavenumbers are close, by their sum and difference."""
     w = 2.0 * sqrt(product)
     far = sums + w if sums >= 0.0 else sums - w
     a, d = (far, gap / far) if sums >= 0.0 else (gap / far, far)
@@ -177,7 +171,7 @@ def _carried(u: Minors, by: Carry, c: float, p: float, q: float) -> Minors:
 
 
 def _over(u: Minors, station: Station, omega2: float) -> Minors:
-    """Minors right of attachments, and of a motion that is held: those of an infinite stiffness against it."""
+    """Minors right of attachments; a support at the station is an infinite stiffness."""
     if station == _NOTHING:
         return u
     u0, u1, u2, u3, u4 = u
@@ -212,41 +206,38 @@ def count_at(layout: BeamLayout, omega2: float) -> Count:
         sizes = (length, by_moment, by_force, length * by_force, by_moment * by_force)
         near = (u[0] * sizes[0], u[1] * sizes[1], u[2] * sizes[2], u[3] * sizes[3], u[4] * sizes[4])
         far = _carried(near, by, c, p, q)
-        below += _clamped(by, c, p, q) + _at_station(near, by, c, p, q, far[0], left)
+        below += _count_clamped(by, c, p, q) + _at_station(near, by, c, p, q, far[0], left)
         v = [minor / size for minor, size in zip(far, sizes, strict=True)]
         largest = max(map(abs, v))
         u = _over((v[0] / largest, v[1] / largest, v[2] / largest, v[3] / largest, v[4] / largest), station, omega2)
         left = station.support
-    right = layout.supports[1]
-    return Count(below + _at_end(u, right), u[_END[right]])
+    right, base = layout.supports[1], u[0] or _TINY
+    if right == "free":
+        below += _negatives(u[3] / base, -u[2] / base, u[1] / base, u[4] * base)
+    elif right != "clamped":
+        below += u[_END[right]] / base < 0.0
+    return Count(below, u[_END[right]])
 
 
-def _clamped(by: Carry, c: float, p: float, q: float) -> int:
-    """How many frequencies of a span with both ends clamped lie below.
+def _count_clamped(by: Carry, c: float, p: float, q: float) -> int:
+    """Number of frequencies of a span with clamped ends below the trial.
 
-    With both ends pinned it has at most two more. Their parity is that of the sign of its minor.
-    """
-    pinned = _pinned(c, p, q)
-    corner = c * by.g2 + by.h4
-    if pinned == 0 or pinned % 2 != (corner < 0.0):
-        return max(pinned - 1, 0)
-    return pinned if by.turn * corner > 0.0 else pinned - 2
-
-
-def _pinned(c: float, p: float, q: float) -> int:
-    """How many sines n pi of a span with both ends pinned have frequencies below, each once or twice.
-
-    A sine of wavenumber k has one below where k^4 - (c q - p) k^2 - q (1 + p c) < 0.
+    With pinned ends it has at most two more; the parity follows from the sign of its minor. Pinned, a sine of
+    wavenumber n pi = k has one below where k^4 - (c q - p) k^2 - q (1 + p c) < 0, and up to two above the cut-off.
     """
     half, product, gap = 0.5 * (c * q - p), -q * (1.0 + p * c), (p + c * q) ** 2 + 4.0 * q
     if gap <= 0.0:
         return 0
     root = 0.5 * sqrt(gap)
     high = half + root if half >= 0.0 else product / (half - root)
-    low = product / high if half >= 0.0 and high != 0.0 else 0.0  # below nought where half is
+    low = product / high if half >= 0.0 and high != 0.0 else 0.0  # negative where half is
     first, second = (floor(sqrt(square) / pi) if square > 0.0 else 0 for square in (low, high))
-    twice = c > 0.0 and 1.0 + p * c < 0.0  # above the cut-off: the section's turning alone, and a second family
-    return second - first + (2 * first if twice and q > 0.0 else 0) + twice
+    twice = c > 0.0 and 1.0 + p * c < 0.0  # above the cut-off: rotation alone, and a second family
+    pinned = second - first + (2 * first if twice and q > 0.0 else 0) + twice
+    corner = c * by.g2 + by.h4
+    if pinned == 0 or pinned % 2 != (corner < 0.0):
+        return max(pinned - 1, 0)
+    return pinned if by.turn * corner > 0.0 else pinned - 2
 
 
 def _at_station(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float, left: str) -> int:
@@ -267,16 +258,8 @@ def _at_station(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float
     return _negatives(ww, wp, pp, ahead * base * corner)
 
 
-def _at_end(u: Minors, support: str) -> int:
-    """Negative eigenvalues of the beam's stiffness at its right end, where that is free to move."""
-    base = u[0] or _TINY
-    if support == "free":
-        return _negatives(u[3] / base, -u[2] / base, u[1] / base, u[4] * base)
-    return int(support != "clamped" and u[_END[support]] / base < 0.0)
-
-
 def _negatives(a: float, b: float, d: float, determinant: float) -> int:
-    """Negative eigenvalues of [[a, b], [b, d]]; the sign of its determinant is known otherwise too."""
+    """Negative eigenvalues of [[a, b], [b, d]]; `determinant` has the sign of its determinant without cancellation."""
     products = a * d, b * b
     difference = products[0] - products[1]
     sign = difference if abs(difference) > _CANCELLED * sum(products) else determinant
@@ -300,15 +283,14 @@ def wavenumber_length(layout: BeamLayout, number: int) -> float:
 def nth_root(count: Callable[[float], Count], number: int) -> float:
     """The positive trial value above which `number` roots are counted.
 
-    Intervals are halved, the same ones for all roots, until one holds this root alone; where none does, roots coincide
-    to rounding.
+    Intervals are bisected, the same for all roots, until one contains this root alone; otherwise roots coincide.
     """
     from scipy.optimize import brentq
 
     low, high = 0.0, 1.0
     while count(high).below < number:
         low, high = high, 2.0 * high
-    while high - low > _DIGITS * high and high > 1e-300:
+    while high - low > 4e-16 * high and high > 1e-300:
         lower, upper = count(low), count(high)
         alone = low > 0.0 and upper.below - lower.below == 1 and (upper.minor > 0.0) != (lower.minor > 0.0)
         if alone and high - low < 0.1 * high:
@@ -319,16 +301,15 @@ def nth_root(count: Callable[[float], Count], number: int) -> float:
 
 
 def buckling_load(beam: Beam) -> float:
-    """The smallest compression at which a beam is no longer stable, N, whatever its own axial force.
+    """The smallest compression at which a beam buckles, N, whatever its own axial force; 0 where it rotates freely.
 
-    The characteristic equation at omega = 0, by Euler-Bernoulli's theory; the force keeps its size and direction. 0
-    where supports and springs let the beam rotate as a whole.
+    The root of the characteristic equation at omega = 0 by Euler-Bernoulli theory, for a force of constant direction.
     """
     bare = replace(beam, tension=0.0)
     if any(slope for _, slope in bare.rigid_lines):
         return 0.0
     layout = layout_of(bare)
-    if bare.rigid_lines:  # a translation changes no energy: its left end is held
+    if bare.rigid_lines:  # a translation changes no energy: the left end is pinned
         left = {"free": "pinned", "guided": "clamped"}[layout.supports[0]]
         layout = replace(layout, supports=(left, layout.supports[1]))
     root = nth_root(lambda root: count_at(replace(layout, tension=-root * root), 0.0), 1)
@@ -341,5 +322,5 @@ def check_stable(beam: Beam) -> None:
     if beam.tension < 0.0 and -beam.tension >= (load := buckling_load(beam)):
         raise InputError(
             f"beam.tension = {beam.tension!r} N compresses the beam beyond its buckling load of {load:.6g} N: it has "
-            "no vibration about its straight shape, compress it less or hold it better"
+            "no vibration about its straight shape, compress it less or support it better"
         )

@@ -1,7 +1,7 @@
-"""Exact frequencies of uniform beams in closed form, in plain floating point.
+"""Exact frequencies of uniform beams in closed form.
 
-Roots of the Euler-Bernoulli frequency equations for every pair of supports, and the frequencies of a
-pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model form).
+Roots of the Euler-Bernoulli frequency equations for every pair of supports, and the frequencies of a pinned-pinned beam
+by Rayleigh's and Timoshenko's theories.
 """
 
 from math import atan, exp, pi, sqrt
@@ -11,7 +11,7 @@ from verify.problem.beam import Beam
 from verify.validation import check_whole
 
 HIGHEST = 10**9
-"""Mode of which there is a frequency."""
+"""Highest mode number."""
 # beta L = (n + c) pi + s(n) g atan(exp(-2 y/g)), the exponential form of cos y cosh y = +-1 and its kin.
 # pair -> (c, sign rule, g); the sign rule is 0, a constant, or "odd" for +1 at odd n and -1 at even n.
 _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
@@ -34,7 +34,7 @@ def check_mode(mode: int) -> None:
 
 
 def check_uniform(beam: Beam) -> None:
-    """Raise InputError where the beam is stepped or something stands on it, naming the models that can."""
+    """Raise InputError for a stepped beam and for attachments."""
     if not beam.uniform:
         raise InputError(
             f"beam.{beam.added[0]}: a beam with it has no closed form here, use the analytic, fem or segment model, or "
@@ -57,7 +57,7 @@ def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
 
 
 def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:
-    """The exact frequency of one mode of a uniform beam, Hz, by a beam theory that it has the properties for.
+    """The exact frequency of one mode of a uniform beam, Hz.
 
     `euler-bernoulli` for all supports; `rayleigh` and `timoshenko` (Timoshenko, Phil. Mag. 41, 1921) between pinned
     ends: with a = beta^2 I/A and s = beta^2 EI / (kappa G A) the flexural frequency is the lower root of

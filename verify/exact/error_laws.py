@@ -1,7 +1,6 @@
-"""Frequencies and errors of both discrete models without solving them: discrete dispersion and error laws.
+"""Frequencies and errors of both discrete models in closed form: discrete dispersion and error laws, mu = beta L / N.
 
-The dispersion is exact where a sine fits the ends (pinned and guided); leading error laws hold for the others. Both
-verify the models. mu = beta L / N throughout.
+The dispersion is exact where a sine fits the ends (pinned and guided); other ends have leading error laws.
 """
 
 from cmath import tanh
@@ -62,8 +61,7 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
     """The leading relative frequency error of a uniform beam of equal parts.
 
     +mu^4/1440 for Hermite elements; mu^4 (-1/1440 + c / (12 N)) for segments with Gregory's joints at their c
-    clamped ends; mu = beta L / N. That one is right for N well above 120 c alone: before it both terms are about to
-    cancel, and what is left out decides (`expected_error`).
+    clamped ends, valid for N well above 120 c: below both terms nearly cancel, and `expected_error` is needed.
     """
     law, mu4 = law_of(model), (wavenumber_length(supports, mode) / count) ** 4
     clamped = supports.count("clamped") if law.clamped_terms else 0
@@ -73,8 +71,8 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
 def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
     """The relative frequency error of a uniform beam by the dispersion and the residual of clamped ends.
 
-    Exact between pinned and guided ends. At other ends errors follow it from N = 20 on within a third of the sum of its
-    terms' sizes; its leading terms, `leading_error`, hold only beyond some hundred links. Valid where `has_law`.
+    Exact between pinned and guided ends; at other ends within a third of the sum of its terms' sizes from N = 20 on.
+    Valid where `has_law`.
     """
     mu, law = wavenumber_length(beam.supports, mode) / count, law_of(model)
     clamped = beam.supports.count("clamped") if law.clamped_terms else 0
@@ -90,8 +88,8 @@ def has_law(beam: Beam, mode: int, count: int) -> bool:
 def wall_residual(mu: float) -> float:
     """Gregory's sum of M^2 over the joints from a clamped end on less its integral, in links.
 
-    M^2 = (cos z - sin z + e^-z)^2 at z = k mu, of mean 1, is the bending moment there. Half of the residual over N
-    lowers the frequency. -mu^4/6 for small mu but for rounding of 1e-16/mu, zero at 0.42, at most 0.12 mu^4 to 2.5.
+    M = cos z - sin z + e^-z at z = k mu is the bending moment, of mean square 1. Half of the residual over N lowers the
+    frequency. It is -mu^4/6 for small mu but for rounding of 1e-16/mu, zero at 0.42, and at most 0.12 mu^4 up to 2.5.
     """
 
     def beyond(a: complex) -> complex:

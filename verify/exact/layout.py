@@ -49,10 +49,10 @@ class Station(NamedTuple):
     mass: float = 0.0
     inertia: float = 0.0
     dashpot: float = 0.0
-    """Over EI / L^3 per dimensionless frequency, as is the next."""
+    """Relative to EI / L^3 per dimensionless frequency, as is the next."""
     rotational_dashpot: float = 0.0
     support: str = "free"
-    """Motion that is held there, as at an end: "pinned" holds the deflection, "guided" the rotation."""
+    """Support at the station: "pinned" prevents the deflection, "guided" the rotation, "clamped" both."""
 
 
 class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
@@ -84,7 +84,7 @@ def layout_of(
     beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = (), devices: tuple[Device, ...] = ()
 ) -> BeamLayout:
     """The layout of a beam with devices by a theory that it has the properties for; `also`: further stations, m."""
-    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.mass, *beam.spring, *devices)
+    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.attached, *devices)
     cuts = [*(one.position for one in attached), *also]
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
     spans, start = list[UniformSpan](), 0.0
@@ -124,7 +124,7 @@ def layout_of(
 
 
 def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) -> BeamLayout:
-    """The layout with attachments (x / L, station) added to its stations; what is held at an end joins its support."""
+    """The layout with attachments (x / L, station) added to its stations; a support at an end joins that of the end."""
     stations, supports = list(layout.stations), list(layout.supports)
     for xi, more in added:
         at = layout.station_at(xi)
@@ -138,6 +138,6 @@ def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) ->
 
 
 def _both(one: str, other: str) -> str:
-    """The support that holds what either holds."""
-    deflection, rotation = ({one, other} & {held, "clamped"} for held in ("pinned", "guided"))
+    """The support that prevents the motions that either prevents."""
+    deflection, rotation = ({one, other} & {prevents, "clamped"} for prevents in ("pinned", "guided"))
     return "clamped" if deflection and rotation else "pinned" if deflection else "guided" if rotation else "free"

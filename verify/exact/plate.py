@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam
+from verify.problem.supports import HOLDS
 
 if TYPE_CHECKING:
     from verify.arrays import Array
@@ -20,16 +21,16 @@ if TYPE_CHECKING:
 FLATNESS = 5.0
 """Width over thickness from which on thin-plate theory is used."""
 MOST_UNKNOWNS = 25_000
-"""Of the Ritz solution; about 2 s."""
+"""Unknowns of the largest Ritz solution, which takes about 2 s."""
 
 
 def plate_error(beam: Beam, mode: int) -> float:
     """Frequency of a mode as a thin plate, relative to Euler-Bernoulli theory, less 1.
 
     The mode is symmetric across the width, without a nodal line along the strip: 0 for a narrow strip,
-    1/sqrt(1 - nu^2) - 1 for one that bends as a cylinder. The thickness has no influence. Exact for pinned and guided
-    ends; an upper bound within about 1e-6 (|nu| <= 0.4) otherwise. Raises InputError for anything but a uniform
-    rectangular strip, at least `FLATNESS` times as wide as thick, and for a mode without a counterpart in the plate.
+    1/sqrt(1 - nu^2) - 1 for cylindrical bending. The thickness has no influence. Exact for pinned and guided ends; an
+    upper bound within about 1e-6 (|nu| <= 0.4) otherwise. Raises InputError for anything but a uniform rectangular
+    strip, at least `FLATNESS` times as wide as thick, and for a mode without a counterpart in the plate.
     """
     if not beam.uniform:
         raise InputError(f"beam.{beam.added[0]}: plate theory covers a strip without it, leave it out")
@@ -122,7 +123,7 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     strains = (sqrt(1.0 - nu * nu) * w_xx, w_yy + nu * w_xx, sqrt(2.0 * (1.0 - nu)) * w_xy)
 
     def nearest(parts: "Sequence[Any]", motion: Any, eigenvalue: float, n: int) -> "Array":
-        # A shift off the eigenvalue leaves a matrix that is not singular; a fixed start repeats every digit.
+        # a shift off the eigenvalue, so that the matrix is not singular; a fixed start repeats every digit
         stiffness, start = sum(part.T @ part for part in parts), np.ones(motion.shape[1])
         vectors: Array = eigsh(stiffness, n, (motion.T @ motion).tocsc(), sigma=1.0001 * eigenvalue, v0=start)[1]
         return vectors
@@ -145,8 +146,8 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
 def _along(supports: tuple[str, str], n: int) -> "list[Any]":
     """Sparse coefficients, (n, functions), of w, w', w'' in orthonormal Legendre polynomials on (-1, 1).
 
-    Cubic Hermite functions of what the supports leave free, and twice integrated polynomials from degree 2 on, which
-    vanish at both ends with their slopes; their second derivatives are orthonormal.
+    Cubic Hermite functions of the free end displacements and slopes, and twice integrated polynomials from degree 2 on,
+    which vanish at both ends with their slopes; their second derivatives are orthonormal.
     """
     import numpy as np
     from numpy.polynomial import legendre
@@ -161,8 +162,7 @@ def _along(supports: tuple[str, str], n: int) -> "list[Any]":
     hermite = np.array(
         [[0.5, -0.6, 0.0, 0.1], [1 / 6, -0.1, -1 / 6, 0.1], [0.5, 0.6, 0.0, -0.1], [-1 / 6, -0.1, 1 / 6, 0.1]]
     )
-    free = {"pinned": (False, True), "clamped": (False, False), "guided": (True, False), "free": (True, True)}
-    cubic = hermite[[one for support in supports for one in free[support]]].T
+    cubic = hermite[[not prevented for support in supports for prevented in HOLDS[support]]].T
     series = []
     for order in range(3):
         derived = legendre.legder(cubic, order)

@@ -19,22 +19,18 @@ from verify.exact.layout import HELD, SAME_PLACE, BeamLayout
 
 ROTATION = 1
 """Index of the rotation in the state (w, psi, M, V)."""
-_REACH = 3.0
-"""Wavenumber times length of a piece, at most: e^3 costs one digit."""
-_TERMS = 32
-"""Terms of the Taylor series: 3^32 / 32! is below rounding."""
+_REACH, _TERMS = 3.0, 32
+"""Largest wavenumber times length of a piece (e^3 costs one digit), and terms of its Taylor series, to rounding."""
 _MOST_PIECES = 300_000
-"""Of one solution, 1.5 kB each."""
+"""Pieces of one solution, 1.5 kB each."""
 _LOWER, _UPPER = 5, 3
 """Diagonals of the banded system below and above the main one."""
-_GAUSS = 12
-"""Points of the quadrature of modal masses on a piece."""
 _TRIES = 3
 """Excitations of each mode; one is far from orthogonal to it."""
 _PAIR = 1e-9
-"""Relative distance at which two frequencies are one."""
+"""Relative distance of two frequencies that coincide."""
 _NUDGE = 7e-16
-"""Relative step off a resonance at which the system is singular to the last digit."""
+"""Relative step off a resonance at which the system is exactly singular."""
 
 
 class Division(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -52,7 +48,7 @@ class Division(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     products: Any
     """(n_cases * n_spans,), P."""
     over: Any
-    """(n_ends, 4, 4), what attachments make of the state from left to right."""
+    """(n_ends, 4, 4), transfer of the state over attachments."""
     sizes: Array
     """(n_cases, 4), units of the state: 1, k, k^2, k^3."""
     span: Indices
@@ -145,8 +141,8 @@ def _starts(division: Division, states: Any, of: int = 0) -> Any:
 def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]] = ()) -> tuple[Any, Any]:
     """(states right of each end, (n_ends, 4, k), and transverse forces (n_cases, n_imposed, k)).
 
-    jumps: of the state at each end, (n_ends, 4, k). imposed: (station, deflection) pairs, each held by a force, which
-    is the unknown of its end in place of the deflection. Raises LinAlgError for a singular system.
+    jumps: jumps of the state at each end, (n_ends, 4, k). imposed: (station, deflection) pairs; the force there is the
+    unknown of its end in place of the deflection. Raises LinAlgError for a singular system.
     """
     from scipy.linalg.lapack import get_lapack_funcs
 
@@ -230,9 +226,9 @@ class Motion(msgspec.Struct, frozen=True, eq=False):
 
 
 def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
-    """Free motions of modes in a row, of modal mass 1 over rho A L, positive off the left end.
+    """Free motions of consecutive modes, of modal mass 1 over rho A L, positive off the left end.
 
-    numbers: of the modes, (n,). betas: beta L of these, of the one before and the one after, (n + 2,).
+    numbers: mode numbers, (n,). betas: beta L of these, of the mode before and the mode after, (n + 2,).
 
     Inverse iteration: the largest response to a few arbitrary excitations at resonance, then the response to forces and
     couples like that motion, which excite no other mode. Two modes of one frequency share a plane of motions; the
@@ -277,8 +273,8 @@ def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
 
 
 def _modal_mass(division: Division, one: Any, other: Any) -> Array:
-    """Modal mass that two motions share in each case, (n_cases,), over rho A L: of the beam and its attachments."""
-    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    """Modal mass product of two motions in each case, (n_cases,), over rho A L, with attachments."""
+    points, weights = np.polynomial.legendre.leggauss(12)
     powers = np.vander(0.5 * (points + 1.0), _TERMS, increasing=True)
     sums, products = (values[division.span][:, None] for values in (division.sums, division.products))
     layout, first = division.layout, np.cumsum(division.counts.sum(axis=1)) - division.counts.sum(axis=1)

@@ -23,6 +23,14 @@ class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     areas: Array
     equal: bool
     """Whether all parts are alike."""
+    pieces: tuple[Piece, ...]
+    """Sections that the parts divide."""
+    shares: list[int]
+    """Number of parts of each."""
+
+    def of(self, figure: str) -> Array:
+        """A property of the section of every part, (N,), SI."""
+        return np.repeat([float(getattr(piece, figure)) for piece in self.pieces], self.shares)
 
     @property
     def stiffnesses(self) -> Array:
@@ -64,6 +72,8 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
         masses_per_length=masses,
         areas=areas,
         equal=equal,
+        pieces=pieces,
+        shares=shares,
     )
 
 

@@ -1,15 +1,12 @@
-"""Linear structural systems kept in factored form, K = B^T diag(d) B: modes, harmonic response, buckling.
+"""Linear structural systems K = B^T diag(d) B: modes, harmonic response, buckling.
 
-An assembled K loses the low eigenvalues of a beam to rounding like n^4 eps. Here the vectors may come from any solver;
-each eigenvalue is the Rayleigh quotient sum d (B v)^2 / v^T M v, with B applied as successive differences, so that its
-error is of second order in that of the vector. Factorisations use the augmented (saddle-point) matrix
-[[-1/d, B], [B^T, -s M]], which never forms B^T diag(d) B and takes stiffnesses of any size and sign.
-
-Unknowns, stiffnesses and masses are dimensionless, of order one; models scale them.
+Vectors may come from any solver; each eigenvalue is the Rayleigh quotient sum d (B v)^2 / v^T M v, with B applied as
+successive differences, so that its error is of second order in that of the vector. Factorisations are those of the
+augmented matrix (`factored`).
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +14,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
+from verify.linear.factored import FactoredSystem
 
 DENSE = 150
 """Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
@@ -50,46 +48,8 @@ def _sums(terms: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class StructuralSystem:
-    """K = B^T diag(d) B and M over n unknowns. B is a product of sparse factors, applied one after another."""
-
-    strain_factors: Sequence[Any]
-    """Sparse; B = factors[-1] @ ... @ factors[0]. The first take plain differences, which are exact."""
-    stiffness: Array
-    """d, (m,); negative where an axial compression releases energy."""
-    mass: Any
-    """M, (n, n), sparse by columns."""
-    rigid: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    """(n, r), motions without strain, whose zero eigenvalues are left out."""
-    lower_bound: float = 0.0
-    """Lower bound of all eigenvalues without `bodies`. A hard foundation raises them to where they lie close together;
-    the shift of Lanczos follows it."""
-    bodies: Any = None
-    """Sparse rows (r, n) whose squares are the part of M of attached bodies, which may lower r eigenvalues further."""
-
-    @property
-    def n(self) -> int:
-        """Number of unknowns."""
-        return int(self.mass.shape[0])
-
-    @property
-    def n_rigid(self) -> int:
-        """Number of rigid-body motions."""
-        return int(self.rigid.shape[1]) if self.rigid.size else 0
-
-    def strain(self, vectors: Any) -> Any:
-        """B v, (m, k), of v (n, k)."""
-        for factor in self.strain_factors:
-            vectors = factor @ vectors
-        return vectors
-
-    @cached_property
-    def strain_matrix(self) -> Any:
-        """B, (m, n), sparse by columns."""
-        product = self.strain_factors[0]
-        for factor in self.strain_factors[1:]:
-            product = factor @ product
-        return product.tocsc()
+class StructuralSystem(FactoredSystem):
+    """Modes, harmonic response and buckling of a factored system."""
 
     def rayleigh_quotients(self, vectors: Array) -> Array:
         """Eigenvalues (k,) of vectors (n, k)."""
@@ -131,9 +91,8 @@ class StructuralSystem:
         """From the singular values of diag(d)^(1/2) B L^-T with M = L L^T, conditioned like n^2 and not n^4."""
         from scipy.linalg import solve_triangular
 
-        lower = np.linalg.cholesky(self.mass.toarray())
-        root = (np.sqrt(self.stiffness)[:, None] * self.strain_matrix.toarray()).T
-        root = solve_triangular(lower, root, lower=True, check_finite=False).T
+        lower, strain = np.linalg.cholesky(self.mass.toarray()), self.strain(np.eye(self.n))
+        root = solve_triangular(lower, (np.sqrt(self.stiffness)[:, None] * strain).T, lower=True, check_finite=False).T
         right = np.linalg.svd(root, full_matrices=root.shape[0] < self.n)[2]
         last = self.n - self.n_rigid
         vectors = solve_triangular(lower, right[last - k : last].T, lower=True, trans="T", check_finite=False)
@@ -146,10 +105,9 @@ class StructuralSystem:
         """
         from scipy.linalg import eigh
 
-        mass, strain = self.mass.toarray(), self.strain_matrix.toarray()
-        values, vectors = (
-            part[..., self.n_rigid :] for part in eigh(strain.T @ (self.stiffness[:, None] * strain), mass)
-        )
+        mass, strain = self.mass.toarray(), self.strain(np.eye(self.n))
+        stiffness = strain.T @ (self.stiffness[:, None] * strain)
+        values, vectors = (part[..., self.n_rigid :] for part in eigh(stiffness, mass))
         flexibility = mass @ self._inverse(0.0)(mass)[1]
         inverse, low = (part[..., ::-1] for part in eigh(0.5 * (flexibility + flexibility.T), mass))
         n_low = int(np.searchsorted(values, np.sqrt(values[-1] / inverse[0])))
@@ -209,7 +167,7 @@ class StructuralSystem:
         from scipy.sparse.linalg import splu
 
         m, free = len(self.stiffness), np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
-        matrix, scales = self.augmented(-shift), self._pattern[3][:, None]
+        matrix, scales = self.augmented(-shift), self._pattern[-1][:, None]
         compliance = scales / self.stiffness[:, None]
         kept = np.concatenate([np.arange(m), m + free])
         factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
@@ -254,32 +212,6 @@ class StructuralSystem:
 
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
-    @cached_property
-    def _pattern(self) -> tuple[Any, Any, Any, Array]:
-        """[[-1, B], [B^T, M]] sparse by columns, where its data hold -1 and M, and the scales of the strains.
-
-        Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
-        """
-        from scipy.sparse import block_array, csc_array, diags_array
-
-        m, scales = len(self.stiffness), np.exp2(np.minimum(np.round(0.5 * np.log2(abs(self.stiffness))), 0.0))
-        strain = diags_array(scales) @ self.strain_matrix
-        matrix = csc_array(block_array([[diags_array(-np.ones(m)), strain], [strain.T, self.mass]], format="csc"))
-        columns = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
-        inertia = np.flatnonzero((columns >= m) & (matrix.indices >= m))
-        return matrix, np.flatnonzero((columns < m) & (matrix.indices < m)), inertia, scales
-
-    def augmented(self, mass_factor: float, stiffness: Any = None) -> Any:
-        """[[-1/d, B], [B^T, mass_factor M]], sparse by columns. Its pattern is made once, its data per frequency."""
-        from scipy.sparse import csc_array
-
-        d = self.stiffness if stiffness is None else stiffness
-        matrix, compliance, inertia, scales = self._pattern
-        data = matrix.data.astype(d.dtype)
-        data[compliance] = -(scales**2) / d
-        data[inertia] *= mass_factor
-        return csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
-
     def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
         """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
         from scipy.sparse import block_array, csc_array, hstack
@@ -287,13 +219,13 @@ class StructuralSystem:
 
         matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
         for row, z in devices:
-            wide = hstack([csc_array((1, m)), row], format="csc")
-            matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide)
+            wide = hstack([csc_array((1, m)), row], format="csr")
+            matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide).tocsc()
         if rows is not None:
-            wide = block_array([[csc_array((rows.shape[0], m)), rows]], format="csc")
+            wide = hstack([csc_array((rows.shape[0], m)), rows])
             matrix = block_array([[matrix, wide.T], [wide, None]], format="csc")
         try:
-            return splu(csc_array(matrix))
+            return splu(matrix)
         except RuntimeError:  # exactly singular
             raise np.linalg.LinAlgError(0.0) from None
 
@@ -306,23 +238,24 @@ class StructuralSystem:
         its dynamic stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of a resonance where
         nothing is damped.
         """
-        d, k = self.stiffness if stiffness is None else stiffness, loads.shape[1]
+        d, k, m = self.stiffness if stiffness is None else stiffness, loads.shape[1], len(self.stiffness)
         undamped = not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices)
         factor = self._factor(omega2, d if undamped else np.asarray(d, dtype=complex), devices)
 
-        def once(load: Any) -> Any:
-            return factor.solve(np.concatenate([np.zeros((len(d), load.shape[1]), dtype=load.dtype), load]))[len(d) :]
-
         def solve(load: Any) -> Any:
             # iterative refinement: the factors lose what a soft support holds to what bends, factored strains do not
-            response = once(load)
+            right = np.concatenate([np.zeros((m, load.shape[1]), dtype=load.dtype), load])
+            response = factor.solve(right)[m:]
             for _ in range(REFINED):
-                forces = self.strain_matrix.T @ (d[:, None] * self.strain(response)) - omega2 * (self.mass @ response)
+                right[m:] = (
+                    load + omega2 * (self.mass @ response) - self.transposed @ (d[:, None] * self.strain(response))
+                )
                 for row, z in devices:
-                    forces += (z.real if undamped else z) * (row.T @ (row @ response))
-                correction = once(load - forces)
+                    right[m:] -= (z.real if undamped else z) * (row.T @ (row @ response))
+                correction = factor.solve(right)[m:]
                 response = response + correction
-                if abs(correction).max(initial=0.0) <= 1e-14 * abs(response).max(initial=0.0):
+                # a correction is what the factors lose; the next is as much smaller
+                if abs(correction).max(initial=0.0) <= 1e-8 * abs(response).max(initial=0.0):
                     break
             return response
 
@@ -334,9 +267,9 @@ class StructuralSystem:
         return parts[:, 1 : k + 1] + 1j * parts[:, k + 1 :] if np.iscomplexobj(loads) else parts[:, 1:]
 
     def _check_resonance(self, solve: Callable[[Any], Any], response: Any, omega2: float) -> None:
-        """Raise LinAlgError within `RESONANCE` of a resonance, by the response (n, 1) to a random load.
+        """Raise LinAlgError within `RESONANCE` of a resonance, from the response (n, 1) to a random load.
 
-        One step of inverse iteration on the coupled system: omega_n^2 - omega^2 of the nearest resonance.
+        One step of inverse iteration gives omega_n^2 - omega^2 of the nearest resonance of the coupled system.
         """
         first = self.mass @ response
         distance = float((response * first).sum() / (first * solve(first)).sum())
@@ -391,15 +324,16 @@ class StructuralSystem:
         m, d = len(self.stiffness), self.stiffness if stiffness is None else stiffness
         factor = self._factor(omega2, np.asarray(d, dtype=complex), devices, rows)
 
-        def solve(loads: Any) -> Any:
-            padded = [np.zeros((m, 1)), loads, np.zeros((rows.shape[0], 1))]
-            return factor.solve(np.concatenate(padded).astype(complex))[m : m + self.n].real
+        def solve(loads: Any, displacements: Any) -> Any:
+            right = np.concatenate([np.zeros((m, loads.shape[1])), loads, displacements])
+            return factor.solve(right.astype(complex))[m:]
 
         if not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices):
-            self._check_resonance(solve, solve(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
-        right = np.concatenate([np.zeros((m, loads.shape[1])), loads, displacements])
-        solution = factor.solve(right.astype(complex))
-        return solution[m : m + self.n], -solution[m + self.n :]
+            start, nothing = np.random.default_rng(0).standard_normal((self.n, 1)), np.zeros((rows.shape[0], 1))
+            response = solve(start, nothing)[: self.n].real
+            self._check_resonance(lambda load: solve(load, nothing)[: self.n].real, response, omega2)
+        solution = solve(loads, displacements)
+        return solution[: self.n], -solution[self.n :]
 
     # --- Buckling ------------------------------------------------------------------------------------------------
 
@@ -415,7 +349,7 @@ class StructuralSystem:
         soft = self.stiffness < 0.0
         if not soft.any():
             return float("inf")
-        strain = self.strain_matrix.tocsr()
+        strain = self.transposed.T.tocsr()
         released = diags_array(np.sqrt(-self.stiffness[soft])) @ strain[soft]
         solve = StructuralSystem([strain[~soft]], self.stiffness[~soft], self.mass, self.rigid)._inverse(0.0)
         size = released.shape[0]

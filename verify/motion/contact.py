@@ -8,8 +8,8 @@ from msgspec import Struct
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 from verify.linear.surface import section_at
+from verify.linear.system import RESONANCE
 from verify.linear.time_basis import Ratio, TimeBasis
-from verify.motion.forcing import RESONANCE
 from verify.motion.records import Law
 from verify.options import NormalChoice
 from verify.problem.beam import Beam, PointForce

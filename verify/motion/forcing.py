@@ -9,11 +9,9 @@ import numpy as np
 from verify.arrays import Array, BoolArray, ComplexArray
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import phasor
+from verify.linear.system import RESONANCE
 from verify.linear.time_basis import Ratio, TimeBasis
 from verify.problem.beam import PointForce
-
-RESONANCE = 1e-9
-"""Relative distance to an undamped resonance within which a drive is refused."""
 
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])

@@ -1,1 +1,1 @@
-"""What exists: beams, cross-sections, attachments, devices and sliders as frozen values in SI units."""
+"""Beams, cross-sections, attachments, devices and sliders as frozen values in SI units."""

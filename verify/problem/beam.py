@@ -15,7 +15,7 @@ from verify.problem.supports import HOLDS, check_moves
 from verify.validation import Relative, check_number, check_position, unit, validate
 
 SHORTEST_SECTION = 1e-6
-"""Relative to the beam's length; rounding of the lengths may leave a shorter one."""
+"""Relative to the beam's length: a shorter section may be a rounding residue."""
 
 
 class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
@@ -104,14 +104,13 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
     @property
     def added(self) -> tuple[str, ...]:
         """Names of the fields that a uniform beam between two supports does not have."""
-        there = {
-            "section": self.stepped,
-            "mass": self.mass,
-            "spring": self.spring,
-            "tension": self.tension,
-            "foundation": self.foundation,
-        }
-        return tuple(name for name, value in there.items() if value)
+        others = tuple(name for name in ("mass", "spring", "tension", "foundation") if getattr(self, name))
+        return ("section",) * self.stepped + others
+
+    @property
+    def attached(self) -> tuple[PointMass | PointSpring, ...]:
+        """Masses and springs."""
+        return (*self.mass, *self.spring)
 
     @property
     def uniform(self) -> bool:
@@ -124,7 +123,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         return tuple(name for name in self.added if name in ("spring", "tension", "foundation"))
 
     def check_added(self, who: str, takes: tuple[str, ...] = (), instead: str = "ask for something else") -> None:
-        """Raise InputError for added fields that `who` does not model, those in `takes` excepted."""
+        """Raise InputError for added fields other than `takes`; `who` is the subject of the message."""
         for name in self.added:
             if name not in takes:
                 raise InputError(f"beam.{name}: {who} takes none, leave it out or {instead}")
@@ -165,7 +164,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
 
     @property
     def surface_distance(self) -> float:
-        """From the neutral line to the surface of the beam's own section, m. Raises InputError where unknown."""
+        """Distance of the surface from the neutral line of the beam's own section, m. Raises InputError if unknown."""
         distance = self.own.extreme_fibre
         if distance is None:
             raise InputError(

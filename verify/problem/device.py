@@ -74,10 +74,6 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """Force over velocity, R + i (omega m - S / omega), kg/s."""
         return complex(self.dashpot, omega * self.mass - self.stiffness / omega)
 
-    def turning_impedance(self, omega: float) -> complex:
-        """Couple over angular velocity, N m s."""
-        return complex(self.rotational_dashpot, omega * self.rotary_inertia - self.rotational / omega)
-
     def check_on(self, beam: Beam) -> None:
         """Raise InputError off the beam, and on a support where it has no effect."""
         check_position("device.position", self.position, beam.length)

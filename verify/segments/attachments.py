@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array, Indices
+from verify.linear.factored import sparse_rows
 from verify.problem.supports import HOLDS
-from verify.segments.chain import Chain, selection
+from verify.segments.chain import Chain
 
 _BEFORE, _AFTER = 2, 4
 """Joints before and from an attachment's link on whose weights are corrected."""
@@ -27,6 +28,8 @@ _UNEQUAL = 0.05
 _PARABOLA = (0, 1, 2)
 _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 """Powers of the distance from an end in the moments that loads far away cause there."""
+_FOUR_JOINTS = np.array([[-2, 6, -6, 2], [12, -30, 24, -6], [-23, 39, -21, 5], [14, -5, 4, -1]]) / 12.0
+"""Cubic Lagrange polynomials L_j of four joints plus L_j''/12, by the powers s^3, s^2, s, 1 (rows) of each joint."""
 _TIE = 1e-10
 """Added to what the weights are aligned with; decides where two solutions are equally near."""
 
@@ -48,21 +51,18 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
     A joint beyond a pinned end is its odd reflection, beyond a guided end its even one; at free and clamped ends the
     four joints move inward. Meant for equal links.
     """
-    (links, s), n, p = link_at(chain, positions), chain.n_segments, len(positions)
+    (links, s), n = link_at(chain, positions), chain.n_segments
     if rule == "lever" or n < 3:
         columns, weights = links[:, None] + np.arange(2), np.stack([1.0 - s, s], axis=1)
     else:
         reflects = [HOLDS[support] in (HOLDS["pinned"], HOLDS["guided"]) for support in chain.supports]
         first = np.clip(links - 1, -int(reflects[0]), n - 3 + reflects[1])
         s = s + links - first
-        cubics = [-(s - 1) * (s - 2) * (s - 3) / 6, s * (s - 2) * (s - 3) / 2, -s * (s - 1) * (s - 3) / 2,
-                  s * (s - 1) * (s - 2) / 6]  # fmt: skip
-        curvatures = [2.0 - s, 3.0 * s - 5.0, 4.0 - 3.0 * s, s - 1.0]
-        columns, weights = first[:, None] + np.arange(4), np.stack(cubics, axis=1) + np.stack(curvatures, axis=1) / 12.0
+        columns, weights = first[:, None] + np.arange(4), np.vander(s, 4) @ _FOUR_JOINTS
         left, right = (-1.0 if support == "pinned" else 1.0 for support in chain.supports)
         weights = weights * np.where(columns < 0, left, np.where(columns > n, right, 1.0))
         columns = np.where(columns > n, 2 * n - columns, abs(columns))
-    return selection(np.repeat(np.arange(p), columns.shape[1]), columns.ravel(), (p, n + 1), weights.ravel())
+    return sparse_rows(columns, weights, n + 1)
 
 
 def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
@@ -70,7 +70,7 @@ def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
 
     The link itself, on a joint the mean of both; by the reciprocal rule linear between the links' middles.
     """
-    n, rows = chain.n_segments, np.arange(len(positions))
+    n = chain.n_segments
     if rule == "lever" or n < 3:
         links, s = link_at(chain, positions)
         before, share = np.maximum(links - (s == 0.0), 0), np.where(s == 0.0, 0.5, 1.0)
@@ -79,7 +79,7 @@ def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
         links = np.clip(np.searchsorted(middles, positions), 1, n - 1)
         before = links - 1
         share = np.clip((positions - middles[before]) / (middles[links] - middles[before]), 0.0, 1.0)
-    return selection(rows, before, (len(rows), n), 1.0 - share) + selection(rows, links, (len(rows), n), share)
+    return sparse_rows(np.stack([before, links], axis=1), np.stack([1.0 - share, share], axis=1), n)
 
 
 def attachment_weights(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Any, Any]:

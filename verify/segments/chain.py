@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array, Indices
+from verify.linear.factored import sparse_rows
 from verify.problem.supports import HOLDS
 
 
@@ -87,26 +88,26 @@ def joint_masses(masses: Array, inertias: Array, lengths: Array) -> tuple[Array,
     return np.append(own, 0.0) + np.append(0.0, own), shared
 
 
-def bidiagonal(n: int, first: Any, second: Any) -> Any:
-    """Sparse (n, n + 1): `first` on the diagonal, `second` right of it."""
-    from scipy.sparse import diags_array
+def banded(shape: tuple[int, int], offset: int, *diagonals: Any) -> Any:
+    """Sparse by rows: row i has the i-th value of each diagonal in columns i + offset, i + offset + 1, ...
 
-    each = [np.broadcast_to(values, n) for values in (first, second)]
-    return diags_array(each, offsets=[0, 1], shape=(n, n + 1), format="csr")
+    Columns outside the shape are dropped.
+    """
+    columns = np.arange(shape[0])[:, None] + np.arange(offset, offset + len(diagonals))
+    return sparse_rows(columns, np.stack([np.broadcast_to(d, shape[0]) for d in diagonals], axis=1), shape[1])
 
 
 def selection(rows: Any, columns: Any, shape: tuple[int, int], values: Any = 1.0) -> Any:
-    """Sparse with one value in each of the rows."""
+    """Sparse with one value in each of the rows, which ascend."""
     from scipy.sparse import csr_array
 
-    return csr_array((np.broadcast_to(values, np.shape(rows)).astype(float), (rows, columns)), shape)
+    starts = np.searchsorted(rows, np.arange(shape[0] + 1))
+    return csr_array((np.broadcast_to(values, np.shape(rows)).astype(float), columns, starts), shape)
 
 
 def squares(rows: Any, weights: Array) -> Any:
     """R^T diag(weights) R of sparse rows (r, n)."""
-    from scipy.sparse import diags_array
-
-    return rows.T @ diags_array(weights) @ rows
+    return rows.T @ banded((len(weights),) * 2, 0, weights) @ rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,13 +178,13 @@ class Motions:
 
         The first takes plain differences, which are exact.
         """
-        from scipy.sparse import block_array, diags_array, eye_array, vstack
+        from scipy.sparse import block_array, vstack
 
         n, lengths, shares = self.chain.n_segments, self.chain.lengths, self._shares
-        own = eye_array(self.n, format="csr")
-        slips = -bidiagonal(n, shares[:-1] / lengths, shares[1:] / lengths) @ self.joint_slips
-        scale = block_array([[diags_array(1.0 / lengths), slips], [None, own]], format="csr")
-        return vstack([bidiagonal(n, -1.0, 1.0) @ self.positions, own], format="csr"), scale
+        own = banded((self.n, self.n), 0, 1.0)
+        slips = -banded((n, n + 1), 0, shares[:-1] / lengths, shares[1:] / lengths) @ self.joint_slips
+        scale = block_array([[banded((n, n), 0, 1.0 / lengths), slips], [None, own]], format="csr")
+        return vstack([banded((n, n + 1), 0, -1.0, 1.0) @ self.positions, own], format="csr"), scale
 
     @property
     def _shares(self) -> Array:
@@ -206,45 +207,38 @@ class Motions:
     def middles(self) -> Any:
         """Positions of the links' middles, sparse (N, n)."""
         n, shares = self.chain.n_segments, self._shares
-        found = bidiagonal(n, 0.5, 0.5) @ self.positions
-        return found + bidiagonal(n, 0.5 * shares[:-1], -0.5 * shares[1:]) @ self.joint_slips
+        found = banded((n, n + 1), 0, 0.5, 0.5) @ self.positions
+        return found + banded((n, n + 1), 0, 0.5 * shares[:-1], -0.5 * shares[1:]) @ self.joint_slips
 
     @cached_property
     def angles_of(self) -> Any:
         """Angles at joints 0..N of (rotations of the links, v), sparse (N + 1, N + n): to the body beyond at an end."""
-        from scipy.sparse import diags_array, hstack
+        from scipy.sparse import hstack
 
         n = self.chain.n_segments
-        inner = diags_array([np.ones(n), -np.ones(n)], offsets=[0, -1], shape=(n + 1, n))
         ends = selection([0, n], [0, 1], (n + 1, 2), [-1.0, 1.0]) @ self.end_rotations
-        return hstack([inner, ends], format="csr")
+        return hstack([banded((n + 1, n), -1, -1.0, 1.0), ends], format="csr")
 
 
 def link_mass(motions: Motions) -> Any:
     """Mass matrix of the links: their masses at their middles, and their inertias, sparse (n, n)."""
-    from scipy.sparse import diags_array
-
     chain, first, free = motions.chain, int(motions.chain.held[0]), len(motions.free)
     if len(motions.sliding):
         return squares(motions.middles, chain.masses) + squares(motions.rotations, chain.inertias)
     diagonal, off = joint_masses(chain.masses, chain.inertias, chain.lengths)
-    off = np.append(off, 0.0)[first : first + free - 1]
     # zero for the unknowns that are no positions
-    values = [np.append(v, np.zeros(motions.n - free)) for v in (off, diagonal[first : first + free], off)]
-    return diags_array(values, offsets=[-1, 0, 1], shape=(motions.n, motions.n), format="csc")
+    values, beside = np.zeros(motions.n), np.zeros(motions.n + 1)
+    values[:free], beside[1:free] = diagonal[first : first + free], off[first : first + free - 1]
+    return banded((motions.n, motions.n), -1, beside[:-1], values, beside[1:]).T
 
 
-def plain_factors(chain: Chain) -> tuple[Any, Any, Any]:
-    """Sparse factors v -> differences of positions -> rotations of the links -> angles of joints, of a plain chain.
+def plain_factors(chain: Chain) -> tuple[Any, Any]:
+    """Sparse factors v -> differences of positions -> angles of joints, of a chain with nothing but links and joints.
 
-    Those of `Motions` without anything else, put together at once, which takes a tenth of the time.
+    Those of `Motions` put together at once, which takes a tenth of the time.
     """
-    from scipy.sparse import diags_array
-
-    n, (left, right), (first, last) = chain.n_segments, chain.held, chain.walls
-    differences = diags_array(
-        [-1.0, 1.0], offsets=[-int(left), 1 - left], shape=(n, n + 1 - left - right), format="csr"
-    )
-    skip = int(not first)
-    angles = diags_array([-1.0, 1.0], offsets=[skip - 1, skip], shape=(n - 1 + first + last, n), format="csr")
-    return differences, diags_array(1.0 / chain.lengths, format="csr"), angles
+    n, (left, right) = chain.n_segments, chain.held
+    first, last = (int(not wall) for wall in chain.walls)
+    differences = banded((n, n + 1 - left - right), -int(left), -1.0, 1.0)
+    turns = np.concatenate([[0.0], 1.0 / chain.lengths, [0.0]])[first : n + 2 - last]
+    return differences, banded((len(turns) - 1, n), first - 1, -turns[:-1], turns[1:])

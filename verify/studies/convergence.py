@@ -86,8 +86,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:
         """A row for each mode, variant and size, in this order."""
-        from verify.analysis.comparison import ORDER_FLOOR, relative_error
-        from verify.analysis.grid_convergence import grid_convergence
+        from verify.analysis.comparison import ORDER_FLOOR, grid_convergence, relative_error
         from verify.analysis.solution_cache import theory_of
         from verify.linear.registry import MODELS
         from verify.timing import interleaved_medians
@@ -132,12 +131,12 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
-        from verify.analysis.solution_cache import has_bracket
+        from verify.analysis.solution_cache import unproven
         from verify.linear.registry import MEAN
 
         rows: list[Row] = []
         reasons: dict[str, None] = {}
-        settings = next((one for one in self.combinations if has_bracket(cache.beam, one)), self.combinations[0])
+        settings = next((one for one in self.combinations if not unproven(cache.beam, one)), self.combinations[0])
         for mode in self.modes:
             for count in self.counts:
                 try:

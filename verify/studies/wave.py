@@ -144,16 +144,13 @@ def _waves(case: "DrivenCase", cache: "SolutionCache") -> Row:
     """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
     from msgspec.structs import replace
 
-    from verify.waves.best_frequency import minimum_reflection
+    from verify.travelling_wave import best_frequency
 
     row = {"drive": _operation(case, cache), "best": None, "note": ""}
     try:
-        least = minimum_reflection(case)
+        return row | {"best": _operation(replace(case, frequency_hz=best_frequency(case)), cache)}
     except InputError as error:
         return row | {"note": str(error)}
-    if least.at_edge:
-        return row | {"note": f"the reflection still falls at the edge of the search, {least.x:.6g} Hz"}
-    return row | {"best": _operation(replace(case, frequency_hz=least.x), cache)}
 
 
 def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:

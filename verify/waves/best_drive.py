@@ -14,24 +14,20 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import NoFigureError
-from verify.waves.best_phase import FirstHarmonic, squared
-from verify.waves.driven_case import DrivenCase
+from verify.waves.driven_case import DrivenCase, unit_waves
 from verify.waves.operating_point import check_two
-from verify.waves.superposition import unit_waves
-from verify.waves.two_waves import reflections, standing_wave_ratios, zero_field
+from verify.waves.two_waves import minimum_near, reflections, standing_wave_ratios, zero_field
 from verify.waves.window import Window, middle_half
 
-HUGE = 10.0
-"""Amplitude ratio, or its inverse, from which the result says so."""
 PROPORTIONAL, NEARLY = 1e-4, 0.05
-"""Independence of the unit waves below which no ratio exists, but for near fields, and that the result mentions."""
+"""Independence of the unit waves below which no ratio exists, but for near fields, and below which a note says so."""
 
 
 class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """The drive of two actuators with the least reflection, and the best of equal amplitudes."""
 
     frequencies_hz: Array
-    """(n,), one or a band, those with a wave."""
+    """(n,), the frequencies that have a wave."""
     ratio: float
     """Amplitude of the second over that of the first, forces or displacements; NaN where none exists."""
     phase_deg: float
@@ -41,11 +37,9 @@ class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     equal_phase_deg: float
     """Lead of the second at which equal amplitudes have the least reflection."""
     equal_reflection: Array
-    """Gamma of these, (n,)."""
+    """Gamma of equal amplitudes at that phase, (n,)."""
     independence: float
     """Sine of the angle between the unit waves (A1, B1) and (A2, B2), the least over the band; 0: proportional."""
-    note: str = ""
-    """What limits the drive; empty where nothing does."""
 
     @property
     def standing_wave_ratio(self) -> float:
@@ -56,6 +50,14 @@ class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def equal_standing_wave_ratio(self) -> float:
         """The same of equal amplitudes."""
         return float(standing_wave_ratios(self.equal_reflection).max())
+
+    @property
+    def note(self) -> str:
+        """Limit of the drive near a resonance, where unit waves are proportional; empty elsewhere."""
+        if self.independence >= NEARLY:
+            return ""
+        left = "no ratio makes it travel" if isnan(self.ratio) else f"{self.independence:.2g} of it is left travelling"
+        return f"near a resonance both actuators make the same standing wave and {left}: choose another frequency_hz"
 
     def check_exists(self) -> None:
         """Raise NoFigureError where no ratio exists."""
@@ -81,10 +83,9 @@ def best_drive(
         wave[known] for wave in unit.superposed(np.eye(2, dtype=complex))[:: 1 if direction > 0 else -1]
     )
     if not np.isfinite(wanted).all():
-        raise zero_field()  # of an actuator on a support
-    sizes = np.sqrt(abs(wanted) ** 2 + abs(unwanted) ** 2)
-    area = abs(wanted[:, 0] * unwanted[:, 1] - wanted[:, 1] * unwanted[:, 0])
-    independence = float((area / sizes.prod(axis=1)).min())
+        raise zero_field()  # an actuator acts on a support
+    sizes = np.sqrt(abs(wanted) ** 2 + abs(unwanted) ** 2).prod(axis=1)
+    independence = float((abs(wanted[:, 0] * unwanted[:, 1] - wanted[:, 1] * unwanted[:, 0]) / sizes).min())
     ratio, phase, drive = nan, nan, np.full(2, nan, dtype=complex)
     if independence > PROPORTIONAL:
         both = np.concatenate([wanted, unwanted])
@@ -93,37 +94,20 @@ def best_drive(
         drive = np.linalg.solve(r, np.linalg.svd(q[len(wanted) :])[2][-1].conj()) / scale
         ratio = float(abs(drive[1]) / abs(drive[0])) if drive[0] else inf
         phase = float(np.angle(drive[1] * np.conj(drive[0]), deg=True))
-    plus, minus = (squared(wave[:, 0], wave[:, 1]) for wave in (wanted, unwanted))
-    plus, minus = (FirstHarmonic(one.mean.sum(keepdims=True), one.first.sum(keepdims=True)) for one in (plus, minus))
-    total = minus.less(-1.0, plus)
-    equal = min(minus.stationary_ratio(plus)[0], key=lambda phase: float(minus.at(phase)[0] / total.at(phase)[0]))
-    turned = np.exp(1j * equal)
+
+    def unwanted_share(phases: Array) -> Array:
+        """Root of the power of the unwanted wave over that of both, at equal amplitudes."""
+        powers = [(abs(w[:, :1] + w[:, 1:] * np.exp(1j * phases)) ** 2).sum(axis=0) for w in (wanted, unwanted)]
+        return np.asarray(np.sqrt(powers[1] / sum(powers)))
+
+    # beyond one turn on both sides, so that a minimum at 180 degrees is inside
+    equal = np.exp(1j * minimum_near(unwanted_share, np.linspace(-1.04, 1.04, 105) * np.pi, 1e-12).x)
     return BestDrive(
         frequencies_hz=frequencies[known],
         ratio=ratio,
         phase_deg=phase,
         reflection=reflections(wanted @ drive, unwanted @ drive),
-        equal_phase_deg=float(np.angle(turned, deg=True)),
-        equal_reflection=reflections(wanted @ [1.0, turned], unwanted @ [1.0, turned]),
+        equal_phase_deg=float(np.angle(equal, deg=True)),
+        equal_reflection=reflections(wanted @ [1.0, equal], unwanted @ [1.0, equal]),
         independence=independence,
-        note=_note(case, ratio, float(sizes[:, 1].mean() / sizes[:, 0].mean()), independence),
     )
-
-
-def _note(case: DrivenCase, ratio: float, response: float, independence: float) -> str:
-    """What limits a drive; `response` of the second actuator over the first, in size."""
-    if isnan(ratio):
-        return (
-            "both actuators make the same standing wave, as at a resonance of an undamped beam, and no ratio makes it "
-            "travel: choose another frequency_hz or position"
-        )
-    if not 1.0 / HUGE < ratio < HUGE:
-        large, factor, weak = (1, ratio, 1.0 / response) if ratio > 1.0 else (0, 1.0 / ratio, response)
-        why = "it acts near a node, move it" if weak > 3.0 else "the wave is nearly that of this one alone"
-        return f"the amplitude at {case.forces[large].position:g} m is {factor:.3g} times the other: {why}"
-    if independence < NEARLY:
-        return (
-            f"both actuators make nearly the same standing wave, as near a resonance, and {independence:.2g} of it is "
-            "left travelling: choose another frequency_hz"
-        )
-    return ""

@@ -1,24 +1,28 @@
-"""A driven beam as one value: a model, what drives it at one frequency, and the devices on it."""
+"""A driven beam as one value: a model, its drive and devices; the superposition of the waves of its actuators."""
 
 from typing import TYPE_CHECKING
 
 import msgspec
+import numpy as np
 from msgspec.structs import replace
 
-from verify.errors import InputError
+from verify.arrays import Array, ComplexArray
+from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.linear.base import BeamModel
-from verify.linear.field import HarmonicField, wavenumber
+from verify.linear.field import HarmonicField, unit_response, wavenumber
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
+from verify.waves.two_waves import ROUNDING, amplitudes_of, window_rule, zero_field
+from verify.waves.window import Window, check_span, check_waves
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
 
 
 class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
-    """One model under harmonic forces, or with displacements imposed, at one frequency.
+    """One model under harmonic forces, or imposed displacements, at one frequency.
 
-    Raises InputError for a device that its beam cannot have, and for one with a force beside imposed displacements.
+    Raises InputError for a device off the beam or on a support, and for one with a force beside imposed displacements.
     """
 
     model: BeamModel
@@ -54,20 +58,18 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
     def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
         """The field under other forces (displacements) at another frequency. Raises InputError."""
-        if self.beam.uniform:
-            self.model.check_propagates(frequency_hz)
+        self.model.check_propagates(frequency_hz)
         solve = self.model.harmonic if self.kind == "force" else self.model.imposed
         return solve(forces, frequency_hz, devices=self.passive)
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Of waves in the model, 1/m: by its discrete dispersion where that is known, else the beam's.
+        """Wavenumber in the model, 1/m: by its discrete dispersion where that is known, else the beam's.
 
-        Raises NoFigureError at a frequency whose waves do not run along its parts.
+        Raises NoFigureError above the cut-off of its parts.
         """
+        self.model.check_propagates(frequency_hz)
         if self.beam.section:
             return wavenumber(self.beam, frequency_hz, self.model.theory)
-        if self.beam.uniform:
-            self.model.check_propagates(frequency_hz)
         return self.model.wavenumber(frequency_hz)
 
 
@@ -76,3 +78,78 @@ def driven(case: DrivenCase, cache: "SolutionCache") -> HarmonicField:
     if case not in cache.fields:
         cache.fields[case] = case.field(case.acting, case.frequency_hz)
     return cache.fields[case]
+
+
+class UnitWaves(msgspec.Struct, frozen=True, eq=False):
+    """The two waves in a window per unit force (displacement) of each of n_a actuators, at n frequencies.
+
+    NaN at a frequency without them: an undamped resonance, a cut-off, a window that is too short.
+    """
+
+    case: DrivenCase
+    frequencies_hz: Array
+    """(n,)."""
+    k: ComplexArray
+    """(n,), 1/m."""
+    forward: ComplexArray
+    """A+ at the middle of the window, (n, n_a), m/N or m/m."""
+    backward: ComplexArray
+    """A-, likewise."""
+    missing: tuple[NoFigureError, ...]
+    """The reason for each frequency without them."""
+
+    def superposed(self, drives: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """A+ and A- in m, (n, p) arrays, under p sets of complex amplitudes, (n_a, p) or (n, n_a, p).
+
+        NaN where the motion is rounding. Raises NoFigureError where it is rounding throughout.
+        """
+        scale = np.ones((len(self.k), 1))
+        if self.case.kind == "force":
+            scale[:, 0] = [unit_response(self.case.beam, float(f)) for f in self.frequencies_hz]
+        forward, backward = ((wave[:, None, :] @ drives)[:, 0, :] for wave in (self.forward, self.backward))
+        moves = np.maximum(abs(forward), abs(backward)) > ROUNDING * scale * abs(drives).sum(axis=-2)
+        if not moves.any():
+            raise self.missing[0] if self.missing else zero_field()
+        return np.where(moves, forward, np.nan), np.where(moves, backward, np.nan)
+
+
+def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitWaves:
+    """The unit waves of a case's actuators, active devices among them. Raises InputError for an unfit window."""
+    beam, theory, highest = case.beam, case.model.theory, float(frequencies_hz.max())
+    positions, couples = [force.position for force in case.acting], [d.position for d in case.passive if d.turning]
+    check_span(beam, [*positions, *(d.position for d in case.passive if d.across)], window, couples, theory)
+    rule = window_rule(window, wavenumber(beam, highest, theory).real)
+    responses = _unit_responses(case, frequencies_hz, positions, rule.x)
+    k, missing = np.full(len(frequencies_hz), np.nan, dtype=complex), list[NoFigureError]()
+    for i, hertz in enumerate(frequencies_hz.tolist()):
+        try:
+            check_waves(beam, hertz, window, theory)
+            own = case.wavenumber(hertz)
+            if not np.isfinite(responses[i]).all():
+                held = " held at its actuators" if case.kind == "displacement" else ""
+                raise ResonanceError(
+                    f"frequency_hz = {hertz!r} is an undamped resonance of the {case.model.name} model{held}: give the "
+                    "beam a loss_factor or choose another frequency"
+                )
+            k[i] = own
+        except NoFigureError as error:
+            missing.append(error)
+    waves, known = np.full((len(k), 2, len(positions)), np.nan, dtype=complex), np.isfinite(k)
+    waves[known] = amplitudes_of(rule, k[known], responses[known], 0.5 * sum(window))
+    forward, backward = waves[:, 0], waves[:, 1]
+    return UnitWaves(case, frequencies_hz, k, forward, backward, tuple(missing))
+
+
+def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[float], x: Array) -> ComplexArray:
+    """Deflection at x, (n, n_a, len(x)), per unit force, or displacement with the others at rest; NaN at resonances."""
+    if case.kind == "force" and not case.passive:
+        return case.model.receptance(positions, frequencies_hz, x)
+    responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    for i, hertz in enumerate(frequencies_hz.tolist()):
+        for j in range(len(positions)):
+            units = tuple(PointForce(position=p, amplitude=float(m == j)) for m, p in enumerate(positions))
+            try:
+                responses[i, j] = case.field(units, hertz).deflection(x)
+            except NoFigureError:
+                break
+    return responses

@@ -1,4 +1,4 @@
-"""A device that absorbs the wave: the impedance that matches the beam, and the reflection of any other.
+"""A device that absorbs the wave: the impedance that matches the beam, and the reflection by any other.
 
 Impedance is force over velocity, Z = R + i (omega m - S/omega) of a dashpot R, a spring S and a mass m; or couple over
 angular velocity. The beam ends at `distance` beyond the device, on any support; waves come from the other side, from so
@@ -6,7 +6,7 @@ far that their near field has decayed. Source: flexural waves on a half-infinite
 Structure-Borne Sound, chapters on impedance and on reflection; the classic of matching is Z = conj(Z_beam).
 
 A wave e^{-ikx} from the left makes s = w (or w') at the bare beam's place and comes back as r. A unit force (or couple)
-there sends A s e^{ikx} to the left, with A = -i/(4 EI k^3) of an endless beam, by reciprocity. The device pulls with
+there sends A s e^{ikx} to the left, with A = -i/(4 EI k^3) of an endless beam, by reciprocity. The device exerts
 i omega Z s Z_b/(Z + Z_b), so that
 
     Gamma = r - i omega A s^2 Z Z_b/(Z + Z_b) = Gamma_held (Z - Z_m)/(Z + Z_b),
@@ -27,7 +27,7 @@ from verify.problem.beam import Beam, check_frequency
 from verify.problem.device import Device, of_impedance
 from verify.validation import check_kind, check_number
 
-_WAYS = np.array([1j, 1.0])
+_DECAY = np.array([1j, 1.0])
 """q of e^{-q k x} away from a source: a wave, and a near field."""
 
 
@@ -63,20 +63,20 @@ def ending(
 
     def returned(arriving: ComplexArray) -> ComplexArray:
         """Wave and near field at the device, (2,), that the end sends back of those that leave it, (2,)."""
-        rows, decay = np.array([(-_WAYS) ** order for order in HELD[support]]), np.exp(-_WAYS * k * distance)
-        right = np.array([_WAYS**order @ (arriving * decay) for order in HELD[support]])
+        rows, decay = np.array([(-_DECAY) ** order for order in HELD[support]]), np.exp(-_DECAY * k * distance)
+        right = np.array([_DECAY**order @ (arriving * decay) for order in HELD[support]])
         return np.asarray(np.linalg.solve(rows, -right) * decay)
 
     # motion under a unit force or couple, in 1/(4 EI k^3): that of an endless beam, whose response at the distance r is
     # -(i e^{-ikr} + e^{-kr}), or its derivative by the source's place, and both waves from the end
-    back = returned(-np.array([1j, 1.0]) * (-_WAYS * k if turning else 1.0))
-    motion = (1.0 - 1j) * k**2 + back @ (-_WAYS * k) if turning else back.sum() - (1.0 + 1j)
+    back = returned(-np.array([1j, 1.0]) * (-_DECAY * k if turning else 1.0))
+    motion = (1.0 - 1j) * k**2 + back @ (-_DECAY * k) if turning else back.sum() - (1.0 + 1j)
     if motion == 0.0:
         name = name or f"position = {distance!r} m"
         raise InputError(f"{name} stands on a {support} support, where a device does nothing: move it")
     own = complex(unit / (1j * motion))
     back = returned(np.array([1.0, 0.0]))
-    s = k * (1j - back @ _WAYS) if turning else 1.0 + back.sum()
+    s = k * (1j - back @ _DECAY) if turning else 1.0 + back.sum()
     held = complex(back[0] - s**2 * own / unit)
     return Ending(own, -own * complex(back[0]) / held if beam.loss_factor else own.conjugate(), held)
 

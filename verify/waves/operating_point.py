@@ -1,24 +1,24 @@
-"""Reflection and crest speed over frequency and phase of two drives, and the fastest crests of little reflection."""
+"""Operating points of a drive: the frequency of least reflection, and the fastest crests of little reflection."""
 
 import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.errors import InputError
-from verify.waves.best_frequency import SEARCH_SPAN
-from verify.waves.best_phase import fastest_candidates
-from verify.waves.driven_case import DrivenCase
-from verify.waves.superposition import UnitWaves, unit_waves
-from verify.waves.two_waves import reflections
-from verify.waves.waveguide import Waveguide
-from verify.waves.window import middle_half
+from verify.errors import InputError, NoFigureError
+from verify.linear.field import phasor
+from verify.waves.driven_case import DrivenCase, unit_waves
+from verify.waves.two_waves import Waveguide, minimum_near, reflections
+from verify.waves.window import Window, middle_half
 
+SEARCH_SPAN = 0.015
+"""Half width of a search, relative to the drive's frequency."""
 PHASES_DEG = (5.0, 175.0)
 """Range of the search in the phase between two drives, in size."""
 ROUNDING = 1e-13
-"""Of a reflection at its limit."""
-_ZOOM, _SHARP = 17, 1e-12
-"""Frequencies of each closer scan, and the relative interval at which the search ends."""
+"""Excess over the limit of a reflection that is rounding."""
+_ZOOM, _LEVELS, _SHARP = 17, 13, 1e-12
+"""Points of a finer grid, number of such grids in phase (to 1e-12 rad), and relative interval of the last in
+frequency."""
 
 
 class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):
@@ -34,67 +34,35 @@ class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):
     """Whether the crest speed still grows at the edge of the search in frequency."""
 
 
-class OperatingMap(msgspec.Struct, frozen=True):
-    """Reflection and crest speed in the middle half over frequency and phase between two forces (displacements).
+def best_frequency(case: DrivenCase, span: float = SEARCH_SPAN, window: Window | None = None) -> float:
+    """The frequency within `span` (relative) of the drive's with the least reflection, Hz, to 1e-5 Hz.
 
-    Raises InputError without two forces, or with a device that has a force of its own.
+    Raises InputError where the reflection still falls at the edge of the search, and where the wave stands throughout.
     """
+    drives = np.array([[phasor(force)] for force in case.acting])
 
-    case: DrivenCase
+    def reflection(at: Array) -> Array:
+        try:
+            waves = unit_waves(case, at, window or middle_half(case.beam)).superposed(drives)
+        except NoFigureError:
+            if len(at) > 1:
+                raise
+            return np.ones(1)
+        return np.nan_to_num(reflections(*waves)[:, 0], nan=1.0)  # on a resonance the wave stands
 
-    def __post_init__(self) -> None:
-        check_two(self.case)
-
-    def over(self, frequencies_hz: Array, phases_deg: Array) -> tuple[Array, Array]:
-        """(reflection, crest speed in m/s) on a grid, (n_frequencies, n_phases) each; NaN where there is no wave.
-
-        Raises NoFigureError where the whole grid has none.
-        """
-        return self._figures(self._waves(frequencies_hz), np.deg2rad(phases_deg))
-
-    def _waves(self, frequencies_hz: Array) -> UnitWaves:
-        return unit_waves(self.case, frequencies_hz, middle_half(self.case.beam))
-
-    def _figures(self, waves: UnitWaves, phases: Array) -> tuple[Array, Array]:
-        """The same at phases (p,) or (n, p), rad."""
-        first, second = (force.amplitude for force in self.case.forces)
-        drives = np.stack(np.broadcast_arrays(first + 0j, second * np.exp(1j * phases)), axis=-2)
-        forward, backward = waves.superposed(drives)
-        guide, omega = Waveguide(self.case.beam, self.case.model.theory), 2.0 * np.pi * waves.frequencies_hz
-        return reflections(forward, backward), guide.crest_speed(omega[:, None], waves.k[:, None], forward, backward)
-
-    def fastest(self, frequencies_hz: Array, sign: float, limit: float) -> OperatingPoint:
-        """The largest crest speed with a reflection up to `limit`, to 1e-12 of the frequency.
-
-        Phases of 5 to 175 degrees with this sign. The best phase at a frequency is known in closed form, so one search
-        is left: the best of a grid, then of a grid eight times finer around it, again and again. It uses no derivative,
-        and so finds corners, at the limit or at an end, as closely. Raises InputError where no point keeps the limit.
-        """
-        ends = sorted(float(np.copysign(np.deg2rad(end), sign)) for end in PHASES_DEG)
-        amplitudes, at = np.array([force.amplitude for force in self.case.forces]), frequencies_hz
-        while True:
-            waves = self._waves(at)
-            forward, backward = (np.nan_to_num(wave * amplitudes) for wave in (waves.forward, waves.backward))
-            phases = fastest_candidates(forward, backward, limit, (ends[0], ends[1]))
-            gamma, speed = self._figures(waves, phases)
-            speeds = np.where(gamma <= limit + ROUNDING, abs(speed), 0.0)
-            best, chosen = divmod(int(speeds.argmax()), speeds.shape[1])
-            if speeds[best, chosen] == 0.0:
-                raise InputError(
-                    f"limit = {limit!r}: no frequency and phase near the drive has so little reflection, raise it"
-                )
-            low, high = at[max(best - 1, 0)], at[min(best + 1, len(at) - 1)]
-            if high - low <= _SHARP * high:
-                break
-            at = np.linspace(low, high, _ZOOM)
-        hertz, first, last = float(at[best]), frequencies_hz[0], frequencies_hz[-1]
-        return OperatingPoint(
-            frequency_hz=hertz,
-            phase_deg=float(np.rad2deg(phases[best, chosen])),
-            reflection=float(gamma[best, chosen]),
-            crest_speed=float(speed[best, chosen]),
-            at_edge=bool(min(hertz - first, last - hertz) <= 0.01 * (frequencies_hz[1] - first)),
+    least = minimum_near(reflection, np.linspace(1.0 - span, 1.0 + span, 41) * case.frequency_hz, 1e-5)
+    if least.value > 1.0 - 1e-6:
+        low, high = ((1.0 + side * span) * case.frequency_hz for side in (-1, 1))
+        raise InputError(
+            f"phase_deg: with this phase between the forces the wave stands at every frequency from {low:.6g} to "
+            f"{high:.6g} Hz, so none is best, choose another phase_deg"
         )
+    if least.at_edge:
+        raise InputError(
+            f"span = {span!r}: the reflection still falls at the edge of the search, {least.x:.6g} Hz, give a wider "
+            "span or another frequency_hz"
+        )
+    return least.x
 
 
 def check_two(case: DrivenCase) -> None:
@@ -110,11 +78,46 @@ def lead_deg(case: DrivenCase) -> float:
     return 180.0 - (180.0 - (case.forces[1].phase_deg - case.forces[0].phase_deg)) % 360.0
 
 
-def maximum_crest_speed(case: DrivenCase, limit: float) -> OperatingPoint:
-    """The fastest crests with a reflection up to `limit` within 1.5 % of the drive's frequency. Raises InputError.
+def maximum_crest_speed(case: DrivenCase, limit: float, span: float = SEARCH_SPAN) -> OperatingPoint:
+    """The fastest crests in the middle half with a reflection up to `limit`, by two forces of these amplitudes.
 
-    The second force leads or lags as in the case.
+    Over frequencies within `span` (relative) of the drive's and phases of 5 to 175 degrees, of the sign that the case
+    has. Raises InputError without two forces, and where no point keeps the limit.
     """
-    land = OperatingMap(case)
-    frequencies = np.linspace(1.0 - SEARCH_SPAN, 1.0 + SEARCH_SPAN, 121) * case.frequency_hz
-    return land.fastest(frequencies, lead_deg(case) or 1.0, limit)
+    check_two(case)
+    first, second = (force.amplitude for force in case.forces)
+    ends = np.copysign(np.deg2rad(PHASES_DEG), lead_deg(case) or 1.0)
+    guide = Waveguide(case.beam, case.model.theory)
+    edges = (1.0 - span) * case.frequency_hz, (1.0 + span) * case.frequency_hz
+    at = np.linspace(*edges, 121)
+    # grids around the best point, eight times finer each: without derivatives, since the best point is often a corner,
+    # where the reflection reaches its limit; points beyond the limit rank by their reflection, which leads to it
+    while True:
+        waves, rows = unit_waves(case, at, middle_half(case.beam)), np.arange(len(at))
+        omega, phases = 2.0 * np.pi * at[:, None], np.tile(np.linspace(ends[0], ends[1], 171), (len(at), 1))
+        for _ in range(_LEVELS):
+            drives = np.stack([np.full_like(phases, first), second * np.exp(1j * phases)], axis=1)
+            forward, backward = waves.superposed(drives)
+            gammas, speeds = (
+                reflections(forward, backward),
+                guide.crest_speed(omega, waves.k[:, None], forward, backward),
+            )
+            ranks = np.nan_to_num(np.where(gammas <= limit + ROUNDING, abs(speeds), -gammas), nan=-1.0)
+            best = ranks.argmax(axis=1)
+            phase, gamma, speed, rank = (values[rows, best] for values in (phases, gammas, speeds, ranks))
+            low, high = (phases[rows, (best + side).clip(0, phases.shape[1] - 1)] for side in (-1, 1))
+            phases = np.linspace(low, high, _ZOOM, axis=1)
+        i = int(rank.argmax())
+        below, above = at[max(i - 1, 0)], at[min(i + 1, len(at) - 1)]
+        if above - below <= _SHARP * above:
+            break
+        at = np.linspace(below, above, _ZOOM)
+    if rank[i] < 0.0:
+        raise InputError(f"limit = {limit!r}: no frequency and phase near the drive has so little reflection, raise it")
+    return OperatingPoint(
+        frequency_hz=float(at[i]),
+        phase_deg=float(np.rad2deg(phase[i])),
+        reflection=float(gamma[i]),
+        crest_speed=float(speed[i]),
+        at_edge=bool(min(at[i] - edges[0], edges[1] - at[i]) <= 0.01 * (edges[1] - edges[0]) / 120),
+    )

@@ -1,4 +1,4 @@
-"""The lumped picture of a travelling wave: two modes a quarter of a period apart.
+"""The lumped-parameter model of a travelling wave: two modes a quarter of a period apart.
 
 At a point the derivatives of a mode separate both waves from both near fields:
 
@@ -24,7 +24,7 @@ from verify.waves.two_waves import reflections, standing_wave_ratios
 def lumped_swr(beam: Beam, x: Numbers, modes: tuple[int, int] = (21, 22)) -> Array:
     """Local standing-wave ratio (|A+| + |A-|) / ||A+| - |A-|| at x (m), (n,), of phi_a + i phi_b, mass-normalised.
 
-    Infinite where the wave stands. Raises InputError off the beam, for one mode twice and a beam that is not uniform.
+    Infinite at a standing wave. Raises InputError off the beam, for one mode twice and a beam that is not uniform.
     """
     if not beam.uniform:
         raise InputError(f"beam.{beam.added[0]}: two modes are one wave on a uniform beam alone, leave it out")

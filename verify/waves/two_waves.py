@@ -1,4 +1,4 @@
-"""The fit of a forward and a backward wave to a deflection: linear in their amplitudes, a search in the wavenumber."""
+"""A forward and a backward wave: their fit to a deflection, crest speed and energy flux in a waveguide."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,21 +8,20 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, NoFigureError
-from verify.linear.field import HarmonicField, phasor, unit_response
+from verify.linear.field import HarmonicField, phasor, unit_response, wavenumber
 from verify.linear.numerics import Rule, gauss_rule
+from verify.problem.beam import Beam
 from verify.validation import check_kind
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
-STANDING = 1e-12
-"""Distance of a reflection from 1 below which the wave is a standing one: its ratio is infinite."""
-ROUNDING = 1e-13
-"""Deflection relative to the response to the forces below which it is rounding."""
+STANDING, ROUNDING = 1e-12, 1e-13
+"""1 - Gamma below which a wave is a standing one, and deflection over the response to the forces that is rounding."""
 _REACH = 0.04
-"""Relative distance from the beam's own up to which a wavenumber is fitted."""
+"""Largest relative distance of a fitted wavenumber from the beam's own."""
 
 
 def reflections(forward: ComplexArray, backward: ComplexArray) -> Array:
-    """Gamma of amplitudes of one shape: the weaker over the stronger; 1 where both are zero."""
+    """Gamma of amplitudes of any one shape: the weaker over the stronger; 1 where both are zero."""
     sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
     return np.asarray(np.where(sizes[1] == 0.0, 1.0, sizes[0] / np.where(sizes[1] == 0.0, 1.0, sizes[1])))
 
@@ -37,7 +36,7 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
 
     wavenumber: complex
-    """k, 1/m, the one used."""
+    """k, 1/m, stated or fitted."""
     forward: complex
     """A+ of e^{-ik(x - middle)}, m."""
     backward: complex
@@ -47,7 +46,7 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def direction(self) -> int:
-        """+1 where the stronger wave runs towards +x, else -1."""
+        """Direction of the stronger wave: +1 towards +x, else -1."""
         return 1 if abs(self.forward) >= abs(self.backward) else -1
 
     @property
@@ -63,10 +62,7 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def check_travelling(self) -> None:
         """Raise NoFigureError for a standing wave: its flux and signed area are zero but for rounding."""
         if self.reflection >= 1.0 - STANDING:
-            raise NoFigureError(
-                "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
-                "phase_deg"
-            )
+            raise NoFigureError("the wave stands: its energy flux and S3 are zero, choose another phase_deg")
 
 
 def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
@@ -149,13 +145,13 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weight
     if least.at_edge:
         raise InputError(
             f"the fitted wavenumber ends at the edge of its search, {least.x * start.real:.6g} 1/m, {_REACH:.0%} from "
-            f"the beam's {start.real:.6g} 1/m: state the wavenumber, two waves near the beam's are not there"
+            f"the beam's {start.real:.6g} 1/m: state the wavenumber, the field is not two waves near the beam's"
         )
     return complex(least.x * start)
 
 
 class Minimum(msgspec.Struct, frozen=True):
-    """Where a figure is least in an interval; `at_edge` where it still falls at an end, which is then no minimum."""
+    """Minimum of a figure in an interval; `at_edge`: it still falls at an end of the interval."""
 
     x: float
     value: float
@@ -179,3 +175,51 @@ def minimum_near(figure: Callable[[Array], Array], grid: Array, tolerance: float
     )
     x, value = (best + least.x, least.fun**0.5) if least.fun < values[i] ** 2 else (best, values[i])
     return Minimum(float(x), float(value), bool(min(x - grid[0], grid[-1] - x) < 0.01 * (grid[1] - grid[0])))
+
+
+class Waveguide(msgspec.Struct, frozen=True):
+    """A beam's own section by a theory. All methods take arrays as well."""
+
+    beam: Beam
+    theory: str = "euler-bernoulli"
+
+    def rotation_ratio(self, omega: Any) -> Any:
+        """Rotation of the section over the slope of the line in a travelling wave: 1 without shear.
+
+        kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921);
+        complex with losses.
+        """
+        shear, loss = self.beam.own.shear_stiffness, self.beam.loss_factor
+        if self.theory != "timoshenko" or shear is None:
+            return 1.0
+        hertz = np.asarray(omega) / (2.0 * np.pi)
+        k2 = np.vectorize(lambda f: wavenumber(self.beam, float(f), self.theory) ** 2)(hertz)
+        resisted = shear * (1.0 + 1j * loss) * k2 if loss else shear * k2.real
+        return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / resisted
+
+    def axis_ratio(self, omega: Any, k: Any) -> Any:
+        """Width over height of the surface ellipse of a pure wave, r = (k h/2) psi/w'."""
+        return np.real(k * self.rotation_ratio(omega)) * self.beam.surface_distance
+
+    def crest_speed(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+        """Velocity of the surface along +x at the crests of both waves, m/s.
+
+        When w at a point is largest, u_x changes at omega S3 / (2 |w|). S3 = -2 r (|A+|^2 - |A-|^2) is constant; with
+        the rms sqrt(|A+|^2 + |A-|^2) of |w| that is -omega r (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2).
+        """
+        plus, minus = abs(forward) ** 2, abs(backward) ** 2
+        return -omega * self.axis_ratio(omega, k) * (plus - minus) / np.sqrt(plus + minus)
+
+    def energy_flux(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+        """Power that both waves carry towards +x, W, at the point to which their amplitudes refer.
+
+        Transverse force times velocity and moment times angular velocity, 1/2 Re, with EI (1 + i eta); undamped
+        EI k^3 omega (|A+|^2 - |A-|^2). Axial force and rotary inertia contribute to the transverse force.
+        """
+        beam, k = self.beam, np.asarray(k, dtype=complex)
+        deflection, slope, ratio = forward + backward, 1j * k * (backward - forward), self.rotation_ratio(omega)
+        stiffness = beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * ratio
+        inertia = (beam.own.rotary_inertia or 0.0) * omega**2 if self.theory != "euler-bernoulli" else 0.0
+        force = stiffness * 1j * k**3 * (forward - backward) + (inertia * ratio - beam.tension) * slope
+        couple = stiffness * k**2 * deflection
+        return 0.5 * np.real(force * np.conj(1j * omega * deflection) + couple * np.conj(1j * omega * ratio * slope))

@@ -1,4 +1,4 @@
-"""Which window of a beam holds two waves alone: no force, device or attachment inside, half a wavelength or more."""
+"""Windows with two waves alone: no force, device or attachment inside, half a wavelength or longer."""
 
 from collections.abc import Sequence
 
@@ -12,14 +12,10 @@ from verify.validation import check_kind, plain
 
 Window = tuple[float, float]
 MOST_HALVES = 10_000
-"""Half wavelengths of the longest window: its points are in memory at once."""
-_PLAIN = ("bending_stiffness", "mass_per_length", "extreme_fibre")
-_OF_WAVES: dict[str, tuple[str, ...]] = {
-    "euler-bernoulli": _PLAIN,
-    "rayleigh": (*_PLAIN, "rotary_inertia"),
-    "timoshenko": (*_PLAIN, "rotary_inertia", "shear_stiffness"),
-}
-"""Properties of a section on which its waves, by each theory, and its surface motion depend."""
+"""Half wavelengths of the longest window, whose points are in memory at once."""
+_SECTION = ("bending_stiffness", "mass_per_length", "extreme_fibre", "rotary_inertia", "shear_stiffness")
+_DEPENDS = {"euler-bernoulli": _SECTION[:3], "rayleigh": _SECTION[:4], "timoshenko": _SECTION}
+"""Properties of a section on which its waves by a theory and its surface motion depend."""
 
 
 def middle_half(beam: Beam) -> Window:
@@ -52,7 +48,7 @@ def check_span(
         raise WindowError(f"{name} holds a device against rotation at {as_written(inside)} m: choose one beside it")
     edges = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
     for left, right, piece in zip(edges, edges[1:], beam.pieces, strict=False):
-        alike = all(getattr(piece, name) == getattr(beam.own, name) for name in _OF_WAVES[theory])
+        alike = all(getattr(piece, name) == getattr(beam.own, name) for name in _DEPENDS[theory])
         if not alike and left < end - 1e-9 * beam.length and right > start + 1e-9 * beam.length:
             raise WindowError(
                 f"{name} holds a beam.section other than the beam's own: choose a window on the beam's own, or give "
@@ -70,8 +66,7 @@ def check_span(
 
 def check_clear(beam: Beam, span: Window, name: str) -> None:
     """Raise WindowError for a mass or a spring of the beam inside a span, m; `name` of the span in the message."""
-    attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
-    if inside := [p for p in attached if span[0] < p < span[1]]:
+    if inside := [one.position for one in beam.attached if span[0] < one.position < span[1]]:
         raise WindowError(f"{name} holds a mass or a spring at {as_written(inside)} m: choose a window without one")
 
 

@@ -1,0 +1,372 @@
+"""`DiscreteModel`: the verbs of a model of parts, each written once over its `StructuralSystem`.
+
+A model gives the system, the weights by which a place acts on its unknowns, and the line through them. Unknowns are
+dimensionless: lengths in `unit`, stiffnesses in EI and masses in rho A unit.
+"""
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from math import pi, sqrt
+from typing import Any
+
+import numpy as np
+from msgspec import structs
+
+from verify.arrays import Array, ComplexArray
+from verify.errors import InputError, NoFigureError, ResonanceError
+from verify.linear.base import BeamModel, Devices
+from verify.linear.field import HarmonicField, phasor, point_force
+from verify.linear.modes import Modes
+from verify.linear.positions import Forces, Numbers, as_vector, frequencies_on, vector_on
+from verify.linear.system import FEW, SUPERPOSED, StructuralSystem, memory
+from verify.linear.time_basis import TimeBasis, check_held
+from verify.problem.beam import PointForce
+from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass
+from verify.validation import check_number, check_word
+
+
+class DiscreteModel(BeamModel):
+    """A model of parts; see `BeamModel` for arguments, results and errors of its verbs."""
+
+    @property
+    @abstractmethod
+    def unit(self) -> float:
+        """Mean length of a part, m."""
+
+    @property
+    @abstractmethod
+    def n_unknowns(self) -> int:
+        """Number n of unknowns, known without building the system."""
+
+    @property
+    @abstractmethod
+    def system(self) -> StructuralSystem:
+        """Its stiffness and mass, stable or not; a cached property."""
+
+    @abstractmethod
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+        """Weights of the unknowns for a unit force (or couple) at each position (m), sparse (n_positions, n).
+
+        A device reads its rotation by the same row.
+        """
+
+    def device_rows(self, positions: Array) -> Any:
+        """The same of devices, which read their deflection, and exert a force of their own, by them."""
+        return self.load_rows(positions)
+
+    @abstractmethod
+    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+        """The beam's deflection of unknowns (n, k): (x in m, derivative) -> (k, len(x)), per metre^derivative."""
+
+    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+        """The same of the section's rotation, rad per metre^derivative; None where it is the slope."""
+        return None
+
+    @abstractmethod
+    def lossy_stiffness(self, omega: float) -> Any:
+        """D of the system with the losses of material and dashpots at omega (rad/s), (m,); real without losses."""
+
+    @abstractmethod
+    def leading_sign(self, vectors: Array) -> Array:
+        """+-1 for each vector (n, k), (k,): positive where the beam first moves off its left end."""
+
+    @abstractmethod
+    def modes_of(self, vectors: Array) -> dict[str, Any]:
+        """Fields of `Modes` other than frequencies and shapes, of mass-normalised vectors (n, k)."""
+
+    @abstractmethod
+    def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
+        """Fields `shapes`, `edges`, `degree` and, where bodies rotate otherwise, `turns` of `TimeBasis`."""
+
+    @property
+    @abstractmethod
+    def cut_off_hz(self) -> float:
+        """Frequency up to which waves travel along all its parts, Hz: a half wave on one of them."""
+
+    @property
+    def n_elastic(self) -> int:
+        """Number of elastic modes."""
+        return max(self.n_unknowns - self.beam.rigid_motions, 0)
+
+    @property
+    def _omega_unit(self) -> float:
+        """rad/s of a dimensionless frequency of 1."""
+        return self.beam.wave_constant / self.unit**2
+
+    @property
+    def _tension(self) -> float:
+        """Axial force T unit^2/EI."""
+        return self.beam.tension * self.unit**2 / self.beam.bending_stiffness
+
+    @property
+    def _foundation(self) -> float:
+        """Foundation k_f unit^4/EI."""
+        return self.beam.foundation * self.unit**4 / self.beam.bending_stiffness
+
+    @property
+    def _tilts(self) -> bool:
+        """Whether the beam without its axial force rotates freely as a whole."""
+        return any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines)
+
+    def check_memory(self, n_modes: int = 0) -> None:
+        """Raise InputError, before anything is built, for a system of more than 10 GB: `system.memory`."""
+        if memory(self.n_unknowns, n_modes) > 10e9:
+            raise InputError(
+                f"count = {self.count}: {self.n_unknowns} unknowns with {n_modes} modes exceed the largest system of "
+                f"10 GB, lower the number of {self.parts} or of modes"
+            )
+
+    def check_propagates(self, frequency_hz: float) -> None:
+        """Raise NoFigureError at and beyond `cut_off_hz`."""
+        if frequency_hz >= (limit := self.cut_off_hz):
+            beam, n = self.beam, self.count or 0
+            plain = self.theory == "euler-bernoulli" and not (beam.section or beam.tension or beam.foundation)
+            raise NoFigureError(
+                f"count = {n}: {n} {self.parts} carry waves up to {limit:.6g} Hz and frequency_hz = "
+                f"{float(frequency_hz)!r} lies beyond, "
+                # the cut-off of plain parts is in proportion to their number squared
+                + (f"give count = {int(n * sqrt(frequency_hz / limit)) + 1} or more" if plain else "raise count")
+            )
+
+    @cached_property
+    def stable_system(self) -> StructuralSystem:
+        """The system. Raises InputError where the beam's axial force buckles it."""
+        if self.beam.tension < 0.0:
+            load = 0.0 if self._tilts else -self.beam.tension * self.system.buckling_factor()
+            if -self.beam.tension >= load:
+                raise InputError(
+                    f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling: {self.count} "
+                    f"{self.parts} buckle at {load:.6g} N, compress it less or hold it better"
+                )
+        return self.system
+
+    # --- Modes, buckling, motion in time -------------------------------------------------------------------------
+
+    def modes(self, n_modes: int) -> Modes:
+        """The first elastic modes. Raises InputError for more than it has, and for a compression beyond buckling."""
+        self.check_n_modes(n_modes)
+        self.check_memory(n_modes)
+        values, vectors = self.stable_system.modes(n_modes)
+        vectors = self._normalised(vectors)
+        return Modes(
+            model=self.name,
+            count=self.count,
+            length=self.beam.length,
+            frequencies_hz=np.sqrt(values) * (self._omega_unit / (2.0 * pi)),
+            shapes=self.line(vectors),
+            method=self.stable_system.method(n_modes),
+            **self.modes_of(vectors),
+        )
+
+    def _normalised(self, vectors: Array) -> Array:
+        """Vectors of dimensionless unit modal mass (n, k) in 1/sqrt(kg), positive off the left end."""
+        return np.asarray(vectors * (self.leading_sign(vectors) / sqrt(self.beam.mass_per_length * self.unit)))
+
+    def buckling_load(self) -> float:
+        """The compression at which it buckles first, N, without shear; 0 where nothing keeps the beam from tilting."""
+        if self._tilts:
+            return 0.0
+        load = float(self.beam.bending_stiffness / self.beam.length**2)
+        beam = structs.replace(self.beam, tension=-load)
+        compressed: DiscreteModel = replace(self, beam=beam, theory="euler-bernoulli")  # type: ignore[type-var]
+        return load * compressed.system.buckling_factor()
+
+    def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
+        """All its modes for motion in time. Raises InputError for rigid-body motions, and for too many unknowns."""
+        check_held(self.beam)
+        check_word("line", line, self.lines)
+        if modes is not None:
+            raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} keeps all it has, leave it out")
+        values, vectors = self.stable_system.all_modes
+        ratios = None
+        if self.beam.loss_factor and self.beam.lossless:
+            # half of the loss factor times the share of what has loss in each mode's stiffness
+            energies = self.stable_system.strain(vectors) ** 2
+            ratios = 0.5 * (np.imag(self.lossy_stiffness(1.0)) @ energies) / (self.stable_system.stiffness @ energies)
+        vectors = self._normalised(vectors)
+        return TimeBasis(
+            model=self.name,
+            count=self.count,
+            beam=self.beam,
+            omegas=np.sqrt(values) * self._omega_unit,
+            loads=lambda position: np.asarray((self.load_rows(np.array([position])) @ vectors)[0]),
+            method="all modes",
+            ratios=ratios,
+            **self.time_line(vectors, line),
+        )
+
+    # --- Harmonic motion -----------------------------------------------------------------------------------------
+
+    def harmonic(
+        self, forces: Forces, frequency_hz: Numbers, *, devices: Devices = (), modal_damping: float = 0.0
+    ) -> HarmonicField:
+        """The steady field under harmonic point forces.
+
+        Many frequencies are superposed from all modes where damping does not couple them.
+        """
+        acting, stationed = self.check_stationed(forces, devices)
+        if (cut := self._cut_at(stationed)) is not None:
+            field = cut.harmonic(acting, frequency_hz, devices=stationed, modal_damping=modal_damping)
+            return structs.replace(field, beam=self.beam)
+        check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
+        frequencies = frequencies_on(self.beam, frequency_hz)
+        if stationed and np.ndim(frequency_hz):
+            raise InputError("frequency_hz has several values: with devices give one at a time")
+        own, omegas = tuple(device.own_force for device in stationed if device.amplitude), 2.0 * pi * frequencies
+        loads, omega2 = self._loads(acting, own), (omegas / self._omega_unit) ** 2
+        impedances = self._impedances(stationed, float(omegas[0]))
+        loss = self._shared_loss(omegas) if modal_damping or (self._many(omegas) and not impedances) else None
+        if modal_damping and (loss is None or impedances):
+            coupling = "devices" if impedances else "a loss in a part of the stiffness"
+            raise InputError(
+                f"modal_damping = {modal_damping!r} beside {coupling}: the modes would couple, give one of the two"
+            )
+        if loss is not None:
+            unknowns = self.stable_system.harmonic_sweep(loads, omega2, loss, modal_damping)[:, :, 0]
+            if (at := np.flatnonzero(np.isnan(unknowns[:, 0]))).size:
+                raise self._at_resonance(float(frequencies[at[0]]))
+        else:
+            unknowns, rows = np.empty((len(omegas), len(loads)), dtype=complex), [each[1:] for each in impedances]
+            for i, (omega, w2) in enumerate(zip(omegas.tolist(), omega2.tolist(), strict=True)):
+                try:
+                    unknowns[i] = self.stable_system.harmonic(loads, w2, self.lossy_stiffness(omega), rows)[:, 0]
+                except np.linalg.LinAlgError:
+                    raise self._at_resonance(float(frequencies[i])) from None
+        reactions = self._reactions(impedances, unknowns[0])
+        return self._field(unknowns, frequency_hz, (*acting, *own, *reactions), stationed)
+
+    def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
+        """The steady field under imposed harmonic displacements: constraint rows of the system.
+
+        Chains read deflections by other weights than those of a force: the constraints are scaled to what is read.
+        """
+        drives, stationed = self.check_stationed(displacements, devices)
+        if (cut := self._cut_at(stationed)) is not None:
+            return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
+        omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
+        own = tuple(device.own_force for device in stationed if device.amplitude)
+        places, p = np.array([drive.position for drive in drives]), len(drives)
+        rows = self.load_rows(places)
+        if np.linalg.matrix_rank(rows.toarray()) < p:
+            raise InputError(
+                "drive.force.position: displacements are imposed at one place twice, or at a support without "
+                "deflection: move one, or leave it out"
+            )
+        impedances = self._impedances(stationed, omega)
+        try:
+            responses, forces = self.stable_system.prescribed(
+                rows,
+                np.eye(p, p + 1),
+                np.hstack([np.zeros((self.n_unknowns, p)), self._loads((), own)]),
+                (omega / self._omega_unit) ** 2,
+                self.lossy_stiffness(omega),
+                [each[1:] for each in impedances],
+            )
+        except np.linalg.LinAlgError:
+            raise self._at_resonance(frequency_hz) from None
+        read, scale = self.line(responses)(places, 0), self.beam.bending_stiffness / self.unit**3
+        shares = np.linalg.solve(read[:p].T, np.array([phasor(drive) for drive in drives]) - read[p])
+        unknowns, forces = (each @ np.append(shares, 1.0) for each in (responses, forces))
+        holding = [point_force(at, force * scale) for at, force in zip(places.tolist(), forces, strict=True)]
+        reactions = self._reactions(impedances, unknowns)
+        return self._field(unknowns[None], float(frequency_hz), (*holding, *own, *reactions), stationed)
+
+    def receptance(self, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> ComplexArray:
+        """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)), m/N."""
+        at, frequencies = vector_on("positions", positions, self.beam.length), frequencies_on(self.beam, frequencies_hz)
+        read, omegas = vector_on("x", x, self.beam.length), 2.0 * pi * frequencies
+        loads = self.load_rows(at).toarray().T * (self.unit**3 / self.beam.bending_stiffness)
+        omega2 = (omegas / self._omega_unit) ** 2
+        if self._many(omegas) and (loss := self._shared_loss(omegas)) is not None:
+            # shapes are read once, of modes, and not of every response
+            receptances, acting, responding = self.stable_system.modal_receptances(omega2, loss)
+            weights, shapes = acting.T @ loads, self.line(responding)(read, 0)
+            return np.asarray(np.einsum("mp,fm,mx->fpx", weights, receptances, shapes, optimize=True), dtype=complex)
+        result = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
+        for i, (omega, w2) in enumerate(zip(omegas.tolist(), omega2.tolist(), strict=True)):
+            try:
+                response = self.stable_system.harmonic(loads, w2, self.lossy_stiffness(omega))
+            except np.linalg.LinAlgError:
+                continue
+            result[i] = self.line(response)(read, 0)
+        return result
+
+    def _loads(self, forces: Sequence[PointForce], own: Sequence[PointForce]) -> ComplexArray:
+        """Dimensionless loads of forces and of devices' own forces, (n, 1)."""
+        loads = np.zeros((self.n_unknowns, 1), dtype=complex)
+        for rows, acting in ((self.load_rows, forces), (self.device_rows, own)):
+            if acting:
+                weights = rows(np.array([force.position for force in acting])).T
+                loads += weights @ np.array([[phasor(force)] for force in acting])
+        return np.asarray(loads * (self.unit**3 / self.beam.bending_stiffness))
+
+    def _cut_at(self, devices: Sequence[Device]) -> "DiscreteModel | None":
+        """The model with negligible bodies at devices against rotation, None where it has bodies there.
+
+        A model divides its beam, and lets its ends rotate, at bodies; a couple elsewhere is of order 1 or 2.
+        """
+        beam, negligible = self.beam, 1e-15 * self.beam.mass_per_length * self.unit**3
+        bodies = {mass.position for mass in beam.mass if mass.rotary_inertia}
+        positions = sorted({device.position for device in devices if device.turning} - bodies)
+        if not positions:
+            return None
+        mass = [PointMass(position=position, rotary_inertia=negligible) for position in positions]
+        return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))  # type: ignore[type-var]
+
+    def _many(self, omegas: Array) -> bool:
+        """Whether all modes cost less than a factorisation for each frequency."""
+        return len(omegas) > FEW and self.n_unknowns <= SUPERPOSED
+
+    def _shared_loss(self, omegas: Array) -> float | None:
+        """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
+        first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
+        losses = np.imag(first / self.stable_system.stiffness)
+        shared = np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last)
+        return float(losses[0]) if shared else None
+
+    def _at_resonance(self, frequency_hz: float) -> ResonanceError:
+        return ResonanceError(
+            f"frequency_hz = {frequency_hz!r} is an undamped resonance of the {self.name} model: give the beam a "
+            "loss_factor or choose another frequency"
+        )
+
+    def _impedances(self, devices: Sequence[Device], omega: float) -> list[tuple[float | None, Any, complex]]:
+        """(position, None for a rotation; row; dimensionless dynamic stiffness) of the devices."""
+        impedances, scale = list[tuple[float | None, Any, complex]](), self.unit / self.beam.bending_stiffness
+        for device in devices:
+            at = np.array([device.position])
+            if (across := device.dynamic_stiffness(omega)) != 0.0:
+                impedances.append((device.position, self.device_rows(at), across * (self.unit**2 * scale)))
+            if (turning := device.rotational_dynamic_stiffness(omega)) != 0.0:
+                impedances.append((None, self.load_rows(at, rotation=True), turning * scale))
+        return impedances
+
+    def _reactions(self, impedances: Sequence[Any], unknowns: ComplexArray) -> list[PointForce]:
+        """Forces that devices exert on the beam, N."""
+        scale = self.beam.bending_stiffness / self.unit**3
+        return [point_force(at, complex(-scale * z * (row @ unknowns)[0])) for at, row, z in impedances
+                if at is not None]  # fmt: skip
+
+    def _field(
+        self, unknowns: ComplexArray, frequency_hz: Any, forces: tuple[PointForce, ...], devices: Sequence[Device]
+    ) -> HarmonicField:
+        """The field of unknowns (n_frequencies, n), of one frequency where one is given."""
+        line, rotation, one = self.line(unknowns.T), self.rotation_line(unknowns.T), np.ndim(frequency_hz) == 0
+
+        def first(read: Callable[[Array, int], Any]) -> Callable[[Array, int], Any]:
+            return (lambda x, derivative: read(x, derivative)[0]) if one else read
+
+        return HarmonicField(
+            model=self.name,
+            count=self.count,
+            beam=self.beam,
+            frequency_hz=float(frequency_hz) if one else as_vector("frequency_hz", frequency_hz),
+            forces=forces,
+            shapes=first(line),
+            theory=self.theory,
+            rotation_shapes=None if rotation is None else first(rotation),
+            couples=tuple(device.position for device in devices if device.turning),
+        )

@@ -1,0 +1,187 @@
+"""Stiffness and mass of a chain with everything on it: the base of `SegmentModel`, which gives links and joints."""
+
+from abc import abstractmethod
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.linear.discrete import DiscreteModel
+from verify.linear.mesh import Parts
+from verify.linear.system import StructuralSystem
+from verify.options import Attachment, Joints, Wall
+from verify.problem.supports import HOLDS
+from verify.segments import shear
+from verify.segments.bodies import Attached
+from verify.segments.chain import Chain, Motions, at_joints, link_mass, plain_factors, selection, squares
+
+
+class ChainStructure(DiscreteModel):
+    """A chain of links and joints with bodies and springs; rotary inertia and shear of thick beams."""
+
+    n_segments: int
+    wall: Wall
+    joints: Joints
+    attachment: Attachment
+    joint_dashpot: float
+
+    @property
+    @abstractmethod
+    def links(self) -> Parts:
+        """Lengths and properties of the links."""
+
+    @property
+    @abstractmethod
+    def chain(self) -> Chain:
+        """The links and joints by themselves."""
+
+    @property
+    @abstractmethod
+    def _wall_factors(self) -> Array:
+        """Factors of walls on the compliances of joints 0..N, (N + 1,)."""
+
+    @property
+    @abstractmethod
+    def _beam_compliances(self) -> Array:
+        """1/k of the joints by the beam's bending stiffness, (N + 1,)."""
+
+    @property
+    @abstractmethod
+    def _own_compliances(self) -> Array:
+        """The same with the corrections of tensioned joints."""
+
+    @property
+    def _thick(self) -> bool:
+        """Whether links have the rotary inertia of their thickness."""
+        return self.theory != "euler-bernoulli"
+
+    @cached_property
+    def _rotary_inertias(self) -> Array:
+        """Rotary inertia rho I l of the links, (N,)."""
+        return self.links.lengths * self.links.of("rotary_inertia") / (self.beam.mass_per_length * self.unit**2)
+
+    @cached_property
+    def attached(self) -> Attached:
+        """Bodies and springs."""
+        return Attached(self.beam, self.unit, self.attachment)
+
+    @property
+    def n_unknowns(self) -> int:
+        """Free joint positions, rotations beyond elastic ends, slips of joints and of bodies."""
+        held = sum(HOLDS[support].deflection for support in self.beam.supports)
+        found = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self.attached.at_ends)
+        if self.theory == "timoshenko":
+            bodies = int(self.attached.massive.sum()) if self.attachment == "reciprocal" else 0
+            found += self.n_segments - 1 + held + bodies
+        return found
+
+    @cached_property
+    def _weights(self) -> tuple[Any, Any]:
+        return self.attached.weights(self.chain)
+
+    @cached_property
+    def _rotations(self) -> Any:
+        return self.attached.rotations(self._weights[1], self.motions)
+
+    # --- Stiffness and mass --------------------------------------------------------------------------------------
+
+    @cached_property
+    def _shears(self) -> Array:
+        """Kappa G A of the links, (N,)."""
+        return self.links.of("shear_stiffness") * self.unit**2 / self.beam.bending_stiffness
+
+    @cached_property
+    def _shear_compliances(self) -> Array:
+        """Compliances of joints 0..N against slip by Eq. (1), without walls, (N + 1,)."""
+        return at_joints(self.links.lengths / self._shears)
+
+    @cached_property
+    def _slips(self) -> tuple[Array, Array]:
+        """Compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without."""
+        if self.theory != "timoshenko":
+            return np.zeros(0), np.zeros(len(self.attached.bodies))
+        bodies = self.attached.bodies if self.attachment == "reciprocal" else ()
+        return shear.slip_compliances(
+            self.chain, self._shear_compliances, bodies, self._weights[0].toarray(), self.wall
+        )
+
+    @cached_property
+    def motions(self) -> Motions:
+        """Positions, rotations and slips as linear maps of the unknowns."""
+        slips, gives = self._slips
+        rotating = [end for end, body in enumerate(self.attached.at_ends) if body.rotary_inertia]
+        return Motions(self.chain, rotating, slips, gives[(gives > 0.0) & self.attached.massive])
+
+    @cached_property
+    def system(self) -> StructuralSystem:
+        """Stiffness and mass of links, joints and what is attached."""
+        from scipy.sparse import csc_array, vstack
+
+        beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
+        if not (motions.n_slips or beam.foundation or beam.tension or self.attached.bodies) and self.joints == "series":
+            stiffness = 1.0 / chain.compliances[self._springs]
+            return StructuralSystem(plain_factors(chain), stiffness, link_mass(motions), self._rigid(None))
+        # strains over (rotations of the links, unknowns v), and what resists them
+        links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
+        own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
+        strains = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
+        strains.append((own[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
+        bound = 0.0
+        if beam.foundation:
+            ground = self._foundation * lengths
+            strains += [(motions.middles @ own, ground), (links, ground * lengths**2 / 12.0)]
+            if beam.tension >= 0.0:
+                bound = np.minimum(ground / chain.masses, ground * lengths**2 / (12.0 * chain.inertias)).min()
+        if beam.tension:
+            strains.append((links, self._tension * lengths))
+        mass, across, bodies = link_mass(motions), None, None
+        if self.joints == "tensioned" and self._thick:
+            inertias = shear.joint_inertias(self._rotary_inertias, self._wall_factors, self._own_share, self.wall)
+            mass = mass - squares(motions.angles_of @ motions.both, inertias)
+            if motions.n_slips:
+                mass = mass - squares(motions.joint_slips, shear.slip_masses(chain, motions.slips))
+        if self.attached.bodies:
+            gives = self._slips[1]
+            across = self.attached.deflections(self._weights[0], motions, gives)
+            attached, bodies = self.attached.energies(across, self._rotations, motions, gives)
+            strains, mass = strains + attached, mass + bodies.T @ bodies
+        rows, stiffnesses = zip(*strains, strict=True)
+        factors = [*motions.factors, vstack(rows, format="csr")]
+        stiffness, rigid = np.concatenate(stiffnesses), self._rigid(across)
+        return StructuralSystem(factors, stiffness, csc_array(mass), rigid, bound, bodies)
+
+    @cached_property
+    def _springs(self) -> Any:
+        """Joints that have a spring."""
+        return np.flatnonzero(np.isfinite(self.chain.compliances))
+
+    @cached_property
+    def _own_share(self) -> Array:
+        """Part of each joint's angle that is the beam's and not a spring's beyond its end, (N + 1,)."""
+        own, whole = self._own_compliances, self.chain.compliances
+        return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
+
+    def _rigid(self, across: Any) -> Array:
+        """Rigid-body modes, (n, 0 to 2)."""
+        x, motions = self.chain.nodes / self.unit, self.motions
+        found = np.zeros((motions.n, self.beam.rigid_motions))
+        for column, (start, tilt) in enumerate(self.beam.rigid_lines):
+            found[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
+        springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
+        if springs and found.size:
+            # no strain of a single spring, whose interpolated position errs on unequal links
+            found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
+        return found
+
+    def lossy_stiffness(self, omega: float) -> Any:
+        """D with the beam's loss factor and the dashpots of joints; springs, ground and tension have no loss."""
+        d, dashpots = self.system.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
+        if not (self.beam.loss_factor or dashpots):
+            return d
+        there, series, found = self._springs, np.zeros(self.n_segments + 1), d.astype(complex)
+        series[[0, -1]] = self.attached.end_springs
+        loss = self.beam.loss_factor / self._beam_compliances[there] + dashpots
+        found[: len(there)] = 1.0 / (1.0 / (1.0 / self._own_compliances[there] + 1j * loss) + series[there])
+        found[len(there) : len(there) + self.motions.n_slips] *= 1.0 + 1j * self.beam.loss_factor
+        return found
