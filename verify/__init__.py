@@ -59,8 +59,8 @@ _HOMES = """
     linear.modes.Modes travelling_wave.WaveMeasures problem.beam.Beam problem.beam.PointForce problem.device.Device
     problem.cross_section.Section problem.point_attachments.PointMass problem.point_attachments.PointSpring
     problem.slider.Contact problem.slider.Foot problem.slider.Slider errors.InputError dynamics.simulate.simulate
-    dynamics.result.Motion dynamics.free_vibration.free_vibration dynamics.free_vibration.FreeVibration chain.statics.Bent
-    chain.statics.bend motor.result.MotorRun motor.run.run_motor motor.run.run_motors scene.load.load_scene
+    dynamics.result.Motion dynamics.free_vibration.free_vibration dynamics.free_vibration.FreeVibration
+    chain.statics.Bent chain.statics.bend motor.result.MotorRun motor.run.run_motor motor.run.run_motors scene.load.load_scene
     scene.run.run_scene
 """
 _HOME = {home.rpartition(".")[2]: f"verify.{home.rpartition('.')[0]}" for home in _HOMES.split()}
