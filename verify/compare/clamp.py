@@ -60,7 +60,7 @@ def fit_clamp(
 
     def left(log_stiffness: Array) -> Array:
         stiffness = float(np.exp(np.clip(log_stiffness, -9.0, 18.0)[0]))
-        hertz = frequencies_hz(one, softened(beam, ends, stiffness), count, int(modes.max()) + 1)
+        hertz = frequencies_hz(candidate, softened(beam, ends, stiffness), count, int(modes.max()) + 1)
         if len(hertz) <= modes.max():
             raise InputError(f"count = {count}: so few parts have {len(hertz)} modes, raise count")
         return np.asarray(logs - np.log(hertz[modes]))
