@@ -196,6 +196,8 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     if faults[0].ends:  # scanned with the effect on the exact beam, which is not that on the candidate
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER]
     refined = rank(_refined(data, one) for one in near)
+    if faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
+        refined = rank(_refined(data, one, SEARCHED) for one in near)
     if every:
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
@@ -253,13 +255,16 @@ def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: flo
     return Fit(candidate=one, count=n, fault=fault, parameter=parameter, differences=np.expm1(left), **sizes)
 
 
-def _refined(data: Data, fit: Fit) -> Fit | None:
-    """The fit at the best N near the interpolated one: within 30 % where errors do not fall smoothly with N."""
+def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
+    """The fit at the best N near the interpolated one: within 30 % where errors do not fall smoothly with N.
+
+    `around`: least distance to search.
+    """
     best = _solved(data, fit, fit.count)
     if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
         return best
-    around = 1 if fit.fault.ends else 2 + best.count * (0.3 if is_uneven(data.beam) else 0.01)
-    sizes = range(max(SMALLEST, int(best.count - around)), int(best.count + around) + 1)
+    around = 1 if fit.fault.ends else max(around, 2 + best.count * (0.3 if is_uneven(data.beam) else 0.01))
+    sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)
     for size in sorted(sizes, key=lambda size: abs(size - (fit.count or 0))):
         if best.rms <= data.floor:
             break
