@@ -51,21 +51,21 @@ class Fault(msgspec.Struct, frozen=True, eq=False):
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A candidate beside a list read with a fault."""
+    """A candidate beside a list read with a fault.
+
+    `parameter`: the factor, or the clamp's k_r L/EI. `differences` (k,), relative, of the list without its fault from
+    the candidate. `effect`: rms of the log frequency that the fault changes. `rms` and `largest` are of the log
+    differences beyond the rounding of the list.
+    """
 
     candidate: Candidate
     count: int | None
     fault: Fault
     parameter: float
-    """The factor, or the clamp's k_r L/EI."""
     differences: Array
-    """(k,), relative, of the list without its fault from the candidate."""
     effect: float
-    """Rms of the log frequency that the fault changes."""
     rms: float
-    """Of the log differences beyond the rounding of the list."""
     largest: float
-    """Of the same."""
 
 
 class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -115,18 +115,18 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """What a list is."""
+    """What a list is: identified, ambiguous, exact (no division visible), few (frequencies) or unknown.
+
+    `ranking`: candidates with the likeliest fault, the best first; those `equivalent` to the best have its frequencies,
+    `alternatives`, of other faults as well, are within a factor of two of its rms. `tested`: the best fit of every kind
+    of fault, the likeliest first.
+    """
 
     status: str
-    """identified, ambiguous, exact (no division visible), few (frequencies) or unknown."""
     ranking: tuple[Fit, ...]
-    """Candidates with the likeliest fault, the best first."""
     equivalent: tuple[Fit, ...]
-    """Of these, those with the same frequencies as the best."""
     alternatives: tuple[Fit, ...]
-    """Of these, and of other faults, those within a factor of two of its rms."""
     tested: tuple[Fit, ...]
-    """The best fit of every kind of fault that was tested, the likeliest first."""
 
     @property
     def best(self) -> Fit:
@@ -263,7 +263,8 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
     best = _solved(data, fit, fit.count)
     if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
         return best
-    around = 1 if fit.fault.ends else max(around, 2 + best.count * (0.3 if is_uneven(data.beam) else 0.01))
+    wide = is_uneven(data.beam) and not fit.fault.ends
+    around = max(around, 2 + best.count * (0.3 if wide else 0.03))
     sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)
     for size in sorted(sizes, key=lambda size: abs(size - (fit.count or 0))):
         if best.rms <= data.floor:

@@ -34,12 +34,10 @@ RMS = (Column("rms", format=".3g", percent=True), Column("largest", format=".3g"
 
 
 class Entry(msgspec.Struct, frozen=True):
-    """A frequency of the list."""
+    """A frequency of the list: its entry from 1, its mode from 1 by place, number or shape."""
 
     entry: int
-    """From 1."""
     mode: int
-    """From 1, by its place, number or shape."""
     given_hz: float
     exact_hz: float
     mac: float | None
