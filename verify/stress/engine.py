@@ -172,7 +172,8 @@ def _error(error: Error, value: float) -> tuple[float, str]:
 
 def exponent(points: Points) -> float:
     """Slope of ln cost over ln size by least squares."""
-    return float(np.polyfit(*np.log(np.array(points)).T, 1)[0])
+    sizes, costs = np.log(np.array(points)).T
+    return float(np.polyfit(sizes, costs, 1)[0])
 
 
 def worst(*errors: Any) -> float:

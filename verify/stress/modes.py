@@ -194,7 +194,7 @@ def cantilever(n: float) -> Any:
     return CANTILEVER, equal(CANTILEVER, int(n))
 
 
-def sections(counts: tuple[int, int], share: float, **first: float) -> tuple[Beam, list[D]]:
+def sections(counts: tuple[int, int], share: float, **first: Any) -> tuple[Beam, list[D]]:
     """A strip with another first section, each of the two in equal parts."""
     both = Section(length=share * STRIP.length, **first), Section(length=STRIP.length - share * STRIP.length)
     lengths = [D(one.length) / n for one, n in zip(both, counts, strict=True) for _ in range(n)]

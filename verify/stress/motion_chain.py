@@ -22,9 +22,9 @@ def driven(steps: float, slope: float | None = None, mu: float = 0.23, samples: 
     from verify.motion.simulate import simulate
 
     slider = None if slope is None else Slider(mass=3e-9, mu=mu, slope=slope, coupling="one-way")
-    force, settings = (PointForce(position=0.37 * STRIP.length, amplitude=1e-3),), {"at": [0.29 * STRIP.length], **more}
-    how = {"model": "analytic", "modes": MODES, "step": STEP if slider else None, "slider": slider, "samples": samples}
-    return simulate(STRIP, force, HERTZ, steps * STEP, **how, **settings)
+    force, at = (PointForce(position=0.37 * STRIP.length, amplitude=1e-3),), [0.29 * STRIP.length]
+    settings: dict[str, Any] = {"model": "analytic", "modes": MODES, "step": STEP if slider else None, "slider": slider}
+    return simulate(STRIP, force, HERTZ, steps * STEP, **settings, at=at, samples=samples, **more)
 
 
 @cache
@@ -253,7 +253,8 @@ def rk4_stability(part: float) -> float:
     system, start, limit = strip_limit(SHORT, 1e-7)
     step = part * limit
     motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step, ledger=False)
-    total = sum(motion.energies()[:2])
+    kinetic, elastic, _ = motion.energies()
+    total = kinetic + elastic
     return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.finished else inf
 
 

@@ -53,7 +53,8 @@ def _add(bands: Bands, first: int, block: Any) -> None:
 def _attach(beam: Beam, lengths: Sequence[D], k: Bands, m: Bands, per_node: int) -> tuple[Bands, Bands]:
     """Add masses and springs at the nodes, and block what the supports block."""
     nodes = np.cumsum([0.0, *map(float, lengths)])
-    for one in (*beam.mass, *beam.spring):
+    attached: tuple[Any, ...] = (*beam.mass, *beam.spring)
+    for one in attached:
         row = per_node * int(np.argmin(abs(nodes - one.position)))
         m[row, 0] += D(getattr(one, "mass", 0))
         k[row, 0] += D(getattr(one, "stiffness", 0))
