@@ -175,7 +175,7 @@ def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str 
 
     agg: Any = FigureCanvasAgg
 
-    class Canvas(agg):
+    class Canvas(agg):  # type: ignore[misc]
         """After the first frame draws only what is `animated`, over a copy of everything else."""
 
         still: Any = None

@@ -231,7 +231,7 @@ def chain_spin(turns: float) -> float:
 def chain_whirl(turns: float) -> float:
     """Heavy chain whirling over its pin: energy drift over the sum of the steps' tolerances of 1e-10."""
     motion = pendulum([0.0, turns], 9.81, tolerance=1e-10)
-    return abs(float(motion.residual()[-1] / motion.energies()[0][0])) / (1e-10 * motion.statistics.steps)
+    return float(abs(motion.residual()[-1] / motion.energies()[0][0]) / (1e-10 * motion.statistics.steps))
 
 
 def strip_limit(n: int, scatter: float = 0.0) -> tuple[Any, Any, float]:
