@@ -282,7 +282,8 @@ def advance(
             if accounts:
                 add_powers(when, dt * POWERS[when], time + 0.5 * dt * min(when, 2), drive, rows, factors, forced, loads,
                            growth, balance)  # fmt: skip
-        filter_rates(dt, n_complex, rows, factors)
+        if two_way:
+            filter_rates(dt, n_complex, rows, factors)
         set_mean_rates(dt, spring, factors)
         for b in range(sliders.shape[0] if spring and n_steps > 0 else 0):
             sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
@@ -312,7 +313,7 @@ def advance(
             set_factors(last, time + dt, n_complex, rows, drive, factors)
         if accounts:
             add_powers(last, dt * POWERS[MIDDLE], time + dt, drive, rows, factors, forced, loads, growth, balance)
-        if two_way or accounts:
+        if two_way:
             filter_rates(dt, n_complex, rows, factors)
         shift_factors(factors)
         if not np.isfinite(sliders[0, lay.V] + factors[START, VALUE, 0]):
