@@ -264,7 +264,7 @@ def advance(
     positions of the deflection.
     """
     spring, two_way, n_complex = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0, codes[lay.COMPLEX]
-    following, accounts = codes[lay.FOLLOWING] > 0, codes[lay.ACCOUNTS] > 0
+    accounts = codes[lay.ACCOUNTS] > 0
     last = factors.shape[0] - 1  # END, as a number of the run: numba compiles a function again for every constant
     set_factors(last, tally[lay.STEP] * dt, n_complex, rows, drive, factors)
     shift_factors(factors)
@@ -282,15 +282,16 @@ def advance(
             if accounts:
                 add_powers(when, dt * POWERS[when], time + 0.5 * dt * min(when, 2), drive, rows, factors, forced, loads,
                            growth, balance)  # fmt: skip
-        set_mean_rates(dt, factors)
-        filter_rates(dt, n_complex, rows, factors)
+        if two_way:
+            filter_rates(dt, n_complex, rows, factors)
+        set_mean_rates(dt, spring, factors)
         for b in range(sliders.shape[0] if spring and n_steps > 0 else 0):
             sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
         for k in range(feet.shape[0] if n_steps > 0 else 0):
             feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
             feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
         for when in range(last + 1):
-            if (spring and when != MIDDLE) or (when == HALF and not following) or (n_steps == 0 and when != START):
+            if when == HALF or (spring and when != MIDDLE) or (n_steps == 0 and when != START):
                 continue
             ready = mark + 4 if when == END and not two_way else mark + when  # the start of the next step as well
             look(when, ready, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts,
@@ -301,8 +302,6 @@ def advance(
             set_shapes(dt, rows, n_complex, table, edges, points, contacts, indices, shapes)
             if codes[lay.LAW] == lay.BILATERAL:
                 set_end_couplings(rows, n_complex, table, edges, points, contacts, indices, shapes, couplings)
-        for i in range(0 if spring else points.shape[0]):
-            contacts[i, lay.MEAN] += contacts[i, lay.COVARIANCE]
         solve(dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings, spans, block, balance)
         if two_way:
             apply_forces(codes, rows, points, contacts, shapes)
@@ -314,7 +313,7 @@ def advance(
             set_factors(last, time + dt, n_complex, rows, drive, factors)
         if accounts:
             add_powers(last, dt * POWERS[MIDDLE], time + dt, drive, rows, factors, forced, loads, growth, balance)
-        if two_way or accounts:
+        if two_way:
             filter_rates(dt, n_complex, rows, factors)
         shift_factors(factors)
         if not np.isfinite(sliders[0, lay.V] + factors[START, VALUE, 0]):

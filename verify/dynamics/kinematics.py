@@ -7,8 +7,9 @@ from verify.dynamics import layout as lay
 from verify.jit import FAST, inline
 
 START, HALF, MIDDLE, END = range(4)
-"""Instants of a step. HALF is mid-step; MIDDLE has the deflection of mid-step and the MEAN velocity over the step,
-displacement/dt, which is exact for every row."""
+"""Instants of a step. HALF is mid-step; MIDDLE has the deflection of mid-step and, of feet, the MEAN velocity over the
+step, displacement/dt, which is exact for every row. Of points without feet it has the velocity with which Simpson's
+rule gives that mean, so that means of products of rates and slopes are of order 4 as well."""
 VALUE, RATE = range(2)
 
 
@@ -48,11 +49,13 @@ def set_factors(when: int, time: float, n_complex: int, rows: Array, drive: Arra
 
 
 @inline(fastmath=FAST)
-def set_mean_rates(dt: float, factors: Array) -> None:
+def set_mean_rates(dt: float, spring: bool, factors: Array) -> None:
     """Factors of MIDDLE."""
     for j in range(factors.shape[2]):
+        mean = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
         factors[MIDDLE, VALUE, j] = factors[HALF, VALUE, j]
-        factors[MIDDLE, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
+        ends = factors[START, RATE, j] + factors[END, RATE, j]
+        factors[MIDDLE, RATE, j] = mean if spring else 1.5 * mean - 0.25 * ends
 
 
 @inline(fastmath=FAST)
@@ -160,39 +163,39 @@ def look(
                 x += ahead * contacts[i, lay.DRIFT_END]
         above = (x - edges[piece]) / length
         at, level, slope, bend, rise, turn = touch(piece, above, length, lever, local)
-        stretch = np.sqrt(1.0 + slope * slope)
-        along = (rise * slope - lever * turn) / stretch
-        if codes[lay.FOLLOWING] > 0 and when != MIDDLE:
+        along = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
+        lift, share = rise + slope * lever * turn, 4.0 / 6.0 if when == MIDDLE else 1.0 / 6.0  # Simpson's rule
+        if codes[lay.FOLLOWING] > 0:
             tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise
             if when == START:
                 if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
                     sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
                     sliders[b, lay.X] += 0.5 * dt * (drift - contacts[i, lay.DRIFT_END])
                 sliders[b, lay.TILT], sliders[b, lay.DRIFT] = 0.0, 0.0
-            share = 4.0 / 6.0 if when == HALF else 1.0 / 6.0
             sliders[b, lay.TILT] += share * tilt
             sliders[b, lay.DRIFT] += share * drift
             contacts[i, lay.TILT_END], contacts[i, lay.DRIFT_END] = tilt, drift
         on = v - slope * rise if codes[lay.FOLLOWING] > 0 else v
         climb = rise + slope * (on + lever * (turn + bend * on))
         if when == START:
-            contacts[i, lay.START], contacts[i, lay.RISE], contacts[i, lay.COVARIANCE] = along, rise, slope
+            contacts[i, lay.START], contacts[i, lay.MEAN], contacts[i, lay.LIFT] = along, share * along, share * lift
             if codes[lay.LAW] == lay.GIVEN:
                 contacts[i, lay.RISE_RATE] = climb
         elif when == END:
-            # of the product of rise and slope: their covariance and the mean slope, order dt^2 both
-            first = contacts[i, lay.COVARIANCE]
-            mean_slope = contacts[i, lay.LIFT] * (first - 2.0 * contacts[i, lay.SLOPE] + slope) / 6.0
-            contacts[i, lay.COVARIANCE] = (rise - contacts[i, lay.RISE]) * (slope - first) / 12.0 + mean_slope
+            contacts[i, lay.MEAN] += share * along
+            contacts[i, lay.LIFT] += share * lift
             contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
             contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
             contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
         elif when == MIDDLE:
-            v *= sliders[b, lay.FREE]
             image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
-            contacts[i, lay.MEAN], contacts[i, lay.AT], contacts[i, lay.ABOVE] = along, at, above
-            contacts[i, lay.SLOPE], contacts[i, lay.LIFT] = slope, rise + slope * lever * turn
-            if spring:
+            contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope
+            if not spring:
+                contacts[i, lay.MEAN] += share * along
+                contacts[i, lay.LIFT] += share * lift
+            else:
+                v *= sliders[b, lay.FREE]
+                contacts[i, lay.MEAN] = along
                 lift = image * (rise + slope * (v + lever * (turn + bend * v)))
                 contacts[i, lay.LIFT] = lift
                 contacts[i, lay.RAMP] = image * slope * (v + lever * bend * v)
