@@ -291,7 +291,7 @@ def test_a_slider_that_runs_off_the_beam_ends_there_with_state_and_energy(name):
     travelled = found.end.position - found.start
     assert found.times[-1] < found.end.time
     assert travelled == pytest.approx(found.end.speed * found.end.time, rel=1e-9)
-    assert way - 1.5 * 20.0 * found.statistics.step_s < travelled <= way
+    assert abs(travelled - way) <= 20.0 * found.statistics.step_s
     if name == "springs":
         fine = crossing(steps_per_period=1600)
         assert abs(fine.energy.residual) < 2e-6 * fine.energy.slider
