@@ -122,10 +122,10 @@ def test_epsilon_is_over_a_wavelength_of_the_beam_under_tension_and_on_a_foundat
     beam = replace(case.beam, tension=tension, foundation=foundation)
     give = Contact(stiffness=2e5, damping=40.0, tangential_stiffness=9e4)
     case = replace(case, beam=beam, slider=replace(case.slider, contact=give))
-    found = case.run(1, 2).motor_margins
-    assert found.epsilon == pytest.approx(2.0 * 0.25 * 2e5 / (9e4 * k * 0.0014), rel=1e-12)
+    found = case.run(1, 2).margins
+    assert found.presliding == pytest.approx(2.0 * 0.25 * 2e5 / (9e4 * k * 0.0014), rel=1e-12)
     evanescent = replace(case, beam=replace(beam, foundation=foundation + 1.4 * load))
-    assert evanescent.run(1, 2).motor_margins.epsilon is None
+    assert evanescent.run(1, 2).margins.presliding is None
 
 
 def test_a_motor_starts_by_the_layers_force_over_its_mass():
@@ -221,8 +221,8 @@ def test_a_periodic_orbit_has_the_multipliers_of_its_spring(ratio, zeta):
 def test_the_residual_of_an_orbit_has_its_rates_over_the_omega_of_the_drive():
     case, settle = on_spring(1.9, 0.004), 7
     run = case.run(settle, 61 * settle + 1, None, 0.0)
-    height, rate = np.abs(case.run(1, 2, run, 0.0).state.feet - run.state.feet)[0, :2]
-    size = np.ptp(run.height[-61:]) + abs(run.state.feet[0, 0])
+    height, rate = np.abs(case.run(1, 2, run, 0.0).end.feet - run.end.feet)[0, :2]
+    size = np.ptp(run.height[-61:]) + abs(run.end.feet[0, 0])
     found = periodic_orbit(case, tolerance=np.inf, settle=settle)
     assert found.residual == pytest.approx(max(height, rate / OMEGA) / size, rel=1e-6)
     assert rate / OMEGA > 0.1 * height
