@@ -29,10 +29,10 @@ from verify import (
     Slider,
     bend,
     free_vibration,
-    run_motor,
     simulate,
     travelling_wave,
 )
+from verify.motor.run import run_motor
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 ENDS = ("pinned", "clamped", "free", "guided")
