@@ -129,9 +129,7 @@ def change(coarse: Motion, fine: Motion) -> float:
     return max(one / of if of else 0.0 if not one else inf for one, of in pairs)
 
 
-def check_energy(
-    energy: EnergyBalance, dt: float, frequency_hz: float, feet: bool, resolved: bool
-) -> tuple[str, ...]:
+def check_energy(energy: EnergyBalance, dt: float, frequency_hz: float, feet: bool, resolved: bool) -> tuple[str, ...]:
     """Raise InputError where friction creates energy or the balance does not close, by 1 % of the energy exchanged.
 
     Notes state the balance of feet, whose springs are of order 2 in the step, and that of a beam where the steps do not
