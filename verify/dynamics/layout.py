@@ -36,13 +36,14 @@ CONTACT = 29
     AT_END, ABOVE_END, SPEED_END, WAS_FRICTION,
 ) = range(CONTACT)  # fmt: skip
 """Points, moving (n, CONTACT), zero at first except DEPTH (below zero: gap) and, of bilateral contact, RISE_RATE, the
-speed of the point across the beam, m/s. State: the first nine. NORMAL and FRICTION are means over the
-step, FRICTION acts on the slider; STRETCH is the elastic tangential displacement; SURFACE is the mean tangential speed
-of the surface over the step with all forces; BEFORE extrapolates it; LOSS is the energy that friction of a rigid point
-has dissipated so far. The others are of one step: material under the point and the point itself on the piece, slope,
-mean rate of rise under it, rate at which the gap closes, share of the rise by slopes; speed of the surface at the
-start, in the mean and at the end without contact forces, its gain; last depth and sticking; mean slip v - s; own response; acceleration and drift of "following" at the end without forces;
-material under the point, point and its speed along at the end; last friction."""
+speed of the point across the beam, m/s. State: the first nine. NORMAL and FRICTION are means over the step, FRICTION
+acts on the slider; STRETCH is the elastic tangential displacement; SURFACE is the mean tangential speed of the surface
+over the step with all forces; BEFORE extrapolates it; LOSS is the energy that friction of a rigid point has dissipated
+so far. The others are of one step: material under the point and the point itself on the piece, slope, mean rate of rise
+under it, rate at which the gap closes, share of the rise by slopes; speed of the surface at the start, in the mean and
+at the end without contact forces, its gain; last depth and sticking; mean slip v - s; own response; acceleration and
+drift of "following" at the end without forces; material under the point, point and its speed along at the end; last
+friction."""
 OF_SLIDER, OF_FOOT, PIECE = range(3)
 """Indices (n_points, 3): slider, foot (0 without feet) and piece of the beam of every point."""
 

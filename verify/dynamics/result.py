@@ -85,8 +85,10 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Energy of the modes of the beam at the start: of its static deflection, or of the motion before."""
     created: float
     """Sum of the positive works of friction in single steps, in which it returns what it has dissipated before."""
+    slider_residual: float
+    """Works on sliders and feet less their gains and losses."""
     residual: float
-    """Works less gains and losses: the error of the time integration."""
+    """The same of the sliders or, from rest, of the beam, whichever is larger: the error of the time integration."""
 
 
 class EndState(Struct, frozen=True, eq=False, kw_only=True):

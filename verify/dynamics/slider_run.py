@@ -26,6 +26,7 @@ from verify.dynamics.result import END, INTERRUPTED, ContactState, EndState, Ene
 from verify.dynamics.step_control import (
     CONVERGED,
     NOT_CONVERGED,
+    UNRESOLVED,
     change,
     check_energy,
     doubled,
@@ -186,8 +187,11 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """A motion with a note on its energy balance. Raises InputError where that does not close."""
         if motion.statistics.interrupted or motion.energy is None:
             return motion
-        dt, request = motion.statistics.step_s, self.request
-        notes = check_energy(motion.energy, dt, request.frequency_hz, request.feet)
+        dt, request, stages, resolved = motion.statistics.step_s, self.request, self.stages, True
+        if request.step is not None:
+            z = self._initial(self._contacts(), loaded=False)
+            resolved = unresolved(stages, z, request.beam.length, dt) <= UNRESOLVED
+        notes = check_energy(motion.energy, dt, request.frequency_hz, request.feet, resolved)
         return replace(motion, notes=(*motion.notes, *notes))
 
     def run(self, stages: list[Stage], progress: Progress) -> Motion:
@@ -347,15 +351,16 @@ def _beam_energy(basis: TimeBasis | None, stage: Stage, z: ComplexArray, t: floa
 
 
 def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, rest: bool) -> EnergyBalance:
-    """Works, losses and gains; the residual is that of the sliders or, from rest, of the beam, whichever is larger."""
+    """Works, losses and gains."""
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
     load = s[lay.PULLED] + s[lay.PRESSED]
     residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
+    whole = residual
     if rest:
         charged = s[lay.ON_BEAM] + s[lay.LIFTED_BEAM] if contacts.two_way else 0.0
         beam = driven + charged - lost - kinetic - elastic
-        residual = beam if abs(beam) > abs(residual) else residual
+        whole = beam if abs(beam) > abs(residual) else residual
     return EnergyBalance(
         kinetic=kinetic,
         elastic=elastic,
@@ -373,7 +378,8 @@ def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, r
         normal_on_beam=float(s[lay.LIFTED_BEAM]),
         initial=initial,
         created=float(recorded.balance[lay.GAINED_ENERGY]),
-        residual=float(residual),
+        slider_residual=float(residual),
+        residual=float(whole),
     )
 
 
