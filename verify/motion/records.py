@@ -6,14 +6,13 @@ import numpy as np
 
 from verify.arrays import Array
 
-X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL, PUSHED, SWEPT, HARDEST = range(10)
-"""Entries of `Rider.motion`: what the slider carries from step to step. Height and climb are those of a slider held on
-the surface, its normal reaction is the mean over the step, the fall is the largest downward acceleration so far; so
-far, too, what friction has added to its speed, the way of the surface under it, and the largest friction per mass."""
-SURFACE, PULL, DRIFT, POWER, LOSS, LEVEL = range(6)
+X, V, STUCK, PUSHED, SWEPT, HARDEST = range(6)
+"""Entries of `Rider.motion`: position, speed, sticking; so far, the speed added by friction, the displacement of the
+surface under the slider, and the largest friction per mass."""
+SURFACE, PULL, DRIFT = range(3)
 """Columns of `Space.seen`."""
-KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE, KEPT_NORMAL = range(5)
-"""Columns of `Kept.kept`."""
+KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE = range(4)
+"""Columns of the samples."""
 STICKS, SLIPS, TURNS = 1.0, 2.0, 3.0
 """Kinds of events."""
 STILL, MOVING = range(2)
@@ -45,17 +44,13 @@ class Law(NamedTuple):
     gravity: float
     following: bool
     """Whether the slider follows the surface across, with all that it feels there."""
-    held: bool
-    """Whether its inertia across acts on the surface."""
-    load: float
-    """Its weight and what else presses it on, newton."""
 
 
 class Rider(NamedTuple):
     """The slider."""
 
     motion: Array
-    """(10,), `X` and so on; advanced in place."""
+    """(6,), `X` and so on; advanced in place."""
     law: Law
 
 
@@ -63,7 +58,7 @@ class Space(NamedTuple):
     """Working space."""
 
     seen: Array
-    """(3, 6): the surface at the start, the middle and the end of a step."""
+    """(3, 3): the surface at the start, the middle and the end of a step."""
     slip: Array
     """(47,), `CHANGE` and so on."""
 

@@ -21,8 +21,6 @@ def law_of(slider: Slider, beam: Beam) -> Law:
         half=float(beam.surface_distance),
         gravity=float(slider.gravity),
         following=slider.kinematics == "following",
-        held=slider.normal == "held",
-        load=float(slider.normal_force),
     )
 
 
@@ -43,6 +41,6 @@ def of_all_steps(motion: Array, mass: float, seconds: float) -> tuple[float, flo
 def contact_space() -> Space:
     """Working space of the kernels."""
     return Space(
-        seen=np.zeros((3, 6)),
+        seen=np.zeros((3, 3)),
         slip=np.zeros(records.FIRST_EVENT + 2 * records.SPANS),
     )

@@ -1,4 +1,4 @@
-"""The compiled surface: modes and drive in time, polynomials on the slider's piece, and what a point on it sees."""
+"""The compiled surface: polynomials on the slider's piece, and their tangential velocity under a point."""
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def touch(local: Array, edges: Array, piece: int, x: float, speed: float, law: L
         rise = rise * at + local[rec.MOVING, d]
     slope, turn = slope / length, turn / length
     seen[row, rec.SURFACE] = (rise * slope - law.half * turn) / np.sqrt(1.0 + slope * slope)
-    seen[row, rec.PULL], seen[row, rec.DRIFT], seen[row, rec.LEVEL] = 0.0, 0.0, deflection
+    seen[row, rec.PULL], seen[row, rec.DRIFT] = 0.0, 0.0
     if law.following:
         seen[row, rec.PULL] = rise * (turn + 2.0 * bend / (length * length) * speed) - law.gravity * slope
         seen[row, rec.DRIFT] = -slope * rise

@@ -1,4 +1,4 @@
-"""Sliders on feet as arrays for the kernels, and their rest on a beam: static deflection, heights, contact rate."""
+"""Sliders on feet as arrays of the kernels, and their heights at rest."""
 
 from collections.abc import Sequence
 
@@ -11,14 +11,6 @@ from verify.motor import records
 from verify.motor.records import Feet, Rubbing
 from verify.problem.beam import Beam
 from verify.problem.slider import Foot, Slider
-
-EVENTS = 20_000
-PASSES = 4
-"""Fixed-point iterations for the material under a point; each reduces the error by (h/2) w'' and more."""
-NOTHING = 1e-12
-"""Of the forces and of their moments: rounding of a clasp's sum."""
-SAGGING = 20
-"""Modes of a static deflection."""
 
 
 def arms(foot: Foot) -> Array:

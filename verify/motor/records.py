@@ -50,7 +50,7 @@ KEPT_X, KEPT_V, KEPT_RUB, KEPT_PUSH, KEPT_TOUCHING, KEPT_STICKING, KEPT_RUBBED, 
 sums, over the interval that ends there."""
 STEP, SAMPLES, EVENTS = range(3)
 """Entries of `Log.tally`."""
-DONE, OFF_BEAM, NOT_FINITE, CHATTERS = range(4)
+DONE, OFF_BEAM, NOT_FINITE = range(3)
 """Why the loop came back."""
 STICKS, SLIPS, LANDS, LEAVES = 1.0, 2.0, 4.0, 5.0
 """Kinds of events."""
