@@ -7,8 +7,8 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
   Modes, HarmonicField                                         their results
   travelling_wave                                              the wave in a field: measure, WaveMeasures
-  simulate, Motion                                             a driven beam in time, with or without a slider
-  run_motor, run_motors, MotorRun, Contact, Foot               sliders with unilateral contact on feet of many points
+  simulate, Motion                                             a driven beam in time, with sliders or alone
+  Contact, Foot                                                unilateral contact of sliders, on feet of many points
   free_vibration, FreeVibration                                a beam released from a shape, without forces
   bend, Bent                                                   a nonlinear chain under a large load at its tip
   load_scene, run_scene                                        a scene file, its gates and studies
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from verify.fem_beam import HermiteModel
     from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
-    from verify.motor.result import MotorRun
-    from verify.motor.run import run_motor, run_motors
     from verify.problem.beam import Beam, PointForce
     from verify.problem.cross_section import Section
     from verify.problem.device import Device
@@ -48,9 +46,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Beam", "Bent", "Contact", "Device", "ExactModel", "Foot", "FreeVibration", "HarmonicField", "HermiteModel",
-    "InputError", "Modes", "Motion", "MotorRun", "PointForce", "PointMass", "PointSpring", "Section",
-    "SegmentModel", "Slider", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_motor",
-    "run_motors", "run_scene", "simulate", "travelling_wave",
+    "InputError", "Modes", "Motion", "PointForce", "PointMass", "PointSpring", "Section", "SegmentModel", "Slider",
+    "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_scene", "simulate", "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
 
@@ -60,8 +57,7 @@ _HOMES = """
     problem.cross_section.Section problem.point_attachments.PointMass problem.point_attachments.PointSpring
     problem.slider.Contact problem.slider.Foot problem.slider.Slider errors.InputError dynamics.simulate.simulate
     dynamics.result.Motion dynamics.free_vibration.free_vibration dynamics.free_vibration.FreeVibration
-    chain.statics.Bent chain.statics.bend motor.result.MotorRun motor.run.run_motor motor.run.run_motors scene.load.load_scene
-    scene.run.run_scene
+    chain.statics.Bent chain.statics.bend scene.load.load_scene scene.run.run_scene
 """
 _HOME = {home.rpartition(".")[2]: f"verify.{home.rpartition('.')[0]}" for home in _HOMES.split()}
 

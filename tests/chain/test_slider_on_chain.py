@@ -87,7 +87,7 @@ def test_the_sliders_energy_balance_closes_with_order_four(kinematics):
 
 def test_small_waves_carry_a_slider_as_on_the_linear_chain():
     found = ride_from_rest(STRIP, forces(1e-3), HERTZ, SLIDER, 25, 8e-4, step=STEP)
-    linear = simulate(STRIP, forces(1e-3), HERTZ, 8e-4, count=25, slider=SLIDER, step=STEP, ledger=False)
+    linear = simulate(STRIP, forces(1e-3), HERTZ, 8e-4, count=25, slider=SLIDER, step=STEP)
     assert found.displacement == pytest.approx(linear.displacement, rel=1e-4)
     steady = simulate(STRIP, forces(1e-3), HERTZ, 1e-4, count=25, slider=SLIDER, start="steady", step=STEP)
     assert found.coupling.friction_size == pytest.approx(steady.coupling.friction_size, rel=1e-9)

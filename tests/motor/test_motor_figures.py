@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from reference.motor import bounces
 from scipy.integrate import solve_ivp
 
-from verify import Beam, Contact, Foot, InputError, PointForce, Slider, run_motor, run_motors, simulate
+from verify import Beam, Contact, Foot, InputError, PointForce, Slider, simulate
 from verify.exact.contact import layer
 from verify.motor.curves import no_load, phase_portrait, reversal, stop, transient
 from verify.motor.periodic_orbit import periodic_orbit
@@ -122,10 +122,10 @@ def test_epsilon_is_over_a_wavelength_of_the_beam_under_tension_and_on_a_foundat
     beam = replace(case.beam, tension=tension, foundation=foundation)
     give = Contact(stiffness=2e5, damping=40.0, tangential_stiffness=9e4)
     case = replace(case, beam=beam, slider=replace(case.slider, contact=give))
-    found = case.run(1, 2).motor_margins
-    assert found.epsilon == pytest.approx(2.0 * 0.25 * 2e5 / (9e4 * k * 0.0014), rel=1e-12)
+    found = case.run(1, 2).margins
+    assert found.presliding == pytest.approx(2.0 * 0.25 * 2e5 / (9e4 * k * 0.0014), rel=1e-12)
     evanescent = replace(case, beam=replace(beam, foundation=foundation + 1.4 * load))
-    assert evanescent.run(1, 2).motor_margins.epsilon is None
+    assert evanescent.run(1, 2).margins.presliding is None
 
 
 def test_a_motor_starts_by_the_layers_force_over_its_mass():
@@ -145,7 +145,9 @@ def test_a_motor_starts_by_the_layers_force_over_its_mass():
     found = transient(case, 300)
     assert found.time_constant(-speed * CRESTS) == pytest.approx(wanted.t_events[0][0], rel=5e-3)
     psi, left = acos(speed), speed + found.speeds / CRESTS
-    constant = mass * CRESTS * sin(psi) * 2.0 * layer.normal_integral(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    constant = (
+        mass * CRESTS * sin(psi) * 2.0 * layer.normal_integral(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    )
     last = (left > 0.005) & (left < 0.02)
     assert -1.0 / np.polyfit(found.times[last], np.log(left[last]), 1)[0] == pytest.approx(constant, rel=0.08)
 
@@ -219,8 +221,8 @@ def test_a_periodic_orbit_has_the_multipliers_of_its_spring(ratio, zeta):
 def test_the_residual_of_an_orbit_has_its_rates_over_the_omega_of_the_drive():
     case, settle = on_spring(1.9, 0.004), 7
     run = case.run(settle, 61 * settle + 1, None, 0.0)
-    height, rate = np.abs(case.run(1, 2, run, 0.0).state.feet - run.state.feet)[0, :2]
-    size = np.ptp(run.height[-61:]) + abs(run.state.feet[0, 0])
+    height, rate = np.abs(case.run(1, 2, run, 0.0).end.feet - run.end.feet)[0, :2]
+    size = np.ptp(run.height[-61:]) + abs(run.end.feet[0, 0])
     found = periodic_orbit(case, tolerance=np.inf, settle=settle)
     assert found.residual == pytest.approx(max(height, rate / OMEGA) / size, rel=1e-6)
     assert rate / OMEGA > 0.1 * height
@@ -396,55 +398,30 @@ def pressed(**given):
     return Slider(**{**own, "contact": Contact(stiffness=6e4), **given})
 
 
-def moved(slider, **given):
-    return run_motor(BAR, TWO, 3130.0, 6e-4, slider=slider, **{"model": "fem", "count": 17, "samples": 3, **given})
-
-
 @pytest.mark.parametrize(
     ("slider", "given", "said"),
     [
-        ({"contact": None}, {}, "slider.contact is missing"),
         ({"foot": (Foot(length=0.5, points=3),)}, {}, "slider.foot.length = 0.5"),
         ({"foot": (Foot(length=0.1, points=3),), "position": 0.03}, {}, "slider.position = 0.03"),
         ({"preload": 0.0, "foot": (Foot(face="lower"),)}, {}, "slider.preload"),
         ({"contact": Contact(stiffness=6e7)}, {"step": 3e-5}, "step = 3e-05"),
-        ({}, {"links": "stretching"}, "links = 'stretching'"),
-        ({}, {"held_speed": float("nan")}, "held_speed"),
-        ({"coupling": "auto"}, {"model": "chain", "count": 9}, "slider.coupling = 'auto'"),
-        ({}, {"model": "chain", "count": 9}, "start = 'steady'"),
-        ({}, {"model": "chain", "count": 9, "start": "rest"}, "modal_damping = 0.005"),
-        ({}, {"model": "chain", "count": None}, "count = None"),
+        ({}, {"prescribed_speed": float("nan")}, "prescribed_speed"),
+        ({}, {"prescribed_speed": [0.1, 0.2]}, "prescribed_speed"),
         ({"contact": Contact(), "coupling": "two-way"}, {}, "slider.coupling = 'two-way'"),
         ({"contact": Contact(), "foot": (Foot(offset=0.003),)}, {}, "slider.foot.offset = 0.003"),
-        ({"law": "tanh", "contact": Contact(stiffness=6e4, tangential_stiffness=3e4)}, {}, "slider.law = 'tanh'"),
         ({"contact": Contact(), "preload_stiffness": 3.0}, {}, "slider.preload_stiffness = 3.0"),
         ({"foot": (Foot(mirrored=True),), "coupling": "two-way"}, {}, "slider.gravity = 9.81"),
+        ({}, {"beam": replace(BAR, tension=-1e6)}, "beam.tension"),
     ],
 )
 def test_a_motor_that_cannot_run_is_refused_by_name(slider, given, said):
+    asked = {"beam": BAR, "model": "fem", "count": 17, "samples": 3, **given}
     with pytest.raises(InputError) as refused:
-        moved(pressed(**slider), **given)
+        simulate(forces=TWO, frequency_hz=3130.0, duration=6e-4, slider=pressed(**slider), **asked)
     assert said in str(refused.value)
 
 
-def test_sliders_on_one_beam_must_rub_and_be_coupled_alike():
-    one, smooth = pressed(position=0.1), pressed(position=0.1, law="tanh", slope=3.0)
-    for first, other, field in (
-        (one, {"law": "tanh"}, "law"),
-        (one, {"coupling": "two-way"}, "coupling"),
-        (smooth, {"law": "tanh", "slope": 2.0}, "slope"),
-    ):
-        with pytest.raises(InputError, match=rf"slider\.{field} differs"):
-            run_motors(BAR, TWO, 3130.0, 1e-4, sliders=[first, pressed(position=0.2, **other)], model="fem", count=9)
-    with pytest.raises(InputError, match="slider"):
-        simulate(BAR, TWO, 3130.0, 1e-4, slider=pressed(law="tanh"), model="fem", count=9)
-    with pytest.raises(InputError, match=r"beam\.tension"):
-        run_motor(replace(BAR, tension=-1e6), TWO, 3130.0, 6e-4, slider=pressed(), model="fem", count=17)
-
-
-@pytest.mark.parametrize("links", ["rigid", "stretching"])
-def test_a_motor_on_a_chain_whose_motion_is_not_resolved_is_refused(links):
-    asked = {"model": "chain", "count": 9, "start": "rest", "modal_damping": 0.0, "links": links}
-    strong = [replace(one, amplitude=1e5) for one in TWO]
-    with pytest.raises(InputError, match=r"tolerance|step"):
-        run_motor(replace(BAR, loss_factor=0.0), strong, 3130.0, 3e-3, slider=pressed(), **asked)
+@pytest.mark.parametrize(("field", "own"), [("coupling", {"coupling": "two-way"}), ("contact", {"contact": None})])
+def test_sliders_on_one_beam_share_coupling_and_kind_of_contact(field, own):
+    with pytest.raises(InputError, match=rf"slider\.{field}"):
+        simulate(BAR, TWO, 3130.0, 1e-4, slider=[pressed(position=0.1), pressed(position=0.2, **own)], count=9)

@@ -1,4 +1,4 @@
-"""A motor on a beam that feels it, several on one beam, and on the nonlinear chain."""
+"""Feet on a beam that they move, several sliders on one beam, free beams."""
 
 from functools import cache
 from math import pi
@@ -11,7 +11,7 @@ from driven_strip import MIDDLE, PERIOD, STRIP, drive, on_strip
 from msgspec.structs import replace
 from reference.slider import hermite_modes
 
-from verify import Beam, Contact, Foot, InputError, PointForce, PointSpring, Slider, run_motor, run_motors, simulate
+from verify import Beam, Contact, Foot, InputError, PointForce, PointSpring, Slider, simulate
 from verify.dynamics.linear_system import basis_of
 
 BEAM = Beam(length=0.31, width=0.017, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
@@ -49,7 +49,7 @@ def put(given, **own):
 def run(name, steps):
     asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "soft_start_periods": 1.0, "start": "rest"}
     asked |= {"samples": TURNS + 1, "step": TURN / steps}
-    return run_motor(BEAM, FORCES, HERTZ, TURNS * TURN, slider=put(CASES[name]), **asked)
+    return simulate(BEAM, FORCES, HERTZ, TURNS * TURN, slider=put(CASES[name]), **asked)
 
 
 def errors(name, steps):
@@ -73,8 +73,10 @@ def test_beam_and_motor_are_one_system_of_equations_of_second_order_in_the_step(
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_energy_balance_of_motor_and_beam_closes(name):
-    found = [run(name, steps).ledger for steps in (250, 4000)]
-    coarse, fine = (abs(one.residual) / (abs(one.across) + abs(one.pressed) + one.rubbed) for one in found)
+    found = [run(name, steps).energy for steps in (250, 4000)]
+    coarse, fine = (
+        abs(one.residual) / (abs(one.normal_work) + abs(one.load_work) + one.friction_loss) for one in found
+    )
     assert fine < 2e-5
     assert fine < 0.1 * coarse
 
@@ -96,7 +98,7 @@ def test_a_motor_that_stays_on_is_an_added_mass_on_a_spring(share, start):
     small = [replace(one, amplitude=1e-3 * one.amplitude) for one in FORCES]
     per, turns, grown = (400, 60, 20.0) if start == "rest" else (400, 700, 0.0)
     asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "start": start, "soft_start_periods": grown}
-    found = run_motor(
+    found = simulate(
         BEAM, small, HERTZ, turns * TURN, slider=slider, samples=turns * per // 20 + 1, step=TURN / per, **asked
     )
     last = found.times > (turns - 20) * TURN + 1e-9
@@ -126,8 +128,8 @@ def held_at(speed, steps):
     """Mean friction over mu N on a point that rubs a little and stays on, from rest over twelve periods."""
     slider = put({}, mu=0.004, preload=30.0, contact=Contact(stiffness=4e5, damping=30.0))
     asked = {"model": "analytic", "modes": 4, "modal_damping": ZETA, "start": "rest", "samples": 13}
-    asked |= {"step": TURN / steps, "held_speed": speed, "frozen": True}
-    found = run_motor(BEAM, FORCES, HERTZ, 12 * TURN, slider=slider, **asked)
+    asked |= {"step": TURN / steps, "prescribed_speed": speed, "fixed_position": True}
+    found = simulate(BEAM, FORCES, HERTZ, 12 * TURN, slider=slider, **asked)
     assert found.contact_share[1:].mean() == pytest.approx(1.0, rel=1e-9)
     return found.friction[1:].mean() / (slider.mu * slider.preload)
 
@@ -149,7 +151,7 @@ def test_a_sticking_point_agrees_with_a_separate_time_stepping_code():
     slider = put({}, contact=Contact(stiffness=3e5, damping=4.0), **own)
     asked = {"model": "analytic", "modes": 24, "modal_damping": 0.004, "start": "rest", "samples": 9}
     runs = [
-        run_motor(strip, forces, 3000.0, 8 / 3000.0, slider=slider, step=1.0 / 3000.0 / steps, **asked)
+        simulate(strip, forces, 3000.0, 8 / 3000.0, slider=slider, step=1.0 / 3000.0 / steps, **asked)
         for steps in (976, 15616)
     ]
     assert [len(one.events) for one in runs] == [18, 18]
@@ -174,9 +176,16 @@ def stout(name, size, turns, steps, before=None):
         PointForce(position=0.05, amplitude=1e3 * size),
         PointForce(position=0.23, amplitude=700.0 * size, phase_deg=77.0),
     )
-    asked = {"model": "fem", "count": 4, "modal_damping": 0.0, "held_speed": 0.0, "frozen": True, "samples": 2}
+    asked = {
+        "model": "fem",
+        "count": 4,
+        "modal_damping": 0.0,
+        "prescribed_speed": 0.0,
+        "fixed_position": True,
+        "samples": 2,
+    }
     asked |= {"start": "rest", "step": TURN / steps, "continue_from": before}
-    return run_motor(STOUT, forces, HERTZ, turns * TURN, slider=put({}, foot=(FEET[name],), **own), **asked)
+    return simulate(STOUT, forces, HERTZ, turns * TURN, slider=put({}, foot=(FEET[name],), **own), **asked)
 
 
 def energy(name, state):
@@ -198,11 +207,11 @@ def test_springy_feet_on_a_beam_that_feels_them_keep_the_energy_to_second_order(
 
     def gained(steps):
         found = stout(name, 1.0, 2, steps)
-        (first, beam), most = energy(name, found.state), 0.0
+        (first, beam), most = energy(name, found.end), 0.0
         for _ in range(4):
             found = stout(name, 0.0, 3, steps, found)
             assert found.contact_share[-1] == pytest.approx(1.0, rel=1e-9)
-            most = max(most, abs(energy(name, found.state)[0] - first))
+            most = max(most, abs(energy(name, found.end)[0] - first))
         return most / beam
 
     coarse, fine = gained(1000), gained(4000)
@@ -236,9 +245,16 @@ SPRUNG = Slider(
 
 
 def crossing(slider=SPRUNG, duration=0.006, amplitude=0.0, **given):
-    asked = {"model": "fem", "count": 10, "start": "rest", "modal_damping": 0.0, "held_speed": 20.0, "samples": 37}
+    asked = {
+        "model": "fem",
+        "count": 10,
+        "start": "rest",
+        "modal_damping": 0.0,
+        "prescribed_speed": 20.0,
+        "samples": 37,
+    }
     forces = [PointForce(position=0.05, amplitude=amplitude)]
-    return run_motor(CANTILEVER, forces, 5000.0, duration, slider=slider, **{**asked, **given})
+    return simulate(CANTILEVER, forces, 5000.0, duration, slider=slider, **{**asked, **given})
 
 
 @pytest.mark.parametrize("face", ["upper", "lower"])
@@ -249,51 +265,50 @@ def test_running_feet_work_on_the_beam_what_the_beam_gains(face):
     found = crossing(slider, duration=2.9e-3, step=6e-7, samples=2, continue_from=before)
     omegas = basis_of(CANTILEVER, "fem", 10, None, "spline").omegas
     first, last = (
-        0.5 * float(one.rates @ one.rates + (omegas * one.q) @ (omegas * one.q)) for one in (before.state, found.state)
+        0.5 * float(one.rates @ one.rates + (omegas * one.q) @ (omegas * one.q)) for one in (before.end, found.end)
     )
-    books, gained = found.ledger, last - first
+    balance, gained = found.energy, last - first
+    work = balance.friction_on_beam + balance.normal_on_beam
     assert gained > 0.01
-    assert books.on_beam == pytest.approx(gained, rel=2e-5)
-    assert books.on_beam == pytest.approx(-books.across - books.along, rel=1e-9)
-    assert abs(books.uphill) > 0.5 * gained
-    assert abs(books.residual) < 1e-6 * gained
+    assert work == pytest.approx(gained, rel=2e-5)
+    assert work == pytest.approx(-balance.normal_work - balance.tangential_work, rel=1e-9)
+    assert abs(balance.slope_work) > 0.5 * gained
+    assert abs(balance.residual) < 2e-5 * gained
 
 
 HARD = replace(SPRUNG, coupling="one-way", contact=Contact(restitution=0.3), foot=())
-CHAIN = {"slider": replace(SPRUNG, coupling="one-way"), "model": "chain", "duration": 3e-4, "held_speed": 150.0}
 ENDS = {
     "springs": ({}, 0.085 - 0.003 - 0.00225),
     "hard": ({"slider": HARD, "model": "analytic", "count": None, "start": "steady", "modal_damping": 0.01}, 0.085),
-    "a chain": ({**CHAIN, "steps_per_period": 67}, None),
 }
 
 
 @pytest.mark.parametrize("name", ENDS)
-def test_a_slider_that_runs_off_the_beam_ends_there_with_state_and_books(name):
+def test_a_slider_that_runs_off_the_beam_ends_there_with_state_and_energy(name):
     given, way = ENDS[name]
     found = crossing(**{"amplitude": 3.0, **given})
     assert found.statistics.stopped.startswith("left the")
-    assert found.times[-1] < found.state.time
-    assert found.state.travelled == pytest.approx(found.state.speed * found.state.time, rel=1e-9)
-    if way is not None:
-        assert way - 1.5 * 20.0 * found.statistics.step_s < found.state.travelled <= way
+    travelled = found.end.position - found.start
+    assert found.times[-1] < found.end.time
+    assert travelled == pytest.approx(found.end.speed * found.end.time, rel=1e-9)
+    assert abs(travelled - way) <= 20.0 * found.statistics.step_s
     if name == "springs":
         fine = crossing(steps_per_period=1600)
-        assert abs(fine.ledger.residual) < 2e-6 * fine.ledger.kinetic
-        there = crossing(step=fine.statistics.step_s, duration=fine.state.time, samples=2)
+        assert abs(fine.energy.residual) < 2e-6 * fine.energy.slider
+        there = crossing(step=fine.statistics.step_s, duration=fine.end.time, samples=2)
         assert there.statistics.stopped == "end"
-        assert there.state.feet == pytest.approx(fine.state.feet, rel=1e-9, abs=1e-12)
+        assert there.end.feet == pytest.approx(fine.end.feet, rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("coupling", ["one-way", "two-way"])
 def test_a_slider_kept_at_its_place_goes_up_no_slope_at_any_speed(coupling):
     slider = replace(SPRUNG, coupling=coupling, mu=0.3)
-    given = {"frozen": True, "duration": 2e-3, "amplitude": 90.0, "step": 4e-7}
-    still, found = (crossing(slider, held_speed=speed, **given) for speed in (0.0, 7.0))
-    assert found.ledger.uphill == still.ledger.uphill == 0.0
-    assert abs(found.ledger.residual) < 2e-4 * found.ledger.damped
+    given = {"fixed_position": True, "duration": 2e-3, "amplitude": 90.0, "step": 4e-7}
+    still, found = (crossing(slider, prescribed_speed=speed, **given) for speed in (0.0, 7.0))
+    assert found.energy.slope_work == still.energy.slope_work == 0.0
+    assert abs(found.energy.residual) < 2e-4 * found.energy.contact_loss
     if coupling == "one-way":
-        assert found.ledger.damped == pytest.approx(still.ledger.damped, rel=1e-9)
+        assert found.energy.contact_loss == pytest.approx(still.energy.contact_loss, rel=1e-9)
 
 
 # --- several sliders, and sliders between two beams
@@ -308,27 +323,28 @@ KEPT = {"model": "segment", "count": 49, "samples": 18}
 def test_sliders_that_the_beam_does_not_feel_move_as_each_alone():
     first = replace(LIGHT, coupling="one-way", foot=(Foot(length=0.044, points=23),))
     other = replace(first, mass=0.034, mu=0.11, position=0.331, foot=(Foot(length=0.03, points=11),))
-    runs = run_motors(STRIP, PAIR, STRIP_HERTZ, 4e-3, sliders=[first, other], **KEPT)
-    for slider, found in zip((first, other), runs, strict=True):
-        alone = run_motor(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=slider, **KEPT)
-        assert found.start == alone.start
-        assert found.travelled == pytest.approx(alone.travelled, rel=1e-6, abs=1e-12)
-        assert found.height == pytest.approx(alone.height, rel=1e-6, abs=1e-12)
-        assert found.point_offsets == pytest.approx(alone.point_offsets, abs=1e-15)
-        assert found.ledger.residual == pytest.approx(alone.ledger.residual, abs=1e-6)
+    both, points = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=[first, other], **KEPT), 0
+    for number, slider in enumerate((first, other)):
+        alone = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=slider, step=both.statistics.step_s, **KEPT)
+        own = slice(points, points := points + len(alone.point_offsets))
+        assert both.start[number] == alone.start
+        assert both.travelled[:, number] == pytest.approx(alone.travelled, rel=1e-6, abs=1e-12)
+        assert both.height[:, number] == pytest.approx(alone.height[:, 0], rel=1e-6, abs=1e-12)
+        assert both.point_offsets[own] == pytest.approx(alone.point_offsets, abs=1e-15)
 
 
-def test_sliders_feel_each_other_the_less_the_less_presses_the_other_on_and_all_books_close():
-    alone, apart = run_motor(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=LIGHT, **KEPT), []
+def test_sliders_feel_each_other_the_less_the_less_presses_the_other_on_and_the_energy_balance_closes():
+    apart, asked = [], {"steps_per_period": 509, **KEPT}
+    alone = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=LIGHT, **asked)
     for share in (1.0, 1e-2, 1e-4):
         second = replace(LIGHT, preload=0.3 * share, mass=0.01 * share, contact=Contact(stiffness=4e5 * share))
-        sliders = [LIGHT, replace(second, position=0.331)]
-        runs = run_motors(STRIP, PAIR, STRIP_HERTZ, 4e-3, sliders=sliders, steps_per_period=509, **KEPT)
-        apart.append(float(np.abs(runs[0].height - alone.height).max()))
-        for books in (one.ledger for one in runs):
-            assert abs(books.residual) < 1e-3 * (abs(books.across) + abs(books.along))
-            assert books.on_beam == pytest.approx(-(books.across + books.along), rel=1e-9)
-    assert apart[0] > 10.0 * apart[1]
+        both = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=[LIGHT, replace(second, position=0.331)], **asked)
+        apart.append(float(np.abs(both.height[:, 0] - alone.height[:, 0]).max()))
+        energy = both.energy
+        assert abs(energy.residual) < 1e-3 * (abs(energy.normal_work) + abs(energy.tangential_work))
+        work = energy.friction_on_beam + energy.normal_on_beam
+        assert work == pytest.approx(-energy.normal_work - energy.tangential_work, rel=1e-9)
+    assert apart[0] > 10.0 * apart[1] > 100.0 * apart[2]
 
 
 def pinned_answers(x, at, hertz, ratio):
@@ -339,22 +355,21 @@ def pinned_answers(x, at, hertz, ratio):
     return (share * np.sin(n * x) * np.sin(n * at)).sum(axis=0)
 
 
-def test_sliders_that_the_beam_feels_only_together_are_coupled_two_way():
-    """Each moves the surface by under a thousandth of what the drive does, all of them by more."""
+def test_the_size_of_coupling_is_of_the_loads_of_all_sliders():
     ratio, hertz = 0.011, 3911.0
-    first = replace(LIGHT, coupling="auto", gravity=0.0, preload=1.3e-3)
+    first = replace(LIGHT, coupling="one-way", gravity=0.0, preload=1.3e-3)
     sliders = [first, replace(first, position=0.331, preload=0.9e-3), replace(first, position=0.268, mu=0.4)]
-    asked = {"model": "analytic", "modal_damping": ratio, "modes": 9, "samples": 2}
     at = np.array([one.position for one in sliders])
     driven = sum(
         one.amplitude * np.exp(1j * np.radians(one.phase_deg)) * pinned_answers(one.position, at, hertz, ratio)
         for one in PAIR
     )
     lifted = sum(one.preload * np.abs(pinned_answers(one.position, at, hertz, ratio)) for one in sliders)
-    assert not any(run_motor(STRIP, PAIR, hertz, 2e-5, slider=one, **asked).coupling.two_way for one in sliders)
-    for found in run_motors(STRIP, PAIR, hertz, 2e-5, sliders=sliders, **asked):
-        assert found.coupling.two_way
-        assert found.coupling.normal_size == pytest.approx((lifted / np.abs(driven)).max(), rel=1e-3)
+    asked = {"model": "analytic", "modal_damping": ratio, "samples": 2}
+    coupling = simulate(STRIP, PAIR, hertz, 2e-5, slider=sliders, **asked).coupling
+    assert not coupling.two_way
+    assert coupling.normal_size == pytest.approx((lifted / np.abs(driven)).max(), rel=1e-3)
+    assert coupling.normal_size > 1.5 * simulate(STRIP, PAIR, hertz, 2e-5, slider=first, **asked).coupling.normal_size
 
 
 @pytest.mark.parametrize("law", ["coulomb", "tanh"])
@@ -368,7 +383,7 @@ def test_two_beams_that_feel_the_slider_between_them_move_as_one_that_feels_half
     kept = {"model": "fem", "count": 30, "samples": 30, "start": "rest", "soft_start_periods": 2.0}
     forces = [replace(one, amplitude=60.0) for one in PAIR]
     two, one, free = (
-        run_motor(stiff, forces, STRIP_HERTZ, 4e-3, slider=slider, **kept)
+        simulate(stiff, forces, STRIP_HERTZ, 4e-3, slider=slider, **kept)
         for slider in (between, half, replace(between, coupling="one-way"))
     )
     assert two.speed[-1] == pytest.approx(one.speed[-1], rel=2e-3)
@@ -381,7 +396,7 @@ def test_a_preload_spring_eases_as_the_beam_gives_way():
     own = {"mass": 1e-3, "law": "tanh", "slope": 30.0, "gravity": 0.0, "preload": 0.02, "preload_stiffness": 4e4}
     slider = Slider(mu=0.2, coupling="two-way", position=0.237, contact=Contact(stiffness=1e5), **own)
     still = [replace(one, amplitude=1e-9) for one in PAIR]
-    found = run_motor(STRIP, still, STRIP_HERTZ, 1e-3, slider=slider, model="fem", count=30, samples=5)
+    found = simulate(STRIP, still, STRIP_HERTZ, 1e-3, slider=slider, model="fem", count=30, samples=5)
     compliance = (0.237 * 0.263) ** 2 / (3.0 * STRIP.bending_stiffness * 0.5)
     assert found.normal_force[1:] == pytest.approx(0.02 / (1.0 + 4e4 * (1e-5 + compliance)), rel=1e-3)
 
@@ -391,55 +406,15 @@ def test_a_continued_run_equals_one_run(coupling):
     contact = Contact(stiffness=3e6, damping=30.0)
     slider = replace(LIGHT, coupling=coupling, preload=1.3, contact=contact, foot=(Foot(length=0.044, points=23),))
     asked = {"slider": slider, **KEPT}
-    whole = run_motor(STRIP, PAIR, STRIP_HERTZ, 12 * PERIOD, **{**asked, "samples": 13})
-    first = run_motor(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7})
-    second = run_motor(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7}, continue_from=first)
+    whole = simulate(STRIP, PAIR, STRIP_HERTZ, 12 * PERIOD, **{**asked, "samples": 13})
+    first = simulate(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7})
+    second = simulate(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7}, continue_from=first)
     assert second.times[0] == pytest.approx(first.times[-1])
     assert second.travelled[-1] == pytest.approx(whole.travelled[-1], rel=1e-7)
     assert second.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)
 
 
-# --- on the nonlinear chain, and on a beam that nothing holds
-
-
-WIDE = (Foot(length=0.02, points=3),)
-
-
-def on_chain(model, size, links="rigid", place=0.23, foot=WIDE, **more):
-    """Two periods of everything `size` times as large: forces, preload, what friction's slope asks of speeds."""
-    own = {"mass": 2e-3, "mu": 0.2, "slope": 100.0 / size, "gravity": 0.0, "preload": 0.3 * size, "position": place}
-    slider = Slider(coupling="one-way", contact=Contact(stiffness=3e5, damping=5.0), foot=foot, **own)
-    forces = [
-        PointForce(position=0.04, amplitude=size),
-        PointForce(position=0.45, amplitude=0.7 * size, phase_deg=80.0),
-    ]
-    asked = {"model": model, "count": 9, "start": "rest", "samples": 9, "steps_per_period": 400, "links": links, **more}
-    return run_motor(STRIP, forces, 900.0, 2.0 / 900.0, slider=slider, **asked)
-
-
-def test_on_a_small_motion_the_nonlinear_chain_carries_a_motor_as_the_linear_one():
-    """Heights part by less than a millionth; speeds by what the chain draws in, of first order beside themselves."""
-    apart = []
-    for size in (1.0, 0.25, 0.0625):
-        bent, straight = on_chain("chain", size), on_chain("segment", size)
-        pairs = [(bent.height, straight.height), (bent.speed, straight.speed)]
-        apart.append([np.abs(one - other).max() / np.abs(other).max() for one, other in pairs])
-    heights, speeds = np.array(apart).T
-    assert heights[-1] < 1e-6
-    assert np.all(np.diff(heights) < 0.0)
-    assert speeds[-1] < 1e-2
-    assert np.log2(speeds[:-1] / speeds[1:]) / 2.0 == pytest.approx(1.0, abs=0.1)
-    drawn = [on_chain("chain", size).motor_margins.drawn for size in (0.3, 0.6)]
-    assert drawn[1] / drawn[0] == pytest.approx(4.0, rel=1e-2)
-
-
-@pytest.mark.parametrize("links", ["rigid", "stretching"])
-def test_the_surface_of_a_chain_is_continuous_at_a_joint(links):
-    joint, asked = 3 * STRIP.length / 9, {"held_speed": 0.0, "frozen": True, "foot": (), "samples": 62}
-    left, right = (
-        on_chain("chain", 30.0, links, place, **asked).surface_speed[1:] for place in (joint - 1e-9, joint + 1e-9)
-    )
-    assert left == pytest.approx(right, abs=1e-6 * np.nanmax(abs(left)))
+# --- on a beam that nothing holds
 
 
 def bar(**given):
@@ -453,12 +428,12 @@ def test_a_slider_runs_on_a_beam_that_nothing_holds_as_on_soft_springs():
     slider = Slider(mass=2e-3, mu=0.3, slope=60.0, preload=8.0, position=0.031, coupling="one-way", contact=contact)
     lying = bar(spring=tuple(PointSpring(position=x, stiffness=10.0) for x in (0.0, 0.06)))
     asked = {"slider": slider, "samples": 3}
-    exact = run_motor(bar(), forces, 31e3, 1e-3, model="analytic", **asked)
+    exact = simulate(bar(), forces, 31e3, 1e-3, model="analytic", **asked)
     assert abs(exact.travelled[-1]) > 5e-8
     for model, count in (("segment", 31), ("fem", 40)):
-        free, held = (run_motor(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying))
-        assert free.motor_margins.sag is None
+        free, held = (simulate(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying))
+        assert free.margins.static_deflection is None
         assert free.travelled == pytest.approx(held.travelled, rel=1e-5)
         assert free.travelled == pytest.approx(exact.travelled, rel=5e-3)
     with pytest.raises(InputError, match=r"beam\.supports"):
-        run_motor(bar(), forces, 31e3, 1e-4, slider=replace(slider, coupling="two-way"), model="fem", count=17)
+        simulate(bar(), forces, 31e3, 1e-4, slider=replace(slider, coupling="two-way"), model="fem", count=17)

@@ -15,14 +15,14 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.motion import ChainMotion, ElasticMotion, from_rest
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
+from verify.dynamics.coupling import Coupling, coupling_of, field_receptance
+from verify.dynamics.linear_system import Steps, damped_field, steady_stage
+from verify.dynamics.request import check_step
+from verify.dynamics.result import END, Statistics
 from verify.errors import InputError, written
 from verify.linear.surface import section_at
-from verify.motion.contact import Coupling, couple, coupling_of, law_of, surface_speed, turned_by
 from verify.motion.records import KEPT_FRICTION, Given, Rider
-from verify.motion.request import check_seen
-from verify.motion.result import END, Slid, Statistics
-from verify.motion.slider_run import damped_field
-from verify.motion.stepping import contact_space, fresh_motion, of_all_steps
+from verify.motion.stepping import contact_space, fresh_motion, law_of, of_all_steps
 from verify.options import Links
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
@@ -30,7 +30,7 @@ from verify.segments.reading import contact_line, contact_piece
 from verify.validation import check_number, check_whole
 
 if TYPE_CHECKING:
-    from verify.linear.field import HarmonicField
+    pass
 
 
 class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):
@@ -49,13 +49,45 @@ class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):
     where friction is smooth, 1 where it jumps, or sticks and is the step's mean."""
 
 
-class ChainRide(Slid, frozen=True, eq=False, kw_only=True):
+class ChainRide(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Motion of a slider on a chain."""
 
+    times: Array
+    """(n,), s."""
+    slider: Slider
+    start: float
+    """Initial position, m from the left end."""
+    travelled: Array
+    """(n,), m along +x."""
+    speed: Array
+    """(n,), m/s."""
+    friction: Array
+    """(n,), tangential force on the slider, N."""
+    surface_speed: Array
+    """(n,), tangential velocity of the surface under the slider, m/s."""
+    mean_friction: float
+    """Of all steps, N; NaN without a step."""
+    largest_friction: float
+    """Of all steps, N."""
+    mean_surface_speed: float
+    """Of all steps, m/s."""
+    coupling: Coupling | None
+    notes: tuple[str, ...]
+    statistics: Statistics
     chain: ChainMotion | ElasticMotion
     """The chain's own motion."""
     ledger: SliderLedger | None
     """None of a run that ended at its start."""
+
+    @property
+    def displacement(self) -> float:
+        """From the start to the end, m."""
+        return float(self.travelled[-1])
+
+    @property
+    def mean_speed(self) -> float:
+        """Displacement over duration, m/s."""
+        return self.displacement / float(self.times[-1])
 
 
 def half_steps(duration: float, step: float) -> Array:
@@ -87,7 +119,7 @@ def ride_from_rest(
     """
     check_whole("segments", n_segments, 2)
     check_number("step", step, "seconds", above=0)
-    check_seen(step, frequency_hz)
+    check_step(step, frequency_hz)
     check_rideable(slider)
     system = build_system(beam, n_segments, forces, frequency_hz, load="reciprocal")
     times, coupling = half_steps(duration, step), coupling_on_chain(beam, forces, frequency_hz, n_segments, slider)
@@ -118,14 +150,10 @@ def coupling_on_chain(
     beam: Beam, forces: Sequence[PointForce], frequency_hz: float, n_segments: int, slider: Slider
 ) -> Coupling:
     """Sizes of the coupling on the straight, steady chain: those of the segment model."""
-    x = slider.start_on(beam)
-
-    def steady(forces: Sequence[PointForce]) -> "HarmonicField":
-        return damped_field("segment", n_segments, beam, tuple(forces), frequency_hz, None)
-
-    speed, unit = surface_speed(steady(forces), x), complex(steady([PointForce(position=x)]).deflection([x])[0])
-    turned = turned_by(steady(couple(beam, x, frequency_hz)), x)
-    return coupling_of(slider, section_at(beam, x), frequency_hz, speed, unit, turned)
+    field = damped_field("segment", n_segments, beam, tuple(forces), frequency_hz, None)
+    stage = steady_stage(field, Steps(1, 1.0 / frequency_hz, 1), 0.0, None, 0.0)
+    receptance = field_receptance(beam, "segment", n_segments, frequency_hz, None)
+    return coupling_of(beam, (slider,), (slider.start_on(beam),), stage, receptance)
 
 
 def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider, coupling: Coupling | None = None) -> ChainRide:
@@ -140,7 +168,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider, couplin
     local, along, edges = _surface(chain, start)
     given, kept = Given(local, along, edges - start), np.zeros((n_steps + 1, 4))
     under = section_at(beam, start)
-    rider = Rider(fresh_motion(slider.speed), law_of(slider, under), two_way=None)
+    rider = Rider(fresh_motion(slider.speed), law_of(slider, under))
     ready = perf_counter()
     done = kernels.slide_given(n_steps, dt, given, rider, kept, contact_space())
     wall, kept, ends = perf_counter() - ready, kept[: done + 1], slice(0, 2 * done + 1, 2)
@@ -159,7 +187,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider, couplin
         mean_surface_speed=mean_surface,
         coupling=coupling,
         ledger=_ledger(slider, under.surface_distance, times[ends], kept, local[ends], given.edges),
-        notes=coupling.notes if coupling else (),
+        notes=(),
         statistics=Statistics(
             steps=done,
             evaluations=2 * done + 1,

@@ -264,15 +264,20 @@ def solve_block(
     dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array,
     response: Array, spans: Array, block: Array,
 ) -> float:  # fmt: skip
-    """Friction of all rigid points together, by their mean slips: Newton's method on active sets; last change."""
+    """Friction of all rigid points together: Newton's method on active sets; last change.
+
+    By their mean slips where the beam responds, else by those at the end of the step: no mean slip reverses the speed
+    of a slider without a beam's response in every step.
+    """
     n, two_way, changed = points.shape[0], codes[lay.TWO_WAY] > 0, 0.0
+    part = 0.5 if two_way or codes[lay.LAW] != lay.SPRING else 1.0
     for _ in range(4 * n + 20):
         for i in range(n):  # row i: what the law asks of all changes of force
             b, force = indices[i, lay.OF_SLIDER], contacts[i, lay.FRICTION]
             most = sliders[b, lay.MU] * max(contacts[i, lay.NORMAL], 0.0)
-            slip = sliders[b, lay.V] + 0.5 * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
-            slip -= product(i, 0, shapes, response) if two_way else 0.0
-            own = 0.5 * dt * sliders[b, lay.INVERSE_MASS] + contacts[i, lay.OWN] + 1e-300
+            slip = sliders[b, lay.V] + part * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
+            slip -= product(i, 0, shapes, response) if two_way else (part - 0.5) * contacts[i, lay.RISE]
+            own = part * dt * sliders[b, lay.INVERSE_MASS] + contacts[i, lay.OWN] + 1e-300
             diagonal, slope, miss = 0.0, 1.0, slip
             if points[i, lay.TANGENTIAL] > 0.0 or most == 0.0:
                 diagonal, slope, miss = 1.0, 0.0, 0.0
@@ -285,7 +290,7 @@ def solve_block(
             for k in range(n):
                 block[i, k] = 0.0
                 if slope != 0.0 and sliders[b, lay.INVERSE_MASS] > 0.0 and indices[k, lay.OF_SLIDER] == b:
-                    block[i, k] = 0.5 * slope * dt * sliders[b, lay.INVERSE_MASS]
+                    block[i, k] = part * slope * dt * sliders[b, lay.INVERSE_MASS]
                 for j in range(shapes.shape[2] if two_way and slope != 0.0 else 0):
                     block[i, k] += slope * shapes[0, i, j] * shapes[2, k, j]
             block[i, i] = (block[i, i] + diagonal) * (1.0 + 1e-10)  # points that share one slider alone

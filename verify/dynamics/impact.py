@@ -220,6 +220,9 @@ def advance_impacts(
                     fed = (1.0 - restitution**2) * height <= known and height <= LOW * known
                     if 2.0 * away <= REST * dt * presses or fed:
                         touch[lay.DEPTH], foot[lay.CLIMB] = 1.0, seen[CLIMB]
+                        total[lay.DAMPED] += 0.5 * mass * away * away  # what is left of the bounce
+                        total[lay.ACROSS] -= mass * away * seen[CLIMB]
+                        total[lay.LIFTED_BEAM] += mass * away * seen[CLIMB]
             if kind > 0.0:
                 row = tally[lay.EVENTS]
                 if row < events.shape[0]:

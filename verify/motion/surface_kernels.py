@@ -3,49 +3,9 @@
 import numpy as np
 
 from verify.arrays import Array
-from verify.jit import FAST, inline
+from verify.jit import inline
 from verify.motion import records as rec
-from verify.motion.records import Drive, Here, Law
-
-
-@inline(fastmath=FAST)
-def rotate_half(modes: Array) -> None:
-    """Advance every free mode by half a step."""
-    for j in range(modes.shape[1]):
-        real = modes[rec.Z_RE, j] * modes[rec.HALF_RE, j] - modes[rec.Z_IM, j] * modes[rec.HALF_IM, j]
-        modes[rec.Z_IM, j] = modes[rec.Z_RE, j] * modes[rec.HALF_IM, j] + modes[rec.Z_IM, j] * modes[rec.HALF_RE, j]
-        modes[rec.Z_RE, j] = real
-
-
-@inline(fastmath=FAST)
-def set_factors(time: float, modes: Array, drive: Drive, factors: Array) -> None:
-    """Time factors of all rows and their rates: modes first, then (t/ramp)^d (cos, -sin) of the drive."""
-    n = modes.shape[1]
-    for j in range(n):
-        factors[rec.STILL, j] = modes[rec.Z_RE, j]
-        factors[rec.MOVING, j] = -modes[rec.SIGMA, j] * modes[rec.Z_RE, j] - modes[rec.OMEGA, j] * modes[rec.Z_IM, j]
-    omega, unit = drive.omega, drive.unit
-    angle = omega * (drive.origin + time)
-    c, s = np.cos(angle), np.sin(angle)
-    power, growth = 1.0, 0.0
-    for d in range((factors.shape[1] - n) // 2):
-        j = n + 2 * d
-        factors[rec.STILL, j], factors[rec.STILL, j + 1] = power * c, -power * s
-        factors[rec.MOVING, j] = growth * c - power * omega * s
-        factors[rec.MOVING, j + 1] = -growth * s - power * omega * c
-        growth = (d + 1) * power / unit
-        power = power * time / unit
-
-
-@inline(fastmath=FAST)
-def set_local(table: Array, piece: int, factors: Array, local: Array) -> None:
-    """Polynomials of deflection and velocity on one piece; table is (pieces, degree + 1, rows)."""
-    for d in range(table.shape[1]):
-        still, moving = 0.0, 0.0
-        for j in range(table.shape[2]):
-            still += table[piece, d, j] * factors[rec.STILL, j]
-            moving += table[piece, d, j] * factors[rec.MOVING, j]
-        local[rec.STILL, d], local[rec.MOVING, d] = still, moving
+from verify.motion.records import Law
 
 
 @inline
@@ -100,42 +60,3 @@ def between(ends: Array, edges: Array, piece: int, x: float) -> float:
     """What changes evenly along a piece, at x; `ends` are its values at all edges."""
     share = (x - edges[piece]) / (edges[piece + 1] - edges[piece])
     return float((1.0 - share) * ends[piece] + share * ends[piece + 1])
-
-
-@inline
-def climb(local: Array, edges: Array, piece: int, x: float, along: float, half: float) -> float:
-    """Speed across the beam of a point on the surface over x that moves along x: dw/dt + w' dX/dt at its material."""
-    length = edges[piece + 1] - edges[piece]
-    at = material(local, edges, piece, x, half)
-    value, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
-    for d in range(local.shape[1] - 1, -1, -1):
-        bend = bend * at + slope
-        slope = slope * at + value
-        value = value * at + local[rec.STILL, d]
-        turn = turn * at + rise
-        rise = rise * at + local[rec.MOVING, d]
-    bend = 2.0 * bend / (length * length)
-    return float(rise + slope / length * (along + half * (turn / length + bend * along)))
-
-
-@inline
-def carried(local: Array, edges: Array, here: Here, half: float) -> float:
-    """How far the whole motion moves the surface in a step, along the tangent here, metres."""
-    at, slope, piece = here.at, here.slope, here.piece
-    value, first = 0.0, 0.0
-    for d in range(local.shape[1] - 1, -1, -1):
-        first = first * at + value
-        value = value * at + local[rec.STILL, d] - local[rec.BEFORE, d]
-    return float((slope * value - half * first / (edges[piece + 1] - edges[piece])) / np.sqrt(1.0 + slope * slope))
-
-
-@inline
-def climbed(local: Array, edges: Array, here: Here, half: float) -> float:
-    """How far the whole motion lifts in a step what stands on the surface here, metres."""
-    value, over, turn = 0.0, 0.0, 0.0
-    for d in range(local.shape[1] - 1, -1, -1):
-        change = local[rec.STILL, d] - local[rec.BEFORE, d]
-        value = value * here.at + change
-        turn = turn * here.above + over
-        over = over * here.above + change
-    return float(value + here.slope * half * turn / (edges[here.piece + 1] - edges[here.piece]))

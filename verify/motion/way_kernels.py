@@ -137,18 +137,6 @@ def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: A
     return float(on_surface(dt, seen) + relative_way(start, rise / dt, law.kinetic, slope, dt, took[rec.CHANGE]))
 
 
-@inline
-def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Array, took: Array) -> float:
-    """The same on a surface that feels the slider, which `hold` may have held till the end or till friction gave way.
-
-    Relative to the surface it speeds up evenly from there on.
-    """
-    if not stuck:
-        return way(v, rate, dt, law.slope, law, seen, took)
-    slips = 0.0 if took[rec.STICKING] > 0.0 else dt - took[rec.FIRST_EVENT]
-    return float(on_surface(dt, seen) + 0.5 * slips * (_ended(v, seen, took) - seen[2, rec.SURFACE]))
-
-
 @inline(forceinline=True)
 def until_caught(grip: float, r: float, dt: float) -> float:
     """Friction per mass as it acts in the mean of a step in which it takes no slider past the surface's speed."""

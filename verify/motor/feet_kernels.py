@@ -3,22 +3,10 @@
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.jit import FAST, inline
+from verify.jit import inline
 from verify.motion.records import MOVING, STILL
 from verify.motor import records as rec
 from verify.motor.records import Feet, Line, Log
-
-
-@inline(fastmath=FAST)
-def draw(table: Array, piece: int, line: Line) -> None:
-    """Polynomials of deflection and velocity on one piece, by the factors of the rows."""
-    factors, local = line.factors, line.local
-    for d in range(table.shape[1]):
-        still, moving = 0.0, 0.0
-        for j in range(table.shape[2]):
-            still += table[piece, d, j] * factors[STILL, j]
-            moving += table[piece, d, j] * factors[MOVING, j]
-        local[piece, STILL, d], local[piece, MOVING, d] = still, moving
 
 
 @inline
@@ -229,7 +217,7 @@ def write(time: float, kind: float, point: int, x: float, events: Array, tally: 
 
 
 @inline
-def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
+def keep(dt: float, feet: Feet, log: Log) -> None:
     """Write one sample: the state now, means and sums since the last."""
     row, span = log.tally[rec.SAMPLES], dt * log.every
     for b in range(feet.body.shape[0]):
@@ -238,11 +226,6 @@ def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
         log.pressures[row, i] = feet.touch[i, rec.PUSH]
     for f in range(feet.state.shape[0]):
         log.heights[row, f, 0], log.heights[row, f, 1] = feet.state[f, rec.HEIGHT], feet.state[f, rec.PITCH]
-    for p in range(log.points.shape[0]):
-        total = 0.0
-        for j in range(log.points.shape[1]):
-            total += log.points[p, j] * line.factors[STILL, j]
-        log.deflections[row, p] = total
     log.tally[rec.SAMPLES] += 1
 
 

@@ -100,28 +100,6 @@ class Feet(NamedTuple):
     """(sliders, SUMS)"""
 
 
-class Hard(NamedTuple):
-    """A hard point."""
-
-    mass: float
-    press: float
-    """What presses it on over its mass, m/s^2."""
-    restitution: float
-
-
-class BeamAnswer(NamedTuple):
-    """The beam's answer where it feels the feet."""
-
-    answer: Array
-    """(k, k) with k = pieces (degree + 1): what a unit impulse on one coefficient adds to the rate of another."""
-    load: Array
-    """(pieces, degree + 1): impulses of a step on the coefficients."""
-    added: Array
-    """(pieces, degree + 1): what half of them adds to the rates."""
-    span: Indices
-    """(2,), the first and the last piece that a point stands on."""
-
-
 class Line(NamedTuple):
     """The surface in mid-step, on every piece that a point stands on."""
 
@@ -129,12 +107,10 @@ class Line(NamedTuple):
     """(pieces, 2, degree + 1), polynomials of deflection and velocity."""
     stamp: Indices
     """(pieces,), the step for which they were made."""
-    factors: Array
-    """(2, rows)"""
 
 
 class GivenSurface(NamedTuple):
-    """A surface that is given in the middle of every step; of no steps where it is reckoned from modes and drive."""
+    """A surface that is given in the middle of every step."""
 
     local: Array
     """(n, pieces, 2, degree + 1), polynomials of deflection and velocity."""
@@ -152,10 +128,6 @@ class Log(NamedTuple):
     """(samples, feet, 2), height and pitch."""
     pressures: Array
     """(samples, points), normal force in the middle of the step before."""
-    points: Array
-    """(n, rows), where the deflection is kept."""
-    deflections: Array
-    """(samples, n)"""
     events: Array
     """(capacity, 4)"""
     tally: Indices
