@@ -218,6 +218,7 @@ def _balance(slider: Slider, feet: Feet, before: tuple[float, float, Array, Arra
     normal, along, uphill = (float(sums[column]) for column in (records.ACROSS, records.ALONG, records.UPHILL))
     load, rubbed = float(sums[records.PRESSED] + sums[records.PULLED]), float(sums[records.RUBBED])
     damped = float(sums[records.DAMPED])
+    residual = normal + along + uphill + load - rubbed - damped - kinetic - stored
     return EnergyBalance(
         kinetic=0.0,
         elastic=0.0,
@@ -235,7 +236,8 @@ def _balance(slider: Slider, feet: Feet, before: tuple[float, float, Array, Arra
         normal_on_beam=-normal,
         initial=0.0,
         created=float("nan"),
-        residual=normal + along + uphill + load - rubbed - damped - kinetic - stored,
+        slider_residual=residual,
+        residual=residual,
     )
 
 
