@@ -160,7 +160,7 @@ def steady_state(
     found = _window(case, first, FIRST, before, None)
     found = _window(case, speed, FIRST, found.run, found)
     while found.not_converged and 2 * found.periods <= periods:
-        if found.errors.force <= relative * abs(found.means.force):
+        if found.errors.force < relative * abs(found.means.force):
             break
         found = _window(case, speed, found.periods, found.run, found)
     return found
