@@ -59,7 +59,7 @@ def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
 
     def force(speed: float) -> float:
         if speed not in states:
-            states[speed] = steady_state(case, speed, periods, states[0.0].run)
+            states[speed] = steady_state(case, speed, periods, states[0.0].run, relative=0.01)
         return states[speed].means.force
 
     if force(0.0) * force(end) > 0.0:

@@ -151,15 +151,19 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
         return not set(figures or TOLERANCES) & set(self.not_converged)
 
 
-def steady_state(case: MotorCase, speed: float, periods: int = PERIODS, before: Motion | None = None) -> SteadyState:
+def steady_state(
+    case: MotorCase, speed: float, periods: int = PERIODS, before: Motion | None = None, relative: float = 0.0
+) -> SteadyState:
     """Means of a motor at a prescribed speed, m/s, after at most so many periods; `before` is a run to continue.
 
-    Raises InputError where the motion diverges.
+    A force whose error is a smaller share of it than `relative` is enough. Raises InputError where the motion diverges.
     """
     first = copysign(max(abs(speed), presliding_speed(case.slider, FIRST * case.period)), speed) if speed else 0.0
     found = _window(case, first, FIRST, before, None)
     found = _window(case, speed, FIRST, found.run, found)
     while found.not_converged and 2 * found.periods <= periods:
+        if found.errors.force < relative * abs(found.means.force):
+            break
         found = _window(case, speed, found.periods, found.run, found)
     return found
 

@@ -16,7 +16,6 @@ from verify.exact.closed_forms import check_uniform
 from verify.motor.steady_state import Means
 from verify.problem.beam import Beam
 from verify.problem.slider import Contact, Foot, Slider
-from verify.validation import check_number, check_whole
 
 STEPS = 1024
 """Steps of a point in a period."""
@@ -50,7 +49,6 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
     """
     from scipy.optimize import brentq
 
-    check_number("amplitude", amplitude, "metres", above=0)
     slider.check_stays()
     slider, start, mean = replace(slider, coupling="one-way"), slider.start_on(beam), 0.0
     no_rows: ComplexArray = np.empty(0, dtype=complex)
@@ -93,11 +91,6 @@ def foot_on_wave(
     It moves against the wave at `speed_ratio` times the crest speed, at the height at which a half angle of every crest
     is in contact. `epsilon` = 2 mu kappa/(kappa_t k h) is its tangential compliance; Coulomb's law. Raises InputError.
     """
-    check_number("contact_half_angle", contact_half_angle, "radians of the wave", above=0, below=pi)
-    check_number("speed_ratio", speed_ratio, "over the crest speed")
-    check_number("epsilon", epsilon, "2 mu kappa / (kappa_t k h)", at_least=0)
-    check_whole("points", points, 2)
-    check_whole("steps_per_period", steps_per_period, 4)
     wave, periods = wave_stage(beam, amplitude, frequency_hz), 3  # compliance forgets its start within two
     k = float(np.sqrt(wave.omega / beam.wave_constant))
     length, thickness = 2.0 * pi / k, 2.0 * beam.surface_distance

@@ -31,16 +31,20 @@ VALIDITY = {
     "epsilon": (0.1, "Compliance: epsilon = {:.3g}, points deflect along the surface before they slip."),
     "step": (1e-3, "Time step: the contact's oscillation has a period error of {:.1e}; raise motor.steps_per_period."),
 }
-"""Size of a neglected effect from which on it is reported, and the report."""
+"""Size of a neglected effect from which on it is reported, and the text."""
 INVALID = 0.1
 """Size of the first three effects from which on the summary is omitted."""
-CAPTIONS = {
-    "motor-force": "Mean friction force along +x on the slider at a prescribed speed and fixed position. Dashed: mu N.",
-    "motor-power": "Force times speed; below zero the load drives the motor.",
-    "motor-speed": "Means over a sliding period of the drive: free run from the slider's own speed (solid), drive "
-    "switched off (dotted), drive phases reversed (dashed). The beam's own transient is neglected.",
-    "motor-portrait": "Height and its rate of the first foot over one period of the drive, at standstill.",
-}
+SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
+CHARTS = {
+    "motor-force": ("Force over speed", SPEED, FORCE, "Mean friction force along +x on the slider at a prescribed "
+    "speed and fixed position. Dashed: mu N."),
+    "motor-power": ("Power over speed", SPEED, POWER, "Force times speed; below zero the load drives the motor."),
+    "motor-speed": ("Start, stop, reversal", TIME, SPEED, "Means over a sliding period of the drive: free run from the "
+    "slider's own speed (solid), drive switched off (dotted), drive phases reversed (dashed). The beam's own transient "
+    "is neglected."),
+    "motor-portrait": ("Phase portrait of a foot", ("height", "m"), ("rate", "m/s"), "Height and its rate of the first "
+    "foot over one period of the drive, at standstill."),
+}  # fmt: skip
 NOTE = (
     "No-load speed: prescribed, without mean friction, that of a heavy slider. Free speed, contact, stick, friction "
     "power: last quarter of a free run. Start, stop, reversal: time constants (1 - 1/e) of means over a sliding period."
@@ -69,7 +73,7 @@ class Field:
 
 
 class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A slider that may leave the beam: held at speeds, free, started, stopped and reversed."""
+    """A slider that may leave the beam: at prescribed speeds, free, started, stopped and reversed."""
 
     name: ClassVar[str] = "motor"
     title: ClassVar[str] = "The motor"
@@ -145,7 +149,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             way * crest_speed(case) * k / (self.speeds - 1) for k in range(self.speeds)
         ]
         curve = [still, *(steady_state(case, speed, PERIODS, still.run) for speed in speeds[1:])]
-        missing = {one: None for at in curve for one in at.not_converged}
+        missing: list[str] = list(dict.fromkeys(one for at in curve for one in at.not_converged))
         unloaded = None
         with suppress(InputError):
             unloaded = cached(cache, curves.no_load, case, PERIODS).speed
@@ -160,19 +164,15 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             periods = min(int(shown), self.periods)
             stop = None if rings else curves.stop(case, free, periods)
             reversal = curves.reversal(case, free, periods)
-        times = {
-            "start": begin,
-            "stop": stop.time_constant(0.0) if stop and free.converged else None,
-            "reversal": reversal.time_constant(-free.speed) if reversal and free.converged else None,
-        }
-        end = "free speed" if finished else "left"
-        reasons: dict[str, Any] = {
-            "no load": unloaded,
-            end: free.converged or None,
-            **(times if free.converged else {}),
-        }
-        if rings:
-            reasons = {key: value for key, value in reasons.items() if key != "stop"} | {"ringing": None}
+        times: dict[str, float | None] = {"start": begin, "stop": None, "reversal": None}
+        if free.converged:
+            times["stop"] = stop.time_constant(0.0) if stop else None
+            times["reversal"] = reversal.time_constant(-free.speed) if reversal else None
+            runs = {"start": free, "stop": stop, "reversal": reversal}
+            missing += [key for key, one in runs.items() if one and times[key] is None]
+        else:
+            missing.append("free speed" if finished else "left")
+        missing += ["no load"] * (unloaded is None) + ["ringing"] * rings
         return Field(
             case=case,
             name=name,
@@ -182,7 +182,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             stop=stop,
             reversal=reversal,
             times=times,
-            missing=[*missing, *(key for key, value in reasons.items() if value is None)],
+            missing=missing,
         )
 
 
@@ -264,7 +264,7 @@ def _figures(fields: list[Field]) -> "list[Figure]":
     from verify.motor.curves import phase_portrait
     from verify.report.result import Figure
 
-    lines: dict[str, list[Any]] = {key: [] for key in CAPTIONS}
+    lines: dict[str, list[Any]] = {key: [] for key in CHARTS}
     for field in sorted(fields, key=lambda one: one.case.count or 0):
         name, style = field.name, model_style(field.case.model)
         states = [at for at in field.curve if at.converged("force")]
@@ -282,13 +282,7 @@ def _figures(fields: list[Field]) -> "list[Figure]":
     still, ends = fields[0].curve[0].means, np.array([0.0, fields[0].curve[-1].speed])
     limit = np.copysign(fields[0].case.slider.mu * still.normal_force, still.force)
     lines["motor-force"].append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
-    charts = {
-        "motor-force": ("Force over speed", ("speed", "m/s"), ("force", "N")),
-        "motor-power": ("Power over speed", ("speed", "m/s"), ("power", "W")),
-        "motor-speed": ("Start, stop, reversal", ("time", "s"), ("speed", "m/s")),
-        "motor-portrait": ("Phase portrait of a foot", ("height", "m"), ("rate", "m/s")),
-    }
     return [
-        Figure(key, title, CAPTIONS[key], partial(plot_lines, lines=lines[key], x=x, y=y))
-        for key, (title, x, y) in charts.items()
+        Figure(key, title, caption, partial(plot_lines, lines=lines[key], x=x, y=y))
+        for key, (title, x, y, caption) in CHARTS.items()
     ]
