@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from verify import travelling_wave
     from verify.analytic_modes import ExactModel
-    from verify.chain.bending import Bent, bend
+    from verify.chain.statics import Bent, bend
     from verify.errors import InputError
     from verify.fem_beam import HermiteModel
     from verify.linear.field import HarmonicField
@@ -59,8 +59,8 @@ _HOMES = """
     linear.modes.Modes travelling_wave.WaveMeasures problem.beam.Beam problem.beam.PointForce problem.device.Device
     problem.cross_section.Section problem.point_attachments.PointMass problem.point_attachments.PointSpring
     problem.slider.Contact problem.slider.Foot problem.slider.Slider errors.InputError motion.simulate.simulate
-    motion.result.Motion motion.free_vibration.free_vibration motion.free_vibration.FreeVibration chain.bending.Bent
-    chain.bending.bend motor.result.MotorRun motor.run.run_motor motor.run.run_motors scene.load.load_scene
+    motion.result.Motion motion.free_vibration.free_vibration motion.free_vibration.FreeVibration chain.statics.Bent
+    chain.statics.bend motor.result.MotorRun motor.run.run_motor motor.run.run_motors scene.load.load_scene
     scene.run.run_scene
 """
 _HOME = {home.rpartition(".")[2]: f"verify.{home.rpartition('.')[0]}" for home in _HOMES.split()}

@@ -17,7 +17,8 @@ from numba import config, njit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
-_SOURCES = sorted({*_PACKAGE.glob("*/*kernels.py"), *_PACKAGE.glob("*/*records.py"), Path(__file__)})
+_NAMES = ("*/*kernels.py", "*/*records.py", "chain/*_links.py", "chain/runge_kutta.py")
+_SOURCES = sorted({Path(__file__), *(source for name in _NAMES for source in _PACKAGE.glob(name))})
 _DIGEST = sha256(b"".join(source.read_bytes() for source in _SOURCES)).hexdigest()[:16]
 _CACHE = Path(config.CACHE_DIR or _PACKAGE / "__pycache__") / f"kernels-{_DIGEST}"  # type: ignore[attr-defined]
 FAST = {"reassoc", "contract", "nsz"}

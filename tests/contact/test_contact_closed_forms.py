@@ -1,4 +1,4 @@
-"""Closed forms of a contact: driving layer, foot on crests, bouncing mass, landing on a spring, stick and slip."""
+"""Closed forms of contact against direct sums, integrated motions and published formulas in many digits."""
 
 from math import acos, asin, cos, pi, sin, sqrt
 
@@ -11,35 +11,15 @@ from reference.motor import bounces, row_of_springs
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from verify.contact import belt, bouncing, foot, landing, layer
 from verify.errors import InputError
+from verify.exact.contact import belt, foot, impact, layer
 from verify.motion import rigid_surface
 
-ANGLES, SPEEDS, GIVES = st.floats(0.05, 3.0), st.floats(-0.9, 1.3), st.floats(0.01, 20.0)
-
-# --- a slider on a driving layer
-
-
-@pytest.mark.parametrize(
-    ("phi", "r", "epsilon"),
-    [
-        (1.0, 0.0, 3.0),
-        (1.0, 0.87, 0.1),
-        (2.1, -0.3, 1.7),
-        (0.4, 0.97, 0.05),
-        (1.0, 1.2, 0.3),
-        (3.0, -1.7, 2.0),  # slips from the start and sticks before the crest
-        (1.27, 0.75483, 0.4),  # a short slip
-        (1.3, 0.6, 0.0),
-    ],
-)
-def test_the_force_of_a_layer_is_the_sum_over_many_springs(phi, r, epsilon):
-    found = row_of_springs(1001, r, epsilon, 2048, height=cos(phi))
-    assert layer.force(phi, r, epsilon) == pytest.approx(found, abs=2e-3)
+ANGLES, SPEEDS, COMPLIANCES = st.floats(0.05, 3.0), st.floats(-0.9, 1.3), st.floats(0.01, 20.0)
 
 
 def return_mapped(phi, r, epsilon, steps=8000):
-    """F/(mu N): stretch in small steps over the contact, cut back to the limit where it passes that."""
+    """F/(mu N) by return mapping of the shear in small steps over the contact."""
     s = np.linspace(-phi, phi, steps + 1)
     y, total = 0.0, 0.0
     for rate, limit in zip(np.diff(np.sin(s)) - r * np.diff(s), epsilon * (np.cos(s[1:]) - cos(phi)), strict=True):
@@ -48,9 +28,21 @@ def return_mapped(phi, r, epsilon, steps=8000):
     return total / (2.0 * epsilon * (sin(phi) - phi * cos(phi)))
 
 
-@pytest.mark.parametrize(("phi", "r", "epsilon"), [(2.0, 0.90803, 0.02), (3.0, -1.7, 3.0), (1.27, 0.75483, 0.4)])
-def test_short_slips_of_a_layer_count(phi, r, epsilon):
+@pytest.mark.parametrize(
+    ("phi", "r", "epsilon"),
+    [
+        (1.0, 0.0, 3.0),
+        (1.0, 0.87, 0.1),
+        (2.1, -0.3, 1.7),
+        (1.0, 1.2, 0.3),
+        (3.0, -1.7, 2.0),  # slips from the start and sticks before the crest
+        (2.0, 0.90803, 0.02),
+        (1.27, 0.75483, 0.4),  # a short slip
+    ],
+)
+def test_the_force_of_a_layer_is_that_of_return_mapping_and_of_many_springs(phi, r, epsilon):
     assert layer.force(phi, r, epsilon) == pytest.approx(return_mapped(phi, r, epsilon), abs=2e-5)
+    assert layer.force(phi, r, epsilon) == pytest.approx(row_of_springs(1001, r, epsilon, 2048, cos(phi)), abs=2e-3)
 
 
 def test_no_load_speeds_of_a_layer():
@@ -59,14 +51,14 @@ def test_no_load_speeds_of_a_layer():
     assert (1.0 - layer.no_load_speed(1e-3)) / 5e-7 == pytest.approx(4.0 * sin(pi / 18) ** 2, rel=1e-6)
 
 
-@given(phi=ANGLES, r=SPEEDS, epsilon=GIVES)
-def test_a_layer_carries_no_more_than_friction_and_drives_less_at_more_speed(phi, r, epsilon):
+@given(phi=ANGLES, r=SPEEDS, epsilon=COMPLIANCES)
+def test_a_layer_transmits_at_most_mu_n_and_less_at_a_higher_speed(phi, r, epsilon):
     slow, fast = layer.force(phi, r, epsilon), layer.force(phi, r + 0.05, epsilon)
     assert -1.0 - 1e-9 <= fast <= slow + 1e-9 <= 1.0 + 2e-9
 
 
-@given(phi=st.floats(0.05, 2.5), epsilon=GIVES)
-def test_the_force_vanishes_at_the_no_load_speed_and_a_stuck_layer_runs_at_the_mean_of_the_crest(phi, epsilon):
+@given(phi=st.floats(0.05, 2.5), epsilon=COMPLIANCES)
+def test_the_force_vanishes_at_the_no_load_speed_and_a_stuck_layer_moves_at_the_mean_of_the_crest(phi, epsilon):
     speed = layer.no_load_speed(phi, epsilon)
     assert layer.force(phi, speed, epsilon) == pytest.approx(0.0, abs=1e-9)
     if epsilon >= 1.0 / phi - cos(phi) / sin(phi):
@@ -81,35 +73,28 @@ def test_a_stiff_layer_tends_to_coulomb_friction(phi, r):
 @pytest.mark.parametrize(("phi", "r"), [(1.3, 0.8), (2.3, 0.31), (0.21, 0.9902)])
 def test_force_and_efficiency_are_integrals_over_the_contact(phi, r):
     with mp.workdps(30):
-        psi, edge = acos(r), phi
+        psi = acos(r)
         ahead, behind = (
-            [mp.quad(lambda s, n=n: (mp.cos(s) - mp.cos(edge)) * mp.cos(s) ** n, span) for n in (0, 1)]
-            for span in ([0, psi], [psi, edge])
+            [mp.quad(lambda s, n=n: (mp.cos(s) - mp.cos(phi)) * mp.cos(s) ** n, span) for n in (0, 1)]
+            for span in ([0, psi], [psi, phi])
         )
-        pull, power = float(ahead[0] - behind[0]), float(ahead[1] - behind[1])
-        whole = float(ahead[0] + behind[0])
-    assert layer.force(phi, r) == pytest.approx(pull / whole, rel=1e-11)
-    assert layer.efficiency(phi, r) == pytest.approx(r * pull / power, rel=1e-11)
+        drag, power = float(ahead[0] - behind[0]), float(ahead[1] - behind[1])
+        normal = float(ahead[0] + behind[0])
+    assert layer.force(phi, r) == pytest.approx(drag / normal, rel=1e-11)
+    assert layer.efficiency(phi, r) == pytest.approx(r * drag / power, rel=1e-11)
 
 
-def test_limits_of_a_layer_and_of_a_half_space():
-    """All of friction at rest up to epsilon = cot phi; half space: v0/V = 1 - 0.326387970816785 q."""
-    phi = 0.8
-    edge = cos(phi) / sin(phi)
-    assert layer.force(phi, 0.0, 0.999 * edge) == pytest.approx(1.0, abs=1e-12)
-    assert layer.force(phi, 0.0, 1.01 * edge) < 1.0 - 1e-7
-    for q in (0.07, 0.3, 0.8):
-        assert layer.half_space_force(q, 1.0 - 0.326387970816785 * q) == pytest.approx(0.0, abs=1e-12)
-    assert (layer.half_space_force(0.3, 0.2), layer.half_space_force(0.3, 1.0)) == (1.0, -1.0)
+def test_a_layer_at_rest_transmits_all_friction_up_to_a_compliance_of_cot_phi():
+    edge = cos(0.8) / sin(0.8)
+    assert layer.force(0.8, 0.0, 0.999 * edge) == pytest.approx(1.0, abs=1e-12)
+    assert layer.force(0.8, 0.0, 1.01 * edge) < 1.0 - 1e-7
 
-
-# --- a rigid foot on the crests of a wave
 
 S = (np.arange(200_000) + 0.5) * 2.0 * pi / 200_000 - pi
 
 
 @pytest.mark.parametrize(("load", "r"), [(0.003, 0.97), (0.11, 0.8), (0.95, -0.4), (1.0, 0.3), (1.7, 0.6), (1.7, -1.2)])
-def test_a_foot_lies_and_is_driven_as_on_many_springs(load, r):
+def test_height_contact_range_and_force_of_a_long_foot_are_those_of_many_springs(load, r):
     height = brentq(lambda z: np.maximum(np.cos(S) - z, 0.0).mean() - load, -load - 1.0, 1.0, xtol=1e-14)
     pressures = np.maximum(np.cos(S) - height, 0.0)
     assert foot.standing_height(load) == pytest.approx(height, abs=3e-9)
@@ -121,24 +106,19 @@ def test_a_foot_lies_and_is_driven_as_on_many_springs(load, r):
 @pytest.mark.parametrize("span", [0.0, 0.2, 0.9, 1.5, 2.2, 3.3])
 def test_a_short_foot_is_driven_by_the_highest_point_below_it(span):
     middles = (np.arange(4001) + 0.5) * 2.0 * pi / 4001
-    speeds = np.cos(middles[:, None] + np.linspace(-span, span, 2001)).max(axis=1)  # the surface runs at V w/A
+    speeds = np.cos(middles[:, None] + np.linspace(-span, span, 2001)).max(axis=1)  # the surface moves at V w/A
     for r in (-1.3, -0.3, 0.0, 0.44, 0.91, 1.2):
         assert foot.short_foot_force(span, r) == pytest.approx(float(np.sign(speeds - r).mean()), abs=2e-3)
     assert foot.height_swing(span) == pytest.approx(float(np.ptp(speeds)), abs=1e-5)
-    assert foot.dead_band(span) == pytest.approx(min(2.0 * span / pi, 1.0), rel=1e-12)
     if span < 0.5 * pi:
-        assert foot.short_foot_speed(span) == pytest.approx(sin(span), rel=1e-15)
-
-
-# --- a mass on a shaking surface
+        assert foot.short_foot_force(span, foot.short_foot_speed(span)) == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(
     ("ratio", "phase"), [(1.5, 4.295944393155), (2.0, 5.182450251310), (37.3, None), (2.71e5, None)]
 )
 def test_a_mass_lands_where_its_parabola_meets_the_surface(ratio, phase):
-    lands, leaves = bouncing.landing_phase(ratio), asin(1.0 / ratio)
-    assert bouncing.leaving_phase(ratio) == pytest.approx(leaves, rel=1e-15)
+    lands, leaves = impact.landing_phase(ratio), asin(1.0 / ratio)
     if phase is not None:
         assert lands == pytest.approx(phase, abs=2e-12)
         assert lands == pytest.approx(bounces(ratio, 0.0, 3)[0].phase, abs=1e-12)
@@ -161,43 +141,41 @@ def flown(ratio, restitution, theta, speed, periods):
 @pytest.mark.parametrize(
     ("ratio", "restitution", "periods"), [(1.9, 0.4, 1), (0.71, 0.7, 1), (2.9, 0.25, 1), (4.1, 0.3, 2), (3.4, 0.0, 1)]
 )
-def test_a_bounce_in_step_repeats_and_its_multipliers_are_those_of_the_map(ratio, restitution, periods):
-    found = bouncing.bounce_in_step(ratio, restitution, periods)
+def test_a_periodic_bounce_repeats_and_its_multipliers_are_those_of_the_map(ratio, restitution, periods):
+    found = impact.periodic_bounce(ratio, restitution, periods)
     start = np.array([found.phase, found.speed])
     assert flown(ratio, restitution, *start, periods) - (2.0 * pi * periods, 0.0) == pytest.approx(start, rel=1e-11)
-    ways = 1e-6 * np.eye(2)
     slopes = [
         flown(ratio, restitution, *(start + w), periods) - flown(ratio, restitution, *(start - w), periods)
-        for w in ways
+        for w in 1e-6 * np.eye(2)
     ]
-    wanted = np.sort_complex(np.linalg.eigvals(np.array(slopes).T / 2e-6))
-    assert np.sort_complex(np.array(found.multipliers)) == pytest.approx(wanted, abs=1e-7)
+    expected = np.sort_complex(np.linalg.eigvals(np.array(slopes).T / 2e-6))
+    assert np.sort_complex(np.array(found.multipliers)) == pytest.approx(expected, abs=1e-7)
 
 
 @pytest.mark.parametrize("restitution", [0.15, 0.45])
-def test_limits_of_bouncing_in_step_are_where_a_multiplier_leaves_the_unit_circle(restitution):
-    low, high = bouncing.bouncing_limits(restitution)
-    largest = [max(map(abs, bouncing.bounce_in_step(r, restitution).multipliers)) for r in (1.001 * low, 0.999 * high)]
-    assert max(largest) < 1.0 < max(map(abs, bouncing.bounce_in_step(1.01 * high, restitution).multipliers))
-    assert min(m.real for m in bouncing.bounce_in_step(high, restitution).multipliers) == pytest.approx(-1.0, abs=1e-9)
-    assert max(m.real for m in bouncing.bounce_in_step(low, restitution).multipliers) == pytest.approx(1.0, abs=1e-6)
+def test_limits_of_periodic_bouncing_are_where_a_multiplier_leaves_the_unit_circle(restitution):
+    low, high = impact.bouncing_limits(restitution)
 
+    def multipliers(ratio):
+        return impact.periodic_bounce(ratio, restitution).multipliers
 
-# --- a mass that lands on a spring and a dashpot
+    assert max(map(abs, multipliers(1.001 * low) + multipliers(0.999 * high))) < 1.0
+    assert max(map(abs, multipliers(1.01 * high))) > 1.0
+    assert min(m.real for m in multipliers(high)) == pytest.approx(-1.0, abs=1e-9)
+    assert max(m.real for m in multipliers(low)) == pytest.approx(1.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.03, 0.7071, 0.999999, 1.0, 1.000001, 1.3, 4.1])
 def test_restitution_and_contact_time_equal_the_integrated_impact(zeta):
-    """Until what presses back is nought."""
-
-    def lets_go(t, y):
+    def force(t, y):
         return y[0] + 2.0 * zeta * y[1] - 1e-13
 
-    lets_go.terminal, lets_go.direction = True, -1
-    asked = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15, "events": lets_go, "max_step": 0.3}
-    run = solve_ivp(lambda t, y: [y[1], -y[0] - 2.0 * zeta * y[1]], (0.0, 1e3), [0.0, 1.0], **asked)
-    assert landing.restitution(zeta) == pytest.approx(-run.y_events[0][0][1], rel=2e-9)
-    assert landing.contact_time(zeta) == pytest.approx(run.t_events[0][0], rel=2e-8)
+    force.terminal, force.direction = True, -1
+    options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15, "events": force, "max_step": 0.3}
+    run = solve_ivp(lambda t, y: [y[1], -y[0] - 2.0 * zeta * y[1]], (0.0, 1e3), [0.0, 1.0], **options)
+    assert impact.restitution(zeta) == pytest.approx(-run.y_events[0][0][1], rel=2e-9)
+    assert impact.contact_time(zeta) == pytest.approx(run.t_events[0][0], rel=2e-8)
 
 
 @pytest.mark.parametrize("zeta", [1e-9, 0.2, 0.99999999, 1.0 + 1e-13, 1.2, 7.0, 300.0])
@@ -207,44 +185,40 @@ def test_restitution_is_the_published_formula_in_forty_digits(zeta):
         beta = mp.mpf(zeta)
         omega = mp.sqrt(mp.mpc(1 - beta**2))
         time = -mp.j * mp.log(beta + mp.j * omega) * 2 / omega  # its tangent is 2 beta omega / (beta^2 - omega^2)
-        left = float(mp.exp(-beta * time).real)
-    assert landing.restitution(zeta) == pytest.approx(left, rel=4e-14)
+        expected = float(mp.exp(-beta * time).real)
+    assert impact.restitution(zeta) == pytest.approx(expected, rel=4e-14)
 
 
 @given(zeta=st.floats(0.0, 40.0))
 def test_the_damping_ratio_for_a_restitution_inverts_it(zeta):
-    share = landing.restitution(zeta)
-    assert landing.restitution(1.001 * zeta + 1e-9) < share <= 1.0
-    assert landing.damping_ratio_for(share) == pytest.approx(zeta, rel=1e-9, abs=1e-14)
-    assert landing.damping_ratio(0.37, 81.0, 2.0 * zeta * sqrt(0.37 * 81.0)) == pytest.approx(zeta, rel=1e-14)
+    restitution = impact.restitution(zeta)
+    assert impact.restitution(1.001 * zeta + 1e-9) < restitution <= 1.0
+    assert impact.damping_ratio_for(restitution) == pytest.approx(zeta, rel=1e-9, abs=1e-14)
 
 
 @pytest.mark.parametrize(("ratio", "zeta"), [(0.4, 0.0), (0.4, 0.07), (1.6, 0.3), (1.0, 0.11), (0.0, 0.2), (1.0, 0.0)])
 def test_lift_off_is_where_the_steady_contact_force_first_vanishes(ratio, zeta):
     """The contact force m (g - x'') by a linear solve at the drive."""
     rows = np.array([[1.0 - ratio**2, -2.0 * zeta * ratio], [2.0 * zeta * ratio, 1.0 - ratio**2]])
-    wanted = 1.0 / np.hypot(*np.linalg.solve(rows, [1.0, 2.0 * zeta * ratio])) if np.linalg.det(rows) else 0.0
-    assert landing.lift_off_ratio(ratio, zeta) == pytest.approx(wanted, rel=1e-12)
-
-
-# --- a spring-held mass on a belt
+    expected = 1.0 / np.hypot(*np.linalg.solve(rows, [1.0, 2.0 * zeta * ratio])) if np.linalg.det(rows) else 0.0
+    assert impact.lift_off_ratio(ratio, zeta) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     "case", [(0.31, 420.0, 0.9, 0.5, 0.013), (1.7, 55.0, 2.3, 2.2, 0.4), (0.02, 3e3, 5.0, 0.0, 0.9)]
 )
-def test_stick_and_slip_times_equal_the_integrated_motion_and_compiled_friction(case):
-    """It starts to slip where the spring pulls with the static limit, until it is as fast as the belt again."""
+def test_stick_and_slip_times_equal_the_integrated_motion_and_the_engine(case):
+    """It starts to slip where the spring force is the static limit, until it is as fast as the belt again."""
     mass, stiffness, static, kinetic, speed = case
 
-    def caught_up(t, y):
+    def slip_speed(t, y):
         return y[1] - speed
 
-    caught_up.terminal, caught_up.direction = True, 1
+    slip_speed.terminal, slip_speed.direction = True, 1
     unit = sqrt(mass / stiffness)
-    asked = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15, "events": caught_up, "max_step": 0.1 * unit}
+    options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15, "events": slip_speed, "max_step": 0.1 * unit}
     start = [static / stiffness, speed * (1.0 - 1e-13)]
-    run = solve_ivp(lambda t, y: [y[1], (kinetic - stiffness * y[0]) / mass], (0.0, 100.0 * unit), start, **asked)
+    run = solve_ivp(lambda t, y: [y[1], (kinetic - stiffness * y[0]) / mass], (0.0, 100.0 * unit), start, **options)
     slip, stick = run.t_events[0][-1], (static / stiffness - run.y_events[0][-1][0]) / speed
     assert belt.stick_slip_times(*case) == pytest.approx((stick, slip), rel=1e-8)
     if kinetic:
@@ -252,26 +226,26 @@ def test_stick_and_slip_times_equal_the_integrated_motion_and_compiled_friction(
 
 
 @pytest.mark.parametrize(
-    ("function", "given", "said"),
+    ("function", "arguments", "field"),
     [
-        (layer.force, (0.0, 0.3), "contact_half_angle = 0.0"),
-        (layer.force, (1.0, float("nan")), "speed_ratio = nan"),
-        (layer.no_load_speed, (1.0, -0.1), "epsilon = -0.1"),
-        (layer.efficiency, (1.0, 1.0), "speed_ratio = 1.0"),
-        (layer.half_space_force, (1.0, 0.5), "pressure_ratio = 1.0"),
-        (foot.contact_half_angle, (0.0,), "load = 0.0"),
-        (foot.short_foot_force, (-0.1, 0.0), "span = -0.1"),
-        (bouncing.bounce_in_step, (1.0, 0.3), "acceleration_ratio = 1.0"),
-        (bouncing.bounce_in_step, (5.0, 0.3, 0), "periods = 0"),
-        (bouncing.landing_phase, (2**63,), "rounding leaves no phase"),
-        (bouncing.bouncing_limits, (1.0,), "restitution = 1.0"),
-        (landing.restitution, (-0.1,), "damping_ratio = -0.1"),
-        (landing.damping_ratio, (0.0, 1.0, 1.0), "mass = 0.0"),
-        (landing.damping_ratio_for, (1.1,), "restitution = 1.1"),
-        (landing.lift_off_ratio, (-1.0,), "frequency_ratio = -1.0"),
-        (belt.stick_slip_times, (1.0, 1.0, 1.0, 1.0, 1.0), "kinetic = 1.0"),
+        (layer.force, (0.0, 0.3), "contact_half_angle"),
+        (layer.force, (1.0, float("nan")), "speed_ratio"),
+        (layer.no_load_speed, (1.0, -0.1), "epsilon"),
+        (layer.efficiency, (1.0, 1.0), "speed_ratio"),
+        (layer.efficiency, (1.0, 0.99), "speed_ratio"),
+        (foot.contact_half_angle, (0.0,), "load"),
+        (foot.short_foot_force, (-0.1, 0.0), "span"),
+        (impact.periodic_bounce, (1.0, 0.3), "acceleration_ratio"),
+        (impact.periodic_bounce, (5.0, 0.3, 0), "periods"),
+        (impact.landing_phase, (1.0,), "acceleration_ratio"),
+        (impact.landing_phase, (2**63,), "acceleration_ratio"),
+        (impact.bouncing_limits, (1.0,), "restitution"),
+        (impact.restitution, (-0.1,), "damping_ratio"),
+        (impact.damping_ratio_for, (1.1,), "restitution"),
+        (impact.lift_off_ratio, (-1.0,), "frequency_ratio"),
+        (belt.stick_slip_times, (1.0, 1.0, 1.0, 1.0, 1.0), "kinetic"),
     ],
 )
-def test_a_contact_that_cannot_be_is_refused_by_name(function, given, said):
-    with pytest.raises(InputError, match=said):
-        function(*given)
+def test_an_impossible_contact_is_refused_by_field(function, arguments, field):
+    with pytest.raises(InputError, match=field):
+        function(*arguments)

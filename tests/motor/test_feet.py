@@ -10,8 +10,8 @@ from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive, on_st
 from msgspec.structs import replace
 
 from verify import Contact, Foot, PointForce, Slider, run_motor
-from verify.contact import foot as short
-from verify.contact import layer
+from verify.exact.contact import foot as short
+from verify.exact.contact import layer
 from verify.motor.outcome import layer_epsilon
 
 HEIGHT = 1e-8
@@ -70,7 +70,7 @@ def test_a_foot_rises_pitches_and_rubs_as_the_ode_says_with_second_order(case):
 
 def slid(phi, r, epsilon=0.0, n=61, steps=127, periods=3, slider=None, **asked):
     """(run, load) of an upright foot of one wavelength at r times the crests' speed, its place kept."""
-    load = 2.0 * KAPPA * HEIGHT * layer.pressed(phi, phi) / WAVE.k
+    load = 2.0 * KAPPA * HEIGHT * layer.normal_integral(phi, phi) / WAVE.k
     give = 2.0 * MU * KAPPA / (epsilon * WAVE.k * 2.0 * HALF) if epsilon else None
     contact = Contact(layer_stiffness=KAPPA, layer_tangential_stiffness=give)
     feet = (Foot(length=LENGTH, points=n, pitches=False, mass=0.05),)

@@ -10,7 +10,7 @@ from reference.motor import bounces
 from scipy.integrate import solve_ivp
 
 from verify import Beam, Contact, Foot, InputError, PointForce, Slider, run_motor, run_motors, simulate
-from verify.contact import layer
+from verify.exact.contact import layer
 from verify.motor import figures, settling
 from verify.motor.case import MotorCase
 from verify.motor.figures import at_speed, comes_to_speed, crest_speed, mean_speed, no_load, started, stopped
@@ -31,7 +31,7 @@ def case_of(slider, forces, **given):
 
 def motor(phi, epsilon=0.0, mass=4.0, steps=127):
     """(case, normal force) of an upright foot of one wavelength; 50 g of it move across."""
-    load = 2.0 * KAPPA * HEIGHT * layer.pressed(phi, phi) / WAVE.k
+    load = 2.0 * KAPPA * HEIGHT * layer.normal_integral(phi, phi) / WAVE.k
     give = 2.0 * MU * KAPPA / (epsilon * WAVE.k * 2.0 * HALF) if epsilon else None
     own = {"mass": mass, "mu": MU, "law": "coulomb", "gravity": 0.0, "preload": load, "position": MIDDLE}
     contact = Contact(layer_stiffness=KAPPA, layer_tangential_stiffness=give)
@@ -147,7 +147,9 @@ def test_a_motor_starts_by_the_layers_force_over_its_mass():
     found = started(case, -speed * CRESTS, periods=300)
     assert found.time == pytest.approx(wanted.t_events[0][0], rel=5e-3)
     psi, left = acos(speed), speed + found.run.speed / CRESTS
-    constant = mass * CRESTS * sin(psi) * 2.0 * layer.pressed(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    constant = (
+        mass * CRESTS * sin(psi) * 2.0 * layer.normal_integral(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    )
     last = (left > 0.005) & (left < 0.02)
     assert -1.0 / np.polyfit(found.run.times[last], np.log(left[last]), 1)[0] == pytest.approx(constant, rel=0.08)
 

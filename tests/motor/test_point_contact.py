@@ -7,7 +7,7 @@ import pytest
 from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
 from reference.motor import DRAGGED, PRESSED, STUCK, TOUCHED, OneWay, Point, Rider, V, X, Z, body
 
-from verify.contact.landing import lift_off_ratio
+from verify.exact.contact.impact import lift_off_ratio
 from verify.motor.records import LANDS
 from verify.problem.slider import Contact, Slider
 

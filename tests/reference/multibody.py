@@ -27,13 +27,9 @@ def reach_of(system, link, at):
     return reach
 
 
-def held(system, t):
-    """(reach, y'' wanted) of roller and actuators."""
-    rows = [(reach_of(system, system.n_links, system.lengths[-1]), 0.0)] if system.tip == "roller" else []
-    for a in system.actuators:
-        w = 2 * np.pi * a.frequency_hz
-        rows.append((reach_of(system, a.link, a.at), -a.amplitude * w**2 * np.cos(w * t + np.deg2rad(a.phase_deg))))
-    return rows
+def held(system):
+    """(reach, y'' required) of the roller."""
+    return [(reach_of(system, system.n_links, system.lengths[-1]), 0.0)] if system.tip == "roller" else []
 
 
 def equations(system, t, angles, rates):
@@ -60,8 +56,8 @@ def equations(system, t, angles, rates):
         force[load.link - 1] += now * load.moment
     stretch = system.lengths @ (c - 1.0)
     force -= system.axial_spring * stretch * (-system.lengths * s)
-    rows = [reach * c for reach, _ in held(system, t)]
-    right = [wanted + reach @ (s * w**2) for reach, wanted in held(system, t)]
+    rows = [reach * c for reach, _ in held(system)]
+    right = [wanted + reach @ (s * w**2) for reach, wanted in held(system)]
     return mass, force, np.array(rows).reshape(len(rows), n), np.array(right)
 
 

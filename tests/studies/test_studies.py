@@ -136,7 +136,7 @@ def column(table, name):
 
 
 SHORT = Motion(duration=8e-4, soft_start_periods=1.0, count=21, steps_per_period=32)
-CHAIN = AxialInertia(forces=(0.5, 40.0), shown=20.0, count=12, duration=6e-4)
+CHAIN = AxialInertia(forces=(0.5, 40.0), count=12, duration=6e-4)
 QUICK = Motor(models=("fem",), count=49, speeds=3, periods=20)
 
 

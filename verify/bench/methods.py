@@ -160,8 +160,8 @@ def ride(problem: Problem) -> Iterator[Question]:
 
 def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], float]:
     """(settings -> times and mid-span deflections of the nonlinear chain from rest, the step limit of RK4)."""
-    from verify.chain.dynamics import at_rest
-    from verify.chain.stepping import simulate, step_limit
+    from verify.chain.kinematics import at_rest
+    from verify.chain.motion import simulate, step_limit
     from verify.chain.system import build_system
 
     system = build_system(problem.beam, LINKS, problem.forces, problem.frequency_hz)
@@ -169,9 +169,9 @@ def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], 
 
     def run(samples: int = 200, **how: Any) -> tuple[Array, Array]:
         times = np.linspace(0.0, problem.duration, samples + 1)[1:]
-        return times, simulate(system, start, times, ledger=False, **how).deflection([x])[:, 0]
+        return times, simulate(system, start, times, **how).deflection([x])[:, 0]
 
-    return run, step_limit(system, start)
+    return run, step_limit(system)
 
 
 def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array, Array]], float], float]:
@@ -191,7 +191,7 @@ def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array
 
 def chain(problem: Problem) -> Iterator[Question]:
     """The nonlinear chain over the step or the tolerance, and the linear one, exact in time."""
-    from verify.chain.departure import linear_deflection
+    from verify.chain.benchmarks import linear_deflection
     from verify.chain.system import build_system
 
     methods, error, uncertainty = chain_methods(problem)

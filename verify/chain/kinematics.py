@@ -1,104 +1,112 @@
-"""Where the links of a nonlinear chain stand and how they move, at one time or at many, and what energy that is.
-
-Beside the compiled loops, which need the same of every step: here it is asked for once a state, and nothing is
-compiled for it.
-"""
+"""Positions, velocities and energies of a nonlinear chain at one time or many, and states that meet its roller."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from verify.arrays import Array
-from verify.chain.system import ChainSystem, Rotation, circular, held_points
+from verify.chain.system import ChainState, ChainSystem, Rotation, circular
+from verify.errors import InputError
+from verify.validation import check_unmasked
 
 BLOCK = 1 << 18
-"""So many angles are looked at in one piece where there are many times."""
+"""Angles per block where there are many times, for the sake of memory."""
 
 
-class Placed(NamedTuple):
-    """Links as they stand, at one time or at times that come first."""
+class Positions(NamedTuple):
+    """Links at one time, or at times that come first."""
 
     directions: Array
-    """(..., N), absolute angles, radians."""
+    """(..., N), absolute angles, rad."""
     rates: Array
     """(..., N), of those, rad/s."""
     joints: Array
-    """(..., N + 1, 2), metres."""
+    """(..., N + 1, 2), m."""
     velocities: Array
     """(..., N + 1, 2), m/s."""
 
 
 def hub(rotation: Rotation, times: float | Array) -> tuple[Array, Array]:
-    """Angle and rate of the base's prescribed rotation, radians and rad/s, in the shape of the times."""
+    """Angle and rate of the hub's prescribed rotation, rad and rad/s, in the shape of the times."""
     time, omega = np.asarray(times, dtype=float), circular(rotation.frequency_hz)
     phase = omega * time + np.deg2rad(rotation.phase_deg)
     angle = rotation.offset + rotation.rate * time + rotation.amplitude * np.sin(phase)
     return angle, rotation.rate + rotation.amplitude * omega * np.cos(phase)
 
 
-def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array) -> Placed:
+def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array) -> Positions:
     """Links by relative angles and rates, (..., N), at times (...)."""
     angle, rate = hub(system.rotation, times)
     directions = np.cumsum(angles, axis=-1) + angle[..., None]
-    turning = np.cumsum(rates, axis=-1) + rate[..., None]
+    spins = np.cumsum(rates, axis=-1) + rate[..., None]
     c, s = np.cos(directions), np.sin(directions)
-    spans = system.lengths[:, None] * np.stack([c, s], axis=-1)
-    swings = (system.lengths * turning)[..., None] * np.stack([-s, c], axis=-1)
-    return Placed(directions, turning, _from_base(spans), _from_base(swings))
+    joints = np.zeros((*directions.shape[:-1], system.n_links + 1, 2))
+    velocities = np.zeros_like(joints)
+    np.cumsum(system.lengths[:, None] * np.stack([c, s], axis=-1), axis=-2, out=joints[..., 1:, :])
+    swings = (system.lengths * spins)[..., None] * np.stack([-s, c], axis=-1)
+    np.cumsum(swings, axis=-2, out=velocities[..., 1:, :])
+    return Positions(directions, spins, joints, velocities)
 
 
-def _from_base(steps: Array) -> Array:
-    """Sums from the base on, (..., N + 1, 2), of what each link adds."""
-    found = np.zeros((*steps.shape[:-2], steps.shape[-2] + 1, 2))
-    np.cumsum(steps, axis=-2, out=found[..., 1:, :])
-    return found
+def positions(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
+    """Joints 0..N, (N + 1, 2) m, and their velocities, (N + 1, 2) m/s."""
+    placed = place(system, state.time, *checked(system, state))
+    return placed.joints, placed.velocities
+
+
+def checked(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
+    """Copies of angles and rates. Raises InputError for a wrong shape or a value that is not finite."""
+    arrays = []
+    for name in ("angles", "rates"):
+        check_unmasked(f"state.{name}", getattr(state, name), "SI")
+        values = np.array(getattr(state, name), dtype=float)
+        if values.shape != (system.n_links,) or not np.isfinite(values).all():
+            raise InputError(f"state.{name}: give {system.n_links} finite numbers, one for each joint")
+        arrays.append(values)
+    return arrays[0], arrays[1]
+
+
+def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
+    """The state with the tip on its roller, and the largest change of an angle or (times 1 s) of a rate.
+
+    One joint angle depends on the others, that with the longest lever arm: the links beyond it turn as one, and their
+    rate cancels the tip's across. Raises InputError where they do not reach the roller.
+    """
+    q, v = checked(system, state)
+    if system.tip == "free":
+        return ChainState(q, v, state.time), 0.0
+    joints = place(system, state.time, q, v).joints
+    pivot = int(np.argmax(abs(joints[-1, 0] - joints[:-1, 0])))
+    x, y = joints[-1] - joints[pivot]
+    sine = -joints[pivot, 1] / np.hypot(x, y)
+    if not abs(sine) < 1.0:
+        raise InputError(f"state.angles: joint {pivot + 1} cannot turn the tip onto the roller, give a nearer state")
+    turn = (np.arcsin(sine) if x > 0.0 else np.pi - np.arcsin(sine)) - np.arctan2(y, x)
+    turn -= 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
+    q[pivot] += turn
+    placed = place(system, state.time, q, v)
+    change = -placed.velocities[-1, 1] / (placed.joints[-1, 0] - placed.joints[pivot, 0])
+    v[pivot] += change
+    return ChainState(q, v, state.time), float(max(abs(turn), abs(change)))
+
+
+def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
+    """A state without motion, straight unless angles are given, on its roller."""
+    still = np.zeros(system.n_links)
+    return project(system, ChainState(still if angles is None else angles, still))[0]
 
 
 def energies(system: ChainSystem, times: Array, angles: Array, rates: Array) -> Array:
     """Kinetic, elastic (joints and axial spring) and gravitational energy, (3, n), joule, of n states."""
-    block = max(BLOCK // system.n_links, 1)
-    parts = [slice(first, first + block) for first in range(0, len(times), block)]
-    return np.concatenate(
-        [np.zeros((3, 0)), *(_energies(system, times[part], angles[part], rates[part]) for part in parts)], axis=1
-    )
-
-
-def _energies(system: ChainSystem, times: Array, angles: Array, rates: Array) -> Array:
-    """The same in one piece."""
-    placed = place(system, times, angles, rates)
-    middles = 0.5 * (placed.joints[:, 1:] + placed.joints[:, :-1])
-    squares = (0.5 * (placed.velocities[:, 1:] + placed.velocities[:, :-1])) ** 2
-    felt = squares.sum(axis=-1) if system.axial_inertia else squares[..., 1]
-    kinetic = 0.5 * (felt @ system.masses + placed.rates**2 @ system.inertias)
-    elastic = 0.5 * (angles**2 @ system.stiffness + system.axial_spring * shortening(system, placed.directions) ** 2)
-    return np.stack([kinetic, elastic, -(middles @ np.array(system.gravity)) @ system.masses])
-
-
-def shortening(system: ChainSystem, directions: Array) -> Array:
-    """How far the tip stands back from the straight chain's, (...), metres."""
-    return np.asarray(2.0 * np.sin(0.5 * directions) ** 2 @ system.lengths)
-
-
-def held_rows(system: ChainSystem, x: Array) -> Array:
-    """Derivatives of the held points' y by the relative angles, (n_held, N), metres, from the joints' x, (N + 1,)."""
-    rows = np.zeros((len(held := held_points(system)), system.n_links))
-    for row, (link, at) in zip(rows, held, strict=True):
-        share = at / system.lengths[link - 1]
-        row[:link] = x[link - 1] + share * (x[link] - x[link - 1]) - x[:link]
-    return rows
-
-
-def strayed(system: ChainSystem, time: float, placed: Placed) -> tuple[Array, Array]:
-    """How far the held points stand off where they are held, and how fast they leave, (n_held,), metres and m/s."""
-    wanted = [(0.0, 0.0)] if system.tip == "roller" else []
-    for one in system.actuators:
-        omega = circular(one.frequency_hz)
-        phase = omega * time + np.deg2rad(one.phase_deg)
-        wanted.append((one.amplitude * np.cos(phase), -one.amplitude * omega * np.sin(phase)))
-    now = []
-    for link, at in held_points(system):
-        share = at / system.lengths[link - 1]
-        y, rising = (values[link - 1 : link + 1, 1] for values in (placed.joints, placed.velocities))
-        now.append((y[0] + share * (y[1] - y[0]), rising[0] + share * (rising[1] - rising[0])))
-    off = np.array(now, dtype=float).reshape(len(now), 2) - np.array(wanted, dtype=float).reshape(len(now), 2)
-    return off[:, 0], off[:, 1]
+    block, parts = max(BLOCK // system.n_links, 1), [np.zeros((3, 0))]
+    for first in range(0, len(times), block):
+        part = slice(first, first + block)
+        placed = place(system, times[part], angles[part], rates[part])
+        middles = 0.5 * (placed.joints[:, 1:] + placed.joints[:, :-1])
+        squares = (0.5 * (placed.velocities[:, 1:] + placed.velocities[:, :-1])) ** 2
+        resisted = squares.sum(axis=-1) if system.axial_inertia else squares[..., 1]
+        kinetic = 0.5 * (resisted @ system.masses + placed.rates**2 @ system.inertias)
+        shortening = 2.0 * np.sin(0.5 * placed.directions) ** 2 @ system.lengths
+        elastic = 0.5 * (angles[part] ** 2 @ system.stiffness + system.axial_spring * shortening**2)
+        parts.append(np.stack([kinetic, elastic, -(middles @ np.array(system.gravity)) @ system.masses]))
+    return np.concatenate(parts, axis=1)

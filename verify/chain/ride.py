@@ -13,9 +13,7 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array
-from verify.chain.confirmed import from_rest
-from verify.chain.result import ChainMotion
-from verify.chain.stretching import ElasticMotion
+from verify.chain.motion import ChainMotion, ElasticMotion, from_rest
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
 from verify.errors import InputError, written
 from verify.linear.surface import section_at

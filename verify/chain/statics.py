@@ -1,219 +1,304 @@
-"""Static equilibrium of the nonlinear chain by Newton with continuation in the load; its forces in absolute angles."""
+"""Static equilibria of the nonlinear chain under dead loads, by Newton's method and continuation in the load.
 
-from dataclasses import dataclass
-from typing import Any
+The potential energy in the absolute angles theta is that of joints, constant loads, gravity, an axial spring at the
+roller and, under a steadily rotating hub, centrifugal forces. Beyond its buckling load a cantilever has several
+equilibria, any of which Newton's method may reach; `bend` follows the path of stable ones from zero load.
+"""
+
+from dataclasses import replace
+from math import cos, radians
+from typing import Any, NamedTuple
 
 import numpy as np
+from msgspec import Struct, structs
 
 from verify.arrays import Array
-from verify.chain.system import ChainState, ChainSystem, held_points
-from verify.errors import InputError
+from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system
+from verify.errors import InputError, shown
+from verify.linear.positions import Numbers, as_vector
+from verify.options import Joints, Wall
+from verify.problem.beam import Beam
+from verify.validation import check_number, check_whole
 
-TOLERANCE = 1e-9
-"""Residual moment, relative to the largest moment in the chain."""
-SETTLED = 1e-7
-"""Radians: after a Newton step this small the next one would be rounding."""
-MAX_TURN = 0.8
-"""Radians that a Newton step may turn a link."""
+RESIDUAL = 1e-9
+"""Tolerance of the residual moment, relative to the largest moment in the chain."""
+LAST_STEP = 1e-7
+"""Radians: Newton's method converges quadratically, so that the step after one this small is rounding."""
+LARGEST_STEP = 0.8
+"""Radians that one Newton step may rotate a link by."""
+CORRECTION = 0.5
+"""Largest correction of a step along the stable path, relative to its predictor; beyond it lies another path."""
 
 
-@dataclass(frozen=True, eq=False)
-class Forces:
-    """Generalised forces of a chain at absolute angles theta, and their derivatives."""
+class Potential(NamedTuple):
+    """Derivatives of a chain's potential energy by its absolute angles; closure by n rollers, 0 or 1."""
 
-    moments: Array
-    """(N,), N m: gradient of the potential energy, joints apart."""
-    springs: Array
-    """(N,): gradient of the joints' energy."""
-    geometric: Array
-    """(N,): second derivatives of the loads' potential, a diagonal."""
-    reach_x: Array
-    """(N,), metres: derivatives of the tip's x."""
-    held_rows: Array
-    """(n_held, N), metres: derivatives of the held points' y."""
-    held_bends: Array
-    """(n_held, N), metres: minus their second derivatives, a diagonal each."""
-    gaps: Array
-    """(n_held,), metres: how far the held points are off."""
-    turning: Array
-    """(N, N), N m: stiffness by the centrifugal forces of a turning base; (0, 0) where it does not turn."""
+    gradient: Array  # (N,), N m, without joints
+    joints: Array  # (N,), N m, of the joints' energy
+    geometric: Array  # (N,), N m: diagonal of the geometric stiffness of loads and axial spring
+    closure: Array  # (n, N), m: derivatives of the roller's y
+    closure_geometric: Array  # (n, N), m: minus its second derivatives, a diagonal
+    gap: Array  # (n,), m: height of the roller
+    full: Array  # (N, N), N m: stiffness by axial spring and centrifugal forces; (0, 0) without them
 
-    def multipliers(self) -> Array:
-        """Forces on the held points, (n_held,), upwards, newton: least squares of the equilibrium of moments."""
-        if not len(self.held_rows):
+    def reaction(self) -> Array:
+        """Upward force of the roller, (n,), N: least squares of the moment balance."""
+        if not len(self.closure):
             return np.zeros(0)
-        return np.asarray(np.linalg.lstsq(self.held_rows.T, self.moments + self.springs, rcond=None)[0], dtype=float)
+        return np.asarray(np.linalg.lstsq(self.closure.T, self.gradient + self.joints, rcond=None)[0], dtype=float)
 
 
-def mass_products(system: ChainSystem) -> Array:
-    """What the cosines of differences of angles are multiplied with in the kinetic energy, (N, N), kg m^2."""
-    lengths, masses = system.lengths, system.masses
-    half, links = lengths / 2.0, np.arange(system.n_links)
-    beyond = np.cumsum(masses[::-1])[::-1] - masses
-    moment = half * masses + lengths * beyond
-    product = lengths[np.minimum.outer(links, links)] * moment[np.maximum.outer(links, links)]
-    np.fill_diagonal(product, half**2 * masses + lengths**2 * beyond)
-    return np.asarray(product)
+def inertia_products(system: ChainSystem) -> Array:
+    """Coefficients of cos(theta_i - theta_j) in the mass matrix over absolute angles, (N, N), kg m^2."""
+    lengths, masses, links = system.lengths, system.masses, np.arange(system.n_links)
+    outboard = np.cumsum(masses[::-1])[::-1] - masses
+    moment = 0.5 * lengths * masses + lengths * outboard
+    products = lengths[np.minimum.outer(links, links)] * moment[np.maximum.outer(links, links)]
+    np.fill_diagonal(products, lengths**2 * (0.25 * masses + outboard))
+    return np.asarray(products)
 
 
-def mass_matrix(system: ChainSystem, theta: Array) -> Array:
-    """Mass matrix over the absolute angles, (N, N)."""
-    c, s = np.cos(theta), np.sin(theta)
-    turning = np.outer(c, c) + (np.outer(s, s) if system.axial_inertia else 0.0)
-    return np.asarray(mass_products(system) * turning + np.diag(system.inertias))
+def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potential:
+    """The derivatives at relative angles, (N,), under `factor` times the constant loads and gravity.
 
-
-def centrifugal(system: ChainSystem, theta: Array) -> tuple[Array, Array]:
-    """Gradient (N,) and second derivatives (N, N) of minus half rate^2 times the moment of inertia about the base.
-
-    That moment is the sum of `mass_products` times cos(theta_i - theta_j). Raises InputError where something acts on
-    the chain that does not turn with the base.
+    Under a steadily rotating hub the frame rotates with it. Raises InputError for what does not rotate with it.
     """
-    _refuse_still(system)
-    angles = np.subtract.outer(theta, theta)
-    products = system.rotation.rate**2 * mass_products(system)
-    stiffness = -products * np.cos(angles)
-    np.fill_diagonal(stiffness, 0.0)
-    np.fill_diagonal(stiffness, -stiffness.sum(axis=1))
-    return np.asarray((products * np.sin(angles)).sum(axis=1)), stiffness
-
-
-def gyroscopic(system: ChainSystem, theta: Array) -> Array:
-    """Moments by rates of a chain whose base turns, (N, N), N m s, antisymmetric; none where it is straight."""
-    return np.asarray(2.0 * system.rotation.rate * mass_products(system) * np.sin(np.subtract.outer(theta, theta)))
-
-
-def _refuse_still(system: ChainSystem) -> None:
-    """Raise InputError for what keeps its direction while the base turns: there is no equilibrium then."""
-    dead = any(load.frequency_hz == 0.0 and any(load.force) for load in system.loads)
-    still = system.tip == "roller" or system.actuators or any(system.gravity) or dead or not system.axial_inertia
-    if still:
-        raise InputError(
-            f"rotation.rate = {system.rotation.rate!r}: a roller, actuators, gravity, dead forces and inertia across "
-            "alone do not turn with the base, so that there is no equilibrium; leave them out or give rate = 0"
-        )
-
-
-def forces_at(system: ChainSystem, angles: Array, factor: float) -> Forces:
-    """Forces at relative angles under `factor` times the constant loads, gravity and displacements.
-
-    Where the base turns steadily the angles are those in the turning frame and centrifugal forces are among them.
-    Raises InputError where no equilibrium can turn with it.
-    """
+    lengths, n_closures = system.lengths, int(system.tip == "roller")
     theta = system.rotation.constant + np.cumsum(angles)
     c, s = np.cos(theta), np.sin(theta)
-    lengths, spin, turning = system.lengths, np.zeros(system.n_links), np.zeros((0, 0))
+    forces = factor * np.outer(system.masses, system.gravity)
+    arms, moments = 0.5 * lengths[:, None] * forces, np.zeros(system.n_links)
+    for load in system.loads:
+        if load.frequency_hz == 0.0:
+            force = factor * cos(radians(load.phase_deg)) * np.array([*load.force, load.moment])
+            forces[load.link - 1] += force[:2]
+            arms[load.link - 1] += load.at * force[:2]
+            moments[load.link - 1] += force[2]
+    outboard = np.cumsum(forces[::-1], axis=0)[::-1] - forces
+    along, across = (lengths[:, None] * outboard + arms).T
+    spring = system.axial_spring * float(lengths @ (c - 1.0))
+    gradient, full = along * s - across * c - moments - spring * lengths * s, np.zeros((0, 0))
+    if system.axial_spring:
+        full = system.axial_spring * np.outer(lengths * s, lengths * s)
     if system.rotation.rate:
-        spin, turning = centrifugal(system, theta)
-    push, lever_x, lever_y, turn = _load_sums(system, factor)
-    beyond = np.cumsum(push[::-1], axis=0)[::-1] - push
-    ax, ay = lengths * beyond[:, 0] + lever_x, lengths * beyond[:, 1] + lever_y
-    stretch = system.axial_spring * float((lengths * (c - 1.0)).sum())
+        if n_closures or outboard.any() or arms.any() or not system.axial_inertia:
+            raise InputError(
+                f"rotation.rate = {system.rotation.rate!r}: a roller, gravity, dead forces and links without axial "
+                "inertia do not rotate with the hub, no equilibrium exists; leave them out or give rate = 0"
+            )
+        products, difference = system.rotation.rate**2 * inertia_products(system), np.subtract.outer(theta, theta)
+        gradient += (products * np.sin(difference)).sum(axis=1)
+        full = -products * np.cos(difference)
+        np.fill_diagonal(full, np.diag(full) - full.sum(axis=1))
     joints = system.stiffness * angles
-    springs = joints - np.append(joints[1:], 0.0)
-    reach_x = -lengths * s
-    return Forces(
-        moments=-(ay * c - ax * s) - turn + stretch * reach_x + spin,
-        springs=springs,
-        geometric=ay * s + ax * c - stretch * lengths * c,
-        reach_x=reach_x,
-        turning=turning,
-        **_held(system, theta, factor),
+    return Potential(
+        gradient=gradient,
+        joints=joints - np.append(joints[1:], 0.0),
+        geometric=across * s + along * c - spring * lengths * c,
+        closure=(lengths * c)[None][:n_closures],
+        closure_geometric=(lengths * s)[None][:n_closures],
+        gap=(lengths @ s)[None][:n_closures],
+        full=full,
     )
 
 
-def _load_sums(system: ChainSystem, factor: float) -> tuple[Array, Array, Array, Array]:
-    """Forces on each link, (N, 2), their first moments from the near joint along x and y, and free moments."""
-    push = factor * np.outer(system.masses, system.gravity)
-    lever = push * (system.lengths / 2.0)[:, None]
-    turn = np.zeros(system.n_links)
-    for load in system.loads:
-        if load.frequency_hz == 0.0:
-            now = factor * np.cos(np.deg2rad(load.phase_deg))
-            force = now * np.array(load.force)
-            push[load.link - 1] += force
-            lever[load.link - 1] += load.at * force
-            turn[load.link - 1] += now * load.moment
-    return push, lever[:, 0], lever[:, 1], turn
-
-
-def _held(system: ChainSystem, theta: Array, factor: float) -> dict[str, Array]:
-    """Rows, bends and gaps of the held points; a harmonic actuator rests in its middle."""
-    c, s = np.cos(theta), np.sin(theta)
-    wanted = [0.0] * (system.tip == "roller") + [
-        factor * a.amplitude * np.cos(np.deg2rad(a.phase_deg)) if a.frequency_hz == 0.0 else 0.0
-        for a in system.actuators
-    ]
-    reach = np.zeros((len(wanted), system.n_links))
-    for row, (link, at) in zip(reach, held_points(system), strict=True):
-        row[: link - 1] = system.lengths[: link - 1]
-        row[link - 1] = at
-    return {"held_rows": reach * c, "held_bends": reach * s, "gaps": reach @ s - np.array(wanted)}
-
-
 def solve_static(system: ChainSystem, start: ChainState | None = None) -> ChainState:
-    """Equilibrium under the constant loads, gravity and displacements, from a start (straight unless given).
+    """Equilibrium under the constant loads and gravity, from a start (straight unless given), in O(N).
 
-    Newton on angles and held forces at once, in O(N); where it fails the load is raised in smaller parts. Raises
-    InputError where no part converges: an instability, or a mechanism.
+    Newton's method on angles and reaction; where it fails the load is raised in smaller parts. Raises InputError where
+    no part converges: an instability, or a mechanism.
     """
     angles = np.zeros(system.n_links) if start is None else np.array(start.angles, dtype=float)
-    done, part = 0.0, 1.0
-    while done < 1.0:
-        wanted = min(done + part, 1.0)
-        found = _newton(system, angles, wanted)
-        if found is not None:
-            angles, done, part = found, wanted, 2.0 * part
-        elif part > 1e-3:
-            part *= 0.25
-        else:
-            raise InputError(
-                f"chain.loads: no equilibrium found beyond {done:.3g} of the load; give less of it, or a support "
-                "where the chain is a mechanism (in Python, a start nearer to it)"
-            )
+    angles, share = _raise_load(system, angles, 1.0, 1e-3)
+    if share < 1.0:
+        raise InputError(
+            f"chain.loads: no equilibrium beyond {share:.3g} of the load; reduce it, or add a support where the chain "
+            "is a mechanism (in Python, give a nearer start)"
+        )
     return ChainState(angles, np.zeros(system.n_links))
 
 
-def _newton(system: ChainSystem, angles: Array, factor: float) -> Array | None:
-    """Relative angles in equilibrium under a share of the load; None where 60 steps do not suffice."""
-    found = forces_at(system, angles, factor)
-    held = found.multipliers()
+def _raise_load(
+    system: ChainSystem, angles: Array, part: float, least: float, stable: bool = False
+) -> tuple[Array, float]:
+    """Equilibrium by continuation in the load, and its share: below 1 where parts of relative size `least` fail."""
+    first, done = part, 0.0
+    while done < 1.0:
+        share = min(done + part, 1.0)
+        solution = _newton(system, angles, share, stable)
+        if solution is not None:
+            angles, done, part = solution, share, min(2.0 * part, share)
+        elif part > least * max(done, first):
+            part *= 0.25
+        else:
+            break
+    return angles, done
+
+
+def _newton(system: ChainSystem, start: Array, share: float, stable: bool) -> Array | None:
+    """Relative angles in equilibrium under a share of the load; None where 60 steps do not converge.
+
+    With `stable` every iterate must be stable, and corrections small against the first step: beyond a fold Newton's
+    method leads to another path.
+    """
+    angles, first, n = start, np.zeros(0), system.n_links
+    state = potential(system, angles, share)
+    reaction = state.reaction()
     for _ in range(60):
-        residual = np.concatenate([found.moments + found.springs - held @ found.held_rows, found.gaps])
-        scale = abs(found.moments).max() + abs(system.stiffness * angles).max() + abs(held @ found.held_rows).max()
-        step = _newton_step(system, found, held, residual)
-        if step is None:
+        closure = reaction @ state.closure
+        residual = state.gradient + state.joints - closure
+        scale = sum(abs(moment).max() for moment in (state.gradient, system.stiffness * angles, closure))
+        step = _stable_step(system, state) if stable else _bordered_step(system, state, reaction, residual)
+        largest = np.inf if step is None else abs(step[:n]).max()
+        if step is None or not np.isfinite(largest) or (stable and largest > LARGEST_STEP):
             return None
-        turn = step[: system.n_links]
-        share = min(1.0, MAX_TURN / max(abs(turn).max(), 1e-300))
-        angles, held = angles + share * np.diff(turn, prepend=0.0), held + share * step[system.n_links :]
-        if abs(residual[: system.n_links]).max() <= TOLERANCE * scale and abs(turn).max() < SETTLED:
-            return angles
-        found = forces_at(system, angles, factor)
+        step = step * min(1.0, LARGEST_STEP / max(largest, 1e-300))
+        angles, reaction = angles + np.diff(step[:n], prepend=0.0), reaction + step[n:]
+        first = first if len(first) else step
+        if stable and abs(np.cumsum(angles - start) - first).max() > CORRECTION * abs(first).max():
+            return None
+        state = potential(system, angles, share)
+        if abs(residual).max() <= RESIDUAL * scale and largest < LAST_STEP:
+            return angles if not stable or _stable_step(system, state) is not None else None
     return None
 
 
-def _newton_step(system: ChainSystem, found: Forces, held: Array, residual: Array) -> Array | None:
-    """Change of angles and held forces: tridiagonal, bordered by held points and axial spring."""
+def _stable_step(system: ChainSystem, state: Potential) -> Array | None:
+    """Newton's step (N,) of a chain with a free tip by Cholesky's factors; None unless its stiffness is positive."""
+    from scipy.linalg import LinAlgError, solveh_banded
+
+    k = system.stiffness
+    bands = np.array([k + np.append(k[1:], 0.0) + state.geometric, np.append(-k[1:], 0.0)])
+    try:
+        return np.asarray(solveh_banded(bands, -(state.gradient + state.joints), lower=True))
+    except LinAlgError:
+        return None
+
+
+def _bordered_step(system: ChainSystem, state: Potential, reaction: Array, residual: Array) -> Array:
+    """Newton's step of angles and reaction, (N + n,): tridiagonal but for closure, axial spring and rotation."""
     import warnings
 
     from scipy.sparse import block_array, csc_array, diags_array
     from scipy.sparse.linalg import MatrixRankWarning, spsolve
 
     k = system.stiffness
-    diagonal = k + np.append(k[1:], 0.0) + found.geometric + held @ found.held_bends
-    core: Any = diags_array([-k[1:], diagonal, -k[1:]], offsets=[-1, 0, 1])
-    if len(found.turning):
-        core = core + csc_array(found.turning)
-    border, corner = found.held_rows, np.zeros(len(held))
-    if system.axial_spring:
-        border, corner = np.vstack([border, found.reach_x]), np.append(corner, 1.0 / system.axial_spring)
-        residual = np.append(residual, 0.0)
-    matrix = core.tocsc()
-    if len(border):
-        rows = csc_array(border)
-        matrix = block_array([[core, -rows.T], [rows, diags_array(corner)]], format="csc")
+    diagonal = k + np.append(k[1:], 0.0) + state.geometric + reaction @ state.closure_geometric
+    matrix: Any = diags_array([-k[1:], diagonal, -k[1:]], offsets=[-1, 0, 1]).tocsc()
+    if len(state.full):
+        matrix = matrix + csc_array(state.full)
+    if len(reaction):
+        rows = csc_array(state.closure)
+        matrix = block_array([[matrix, -rows.T], [rows, None]], format="csc")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MatrixRankWarning)
-        step = np.atleast_1d(spsolve(matrix, -residual))
-    return step[: system.n_links + len(held)] if np.isfinite(step).all() else None
+        return np.atleast_1d(spsolve(matrix, -np.concatenate([residual, state.gap])))
+
+
+class Bent(Struct, frozen=True, eq=False, kw_only=True):
+    """A cantilever of rigid links in equilibrium, clamped at x = 0; x along the straight beam, y across it."""
+
+    beam: Beam
+    count: int
+    """Segments N."""
+    joints: Array
+    """(N + 1, 2), m: (x, y) from the clamp to the tip."""
+    angles: Array
+    """(N,), rad: rotation of every link, that of the beam at the link's middle."""
+    turn: float
+    """Rotation of the tip, rad; half a link beyond the last link's middle, bent by the applied moment."""
+    moments: Array
+    """(N + 1,), N m: bending moment at every joint, the applied one at the tip."""
+    curvature: Array
+    """(N + 1,), 1/m: moment over EI, of the section on the right where two meet."""
+    energy: float
+    """Elastic energy, J: of the joints, and of the last half link under the applied moment."""
+
+    @property
+    def tip(self) -> Array:
+        """(2,), m: (x, y) of the free end."""
+        return np.asarray(self.joints[-1])
+
+    @property
+    def deflection(self) -> float:
+        """Transverse displacement of the tip, m."""
+        return float(self.joints[-1, 1])
+
+    @property
+    def shortening(self) -> float:
+        """Axial displacement of the tip towards the clamp, m."""
+        return self.beam.length - float(self.joints[-1, 0])
+
+
+def bend(
+    beam: Beam,
+    count: int,
+    load: Numbers = 0.0,
+    *,
+    moment: float = 0.0,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+) -> Bent:
+    """Large bending of a cantilever of `count` links under a dead `load` (N) and a `moment` (N m) at its tip.
+
+    `load` is one number across the straight beam, or a pair (along, across); its direction is constant. The limit is
+    the elastica (K. E. Bisshopp and D. C. Drucker, Quart. Appl. Math. 3 (1945) 272), approached with order 2 in
+    `count` by tip, turn and energy. A joint represents the half links on either side; the half link at the tip has
+    none and bends under `moment` alone: its part of turn and energy is added. Under a moment alone both are exact, and
+    with wall = "half" the circle closes. Beyond the buckling load the result is the stable equilibrium to which the
+    load leads as it grows in proportion from zero. Raises InputError for supports other than clamped and free, bodies
+    on the beam, axial compression alone beyond the buckling load, and where the stable path ends.
+    """
+    if beam.supports != ("clamped", "free"):
+        raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
+    check_whole("count", count, 2)
+    force = as_vector("load", load, "newton")
+    if force.shape not in ((1,), (2,)):
+        raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")
+    along, across = (0.0, float(force[0])) if len(force) == 1 else (float(force[0]), float(force[1]))
+    check_number("moment", moment, "N m")
+    system = build_system(structs.replace(beam, loss_factor=0.0), count, wall=wall, joints=joints)
+    end = LinkLoad(link=count, at=float(system.lengths[-1]), force=(along, across), moment=float(moment))
+    relative = _stable_equilibrium(replace(system, loads=(end,)), along, across, float(moment))
+    angles, moments = np.cumsum(relative), np.append(system.stiffness * relative, moment)
+    links = system.lengths[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    starts = np.cumsum([0.0, *(piece.length for piece in beam.pieces[:-1])])
+    sections = np.searchsorted(starts, system.nodes + 1e-12 * beam.length, side="right") - 1
+    curvature = moments / np.array([piece.bending_stiffness for piece in beam.pieces])[sections]
+    half_link = 0.5 * float(system.lengths[-1] * curvature[-1])
+    return Bent(
+        beam=beam,
+        count=count,
+        joints=np.vstack([np.zeros(2), np.cumsum(links, axis=0)]),
+        angles=angles,
+        turn=float(angles[-1]) + half_link,
+        moments=moments,
+        curvature=curvature,
+        energy=0.5 * (float(moments[:-1] @ relative) + moment * half_link),
+    )
+
+
+def _stable_equilibrium(system: ChainSystem, along: float, across: float, moment: float) -> Array:
+    """Relative angles, (N,), of a cantilever on the stable path from zero load."""
+    from scipy.linalg import eigh_tridiagonal
+
+    k, root, size = system.stiffness, np.sqrt(system.lengths), float(np.hypot(along, across))
+    diagonal, off_diagonal = (k + np.append(k[1:], 0.0)) / system.lengths, -k[1:] / (root[1:] * root[:-1])
+    critical = float(eigh_tridiagonal(diagonal, off_diagonal, eigvals_only=True, select="i", select_range=(0, 0))[0])
+    if along < 0.0 and not across and not moment and -along >= critical:
+        raise InputError(
+            f"load = {shown((along, across))} N exceeds the buckling load of {critical:.6g} N of the straight "
+            "cantilever, which may buckle to either side: add a small force across, or reduce it"
+        )
+    if size < critical or (along >= 0.0 and not moment):
+        angles = solve_static(system).angles
+        if size < critical or _stable_step(system, potential(system, angles)) is not None:
+            return angles
+    angles, share = _raise_load(system, np.zeros(system.n_links), min(0.9 * critical / size, 1.0), 1e-12, stable=True)
+    if share < 1.0:
+        applied = f"load = {shown((along, across))} N" + (f" with moment = {shown(moment)} N m" if moment else "")
+        raise InputError(
+            f"{applied} buckles the cantilever (buckling load {critical:.6g} N): the path of stable equilibria ends at "
+            f"{share:.6g} of it, give {'another moment' if moment else 'a larger force across'}, or less load"
+        )
+    return angles

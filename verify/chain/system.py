@@ -20,8 +20,6 @@ from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
 from verify.validation import check_number, check_unmasked
 
-MAX_ACTUATORS = 4
-
 
 @dataclass(frozen=True, kw_only=True)
 class Rotation:
@@ -67,23 +65,6 @@ class LinkLoad:
         check_number("load.phase_deg", self.phase_deg, "degrees")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Actuator:
-    """A point of a link kept at y = amplitude cos(2 pi f t + phase)."""
-
-    link: int
-    at: float
-    amplitude: float = 0.0
-    """Metres."""
-    frequency_hz: float = 0.0
-    phase_deg: float = 0.0
-
-    def __post_init__(self) -> None:
-        check_number("actuator.amplitude", self.amplitude, "metres")
-        check_number("actuator.frequency_hz", self.frequency_hz, "hertz, 0 for a fixed point", at_least=0)
-        check_number("actuator.phase_deg", self.phase_deg, "degrees")
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChainSystem:
     """N rigid links, joint springs and dashpots, a base, a tip, loads. SI.
@@ -112,10 +93,19 @@ class ChainSystem:
     rotation: Rotation = Rotation()
     """Of the hub that the base's spring is fastened to."""
     loads: tuple[LinkLoad, ...] = ()
-    actuators: tuple[Actuator, ...] = ()
 
     def __post_init__(self) -> None:
-        _check_arrays(self)
+        n = len(self.lengths)
+        if n == 0:
+            raise InputError("chain.lengths is empty: give at least one link")
+        for field in ("lengths", "masses", "inertias", "stiffness", "dashpots"):
+            check_unmasked(f"chain.{field}", getattr(self, field), "SI")
+            values = np.asarray(getattr(self, field), dtype=float)
+            if values.shape != (n,):
+                raise InputError(f"chain.{field} has the shape {values.shape}: give one value for each of {n} links")
+            limit = "at_least" if field in ("stiffness", "dashpots") else "above"
+            for i, value in enumerate(values.tolist(), start=1):
+                check_number(f"chain.{field} of link {i}", value, "SI", **{limit: 0.0})
         check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
         for value in self.gravity:
             check_number("chain.gravity", value, "m/s^2")
@@ -127,11 +117,11 @@ class ChainSystem:
             )
         if self.axial_spring and self.tip == "free":
             raise InputError(f"chain.axial_spring = {self.axial_spring!r} acts at a roller: give tip = 'roller' or 0")
-        for kind, held in (("load", self.loads), ("actuator", self.actuators)):
-            for one in held:
-                _check_place(self, kind, one.link, one.at)
-        if len(self.actuators) > MAX_ACTUATORS:
-            raise InputError(f"chain.actuators are {len(self.actuators)}: give at most {MAX_ACTUATORS}")
+        for load in self.loads:
+            if not 1 <= load.link <= n:
+                raise InputError(f"load.link = {load.link!r}: the chain has links 1 to {n}")
+            length = float(self.lengths[load.link - 1])
+            check_number("load.at", load.at / length, "of the link's length", at_least=-1e-12, at_most=1.0 + 1e-12)
 
     @property
     def n_links(self) -> int:
@@ -161,29 +151,6 @@ class ChainState:
     """s."""
 
 
-def _check_arrays(system: ChainSystem) -> None:
-    n = len(system.lengths)
-    if n == 0:
-        raise InputError("chain.lengths is empty: give at least one link")
-    for field in ("lengths", "masses", "inertias", "stiffness", "dashpots"):
-        check_unmasked(f"chain.{field}", getattr(system, field), "SI")
-        values = np.asarray(getattr(system, field), dtype=float)
-        if values.shape != (n,):
-            raise InputError(f"chain.{field} has the shape {values.shape}: give one value for each of {n} links")
-        limit = "at_least" if field in ("stiffness", "dashpots") else "above"
-        for i, value in enumerate(values.tolist(), start=1):
-            check_number(f"chain.{field} of link {i}", value, "SI", **{limit: 0.0})
-
-
-def _check_place(system: ChainSystem, kind: str, link: int, at: float) -> None:
-    if not 1 <= link <= system.n_links:
-        raise InputError(f"{kind}.link = {link!r}: the chain has links 1 to {system.n_links}")
-    length = float(system.lengths[link - 1])
-    check_number(f"{kind}.at", at, "metres from the link's near joint")
-    if not -1e-12 * length <= at <= length * (1 + 1e-12):
-        raise InputError(f"{kind}.at = {at!r} lies off link {link}: give a place between 0 and {length!r} m")
-
-
 def build_system(
     beam: Beam,
     n_segments: int,
@@ -205,7 +172,19 @@ def build_system(
     spring EA/L, that of all links in series on a stepped beam. Raises InputError for other supports, a loss factor,
     and forces off the beam.
     """
-    check_buildable(beam, wall)
+    left, right = beam.supports
+    if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
+        raise InputError(
+            f"beam.supports = {beam.supports!r}: the nonlinear chain starts at a pinned or clamped end and ends free "
+            "or pinned (as a roller); give such a pair, mirrored where need be"
+        )
+    if wall == "welded":
+        raise InputError("wall = 'welded' is for the linear chain: choose another wall")
+    if beam.loss_factor:
+        raise InputError(
+            f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain moves in time and has no complex modulus, "
+            "give 0"
+        )
     beam.check_added("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = SegmentModel(beam, n_segments, wall=wall, joints=joints, grading=grading).chain
@@ -218,10 +197,26 @@ def build_system(
         stiffness=stiffness,
         dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0),
         axial_inertia=axial_inertia,
-        tip="roller" if beam.supports[1] == "pinned" else "free",
+        tip="roller" if right == "pinned" else "free",
         axial_spring=1.0 / sum(p.length / p.axial_stiffness for p in beam.pieces) if immovable else 0.0,
     )
-    return replace(system, loads=transverse_loads(chain, system, forces, frequency_hz, load))
+    loads = []
+    for force in forces:
+        if force.position > system.length * (1.0 + 1e-12):
+            raise InputError(
+                f"force.position = {force.position!r} lies off the beam: give a position up to {system.length!r} m"
+            )
+        if load == "lever":
+            shares = [(*link_at(system, force.position), 1.0)]
+        else:
+            weights = joint_weights(chain, np.array([force.position]), load).toarray()[0]
+            shares = [
+                (max(i, 1), float(system.lengths[i - 1]) if i else 0.0, float(weights[i]))
+                for i in np.flatnonzero(weights).tolist()
+            ]
+        drive = {"frequency_hz": frequency_hz, "phase_deg": force.phase_deg}
+        loads += [LinkLoad(link=i, at=at, force=(0.0, part * force.amplitude), **drive) for i, at, part in shares]
+    return replace(system, loads=tuple(loads))
 
 
 def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
@@ -248,68 +243,11 @@ def straight_chain(system: ChainSystem, *, unit: float = 1.0, mass: float = 1.0,
     )
 
 
-def check_buildable(beam: Beam, wall: str = "gregory") -> None:
-    """Raise InputError for supports, a wall or a loss that the nonlinear chain does not have."""
-    left, right = beam.supports
-    if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
-        raise InputError(
-            f"beam.supports = {beam.supports!r}: the nonlinear chain starts at a pinned or clamped end and ends free "
-            "or pinned (as a roller); give such a pair, mirrored where need be"
-        )
-    if wall == "welded":
-        raise InputError("wall = 'welded' is for the linear chain: choose another wall")
-    if beam.loss_factor:
-        raise InputError(
-            f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain moves in time and has no complex modulus, "
-            "give 0"
-        )
-
-
-def transverse_loads(
-    chain: Chain, system: ChainSystem, forces: Sequence[PointForce], frequency_hz: float, rule: str
-) -> tuple[LinkLoad, ...]:
-    """Point forces of a beam on the links of its chain. Raises InputError for one off the beam."""
-    found = []
-    for force in forces:
-        if force.position > system.length * (1.0 + 1e-12):
-            raise InputError(
-                f"force.position = {force.position!r} lies off the beam: give a position up to {system.length!r} m"
-            )
-        for link, at, share in _shares(chain, system, force.position, rule):
-            found.append(
-                LinkLoad(
-                    link=link,
-                    at=at,
-                    force=(0.0, share * force.amplitude),
-                    frequency_hz=frequency_hz,
-                    phase_deg=force.phase_deg,
-                )
-            )
-    return tuple(found)
-
-
 def link_at(system: ChainSystem, position: float) -> tuple[int, float]:
     """The link that holds a place of the straight chain, 1..N, and the place on it in metres from its near joint."""
     nodes = system.nodes
     i = int(np.clip(np.searchsorted(nodes, position, side="right") - 1, 0, system.n_links - 1))
     return i + 1, float(np.clip(position - nodes[i], 0.0, system.lengths[i]))
-
-
-def _shares(chain: Chain, system: ChainSystem, position: float, rule: str) -> list[tuple[int, float, float]]:
-    if rule == "lever":
-        return [(*link_at(system, position), 1.0)]
-    weights = joint_weights(chain, np.array([position]), rule).toarray()[0]
-    return [
-        (max(i, 1), float(system.lengths[i - 1]) if i else 0.0, float(weight))
-        for i, weight in enumerate(weights)
-        if weight
-    ]
-
-
-def held_points(system: ChainSystem) -> list[tuple[int, float]]:
-    """(link, metres from its near joint) of the roller and the actuators."""
-    roller = [(system.n_links, float(system.lengths[-1]))] if system.tip == "roller" else []
-    return roller + [(a.link, a.at) for a in system.actuators]
 
 
 def circular(frequency_hz: float) -> float:

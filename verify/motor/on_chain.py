@@ -7,10 +7,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array
-from verify.chain.confirmed import from_rest
-from verify.chain.result import ChainMotion
+from verify.chain.motion import ChainMotion, ElasticMotion, from_rest
 from verify.chain.ride import joint_steps, line_rows, piece_at
-from verify.chain.stretching import ElasticMotion
 from verify.chain.system import axial_stiffness, build_system
 from verify.errors import InputError
 from verify.linear.positions import SLACK

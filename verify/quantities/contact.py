@@ -1,4 +1,4 @@
-"""Quantities of friction and contact laws by themselves: belts, decay, driving layer, bouncing, landing."""
+"""Quantities of friction and contact laws alone: belt, creep, decay, elastic layer, impacts."""
 
 from math import pi
 from typing import Annotated
@@ -6,29 +6,29 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from verify.contact import bouncing, landing, layer
 from verify.errors import InputError
+from verify.exact.contact import impact, layer
 from verify.problem.slider import GRAVITY
 from verify.quantities.base import Scene, quantity
 from verify.quantities.options import Mass, Mu, Sizes, Slope, drive_frequency
 from verify.validation import check_sizes
 
+Pull = Annotated[float, Meta(description="external force over mass, m/s^2")]
+Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
+Stiffness = Annotated[float, Meta(gt=0, description="N/m")]
+Friction = Annotated[float, Meta(gt=0, description="friction, N")]
 HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="of contact, rad of the wave's phase")]
 SpeedRatio = Annotated[float, Meta(description="of the slider over the surface at the crests")]
+SlowerThanWave = Annotated[float, Meta(ge=0, lt=1, description="of the slider over the surface at the crests")]
 Compliance = Annotated[float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), tangential; 0 for Coulomb")]
-Stiffness = Annotated[float, Meta(gt=0, description="N/m")]
+AccelerationRatio = Annotated[float, Meta(gt=1, description="A omega^2 over the acceleration of the preload")]
+DampingRatio = Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)) of mass, spring and dashpot")]
 MU = 0.2
-"""Of a foot on a wave; the ratio of its forces over mu does not depend on it."""
+"""Friction coefficient of a foot on a wave; its forces over mu N do not depend on it."""
 
 
 @quantity("friction.creep_speed", unit="m/s", reads=())
-def creep_speed(
-    *,
-    mu: Mu,
-    slope: Slope,
-    pull: Annotated[float, Meta(description="external force over mass, m/s^2")],
-    gravity: Annotated[float, Meta(gt=0, description="m/s^2")] = GRAVITY,
-) -> float:
+def creep_speed(*, mu: Mu, slope: Slope, pull: Pull, gravity: Gravity = GRAVITY) -> float:
     """Speed under a constant force below the friction limit, tanh friction."""
     from verify.motion.rigid_surface import creep_speed
 
@@ -64,9 +64,7 @@ def belt_slip_time(belt: Belt) -> float:
 
 
 @quantity("friction.coulomb_decrement", unit="m", reads=())
-def coulomb_decrement(
-    *, mass: Mass, stiffness: Stiffness, force: Annotated[float, Meta(gt=0, description="friction, N")]
-) -> float:
+def coulomb_decrement(*, mass: Mass, stiffness: Stiffness, force: Friction) -> float:
     """Amplitude that an oscillator with Coulomb friction loses in a cycle."""
     from verify.motion.rigid_surface import coulomb_decrement
 
@@ -86,29 +84,21 @@ def layer_force(*, contact_half_angle: HalfAngle, speed_ratio: SpeedRatio, epsil
 
 
 @quantity("slider.layer_efficiency", unit="1", reads=())
-def layer_efficiency(
-    *,
-    contact_half_angle: HalfAngle,
-    speed_ratio: Annotated[float, Meta(ge=0, lt=1, description="of the slider over the surface at the crests")],
-) -> float:
+def layer_efficiency(*, contact_half_angle: HalfAngle, speed_ratio: SlowerThanWave) -> float:
     """Power of that slider over power into the layer, Coulomb friction."""
     return layer.efficiency(contact_half_angle, speed_ratio)
 
 
 @quantity("contact.landing_phase", unit="rad", reads=())
-def landing_phase(
-    *, acceleration_ratio: Annotated[float, Meta(gt=1, description="A omega^2 over the acceleration of the preload")]
-) -> float:
+def landing_phase(*, acceleration_ratio: AccelerationRatio) -> float:
     """Phase of a vibrating surface at the first impact of a mass that has lifted off."""
-    return bouncing.landing_phase(acceleration_ratio)
+    return impact.landing_phase(acceleration_ratio)
 
 
 @quantity("contact.restitution", unit="1", reads=())
-def restitution(
-    *, damping_ratio: Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)) of mass, spring and dashpot")]
-) -> float:
+def restitution(*, damping_ratio: DampingRatio) -> float:
     """Coefficient of restitution of an impact on a spring and dashpot that only push."""
-    return landing.restitution(damping_ratio)
+    return impact.restitution(damping_ratio)
 
 
 class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
@@ -120,19 +110,11 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
     steps_per_period: Annotated[int, Meta(ge=4, description="of the wave")] = 256
 
     def force(self, scene: Scene, points: int = 61, refine: float = 1.0) -> float:
-        """-F/(mu N) of so many springs, over a shorter time step. Raises InputError where none is in contact."""
+        """-F/(mu N) of so many springs, time step over `refine`. Raises InputError where none is in contact."""
         from verify.motor.on_wave import over_a_wave
 
-        found, _ = over_a_wave(
-            scene.beam,
-            drive_frequency(scene),
-            speed_ratio=self.speed_ratio,
-            contact_half_angle=self.contact_half_angle,
-            epsilon=self.epsilon,
-            mu=MU,
-            points=points,
-            steps_per_period=round(refine * self.steps_per_period),
-        )
+        foot = msgspec.structs.asdict(self) | {"steps_per_period": round(refine * self.steps_per_period)}
+        found, _ = over_a_wave(scene.beam, drive_frequency(scene), mu=MU, points=points, **foot)
         if found.normal_force <= 0.0:
             raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
         return -found.force / (MU * found.normal_force)

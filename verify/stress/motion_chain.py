@@ -52,7 +52,7 @@ _CENTRAL = ("central differences", central_error)
 @check("time-stepping", "steps", (1e3, 1e4, 1e5, 1e6, 1e7), 1.0, slow=True, baseline=_CENTRAL)
 def time_stepping(steps: float) -> float:
     """Modes advanced step by step against their closed form, error over 1.1e-16 per step."""
-    stepped = driven(steps * STEP, slider(), ledger=False)
+    stepped = driven(steps * STEP, slider())
     closed = driven(steps * STEP).deflection[-1, 0]
     return float(abs(stepped.deflection[-1, 0] - closed)) / (amplitude() * ULP * float(stepped.statistics.steps))
 
@@ -79,7 +79,7 @@ def energy_slope(slope: float) -> float:
 def friction_bound(mu: float) -> float:
     """Excess of the friction force over mu m g and of the displacement over what it can cause, slope 1e9 s/m."""
     one = slider(1e9, mu)
-    run = driven(20_000 * STEP, one, ledger=False)
+    run = driven(20_000 * STEP, one)
     limit = one.mu * one.normal_force
     reach = 0.5 * limit / one.mass * float(run.times[-1]) ** 2
     return float(np.max([worst(run.friction) / limit - 1.0, worst(run.travelled) / reach - 1.0, 0.0]))
@@ -166,7 +166,7 @@ _BELT = (2.0 * pi / 4000) ** 2 / 12.0
 @check("stick-slip", "belt speed, m/s", (0.3, 0.03, 3e-3, 3e-4), _BELT, beyond=(1e-7, 1e-12), refused=True)
 def stick_slip(speed: float) -> float:
     """Stick and slip times of Coulomb friction on a belt, integrated and in closed form."""
-    from verify.contact import belt
+    from verify.exact.contact import belt
     from verify.motion import rigid_surface
 
     mass, stiffness, static, kinetic = 1.3, 170.0, 5.1, 3.7
@@ -184,7 +184,7 @@ LINKS, SHORT, RATE = 100, 12, 17.3
 @check("chain-roll-up", "turns", (1, 5, 20), 1e-12, beyond=(40,))
 def chain_roll_up(turns: float) -> float:
     """Gap of a cantilever of 100 links rolled into closed circles by an end moment, over its length."""
-    from verify.chain.problems import rollup_gap
+    from verify.chain.benchmarks import rollup_gap
 
     return rollup_gap(LINKS, "half", turns)
 
@@ -213,7 +213,7 @@ def elastica(load: float) -> tuple[float, float]:
 @check("chain-dead-load", "P L^2 / EI", (0.1, 1.0, 4.0, 10.0, 100.0), 1.0, beyond=(1000.0, 1e4))
 def chain_dead_load(load: float) -> float:
     """Tip of 100 links under a dead load against the elastica, error over its bound load / (12 N^2)."""
-    from verify.chain.problems import cantilever_tip
+    from verify.chain.benchmarks import cantilever_tip
 
     found, (w, u) = cantilever_tip(load, LINKS), elastica(load)
     return worst(found.deflection - w, found.shortening - u) / (load / (12.0 * LINKS**2))
@@ -239,18 +239,18 @@ def pendulum(gravity: float = 0.0) -> tuple[Any, Any]:
 @check("chain-spin", "turns", (1.0, 10.0, 100.0), 1e-10)
 def chain_spin(turns: float) -> float:
     """Straight chain rotating about its pin by RK4: error of its angle and its bending over the angle."""
-    from verify.chain.stepping import simulate, step_limit
+    from verify.chain.motion import simulate, step_limit
 
     system, start = pendulum()
     end = 2.0 * pi * turns / RATE
-    motion = simulate(system, start, [end], method="rk4", step=0.5 * step_limit(system, start), ledger=False)
+    motion = simulate(system, start, [end], method="rk4", step=0.5 * step_limit(system))
     return worst(motion.angles[-1][0] / (RATE * end) - 1.0, motion.angles[-1][1:] / (RATE * end))
 
 
 @check("chain-whirl", "turns", (1.0, 10.0, 30.0), 2.0)
 def chain_whirl(turns: float) -> float:
     """Heavy chain whirling over its pin: energy drift over the sum of the steps' tolerances of 1e-10."""
-    from verify.chain.stepping import simulate
+    from verify.chain.motion import simulate
 
     motion = simulate(*pendulum(9.81), [0.0, 2.0 * pi * turns / RATE], tolerance=1e-10)
     return abs(float(motion.residual()[-1] / motion.energies()[0][0])) / (1e-10 * motion.statistics.steps)
@@ -259,14 +259,14 @@ def chain_whirl(turns: float) -> float:
 @check("rk4-stability", "dt / limit", (0.1, 0.5, 0.9, 0.99), 1e-12, beyond=(1.01, 2.0), refused=True)
 def rk4_stability(part: float) -> float:
     """Energy gain of a chain of 12 links in 2000 RK4 steps."""
-    from verify.chain.dynamics import at_rest
-    from verify.chain.stepping import simulate, step_limit
+    from verify.chain.kinematics import at_rest
+    from verify.chain.motion import simulate, step_limit
     from verify.chain.system import build_system
 
     system = build_system(STRIP, SHORT)
     start = at_rest(system, 1e-7 * np.random.default_rng(3).standard_normal(SHORT))
-    step = part * step_limit(system, start)
-    motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step, ledger=False)
+    step = part * step_limit(system)
+    motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step)
     kinetic, elastic, _ = motion.energies()
     total = kinetic + elastic
     return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.finished else inf
@@ -275,11 +275,10 @@ def rk4_stability(part: float) -> float:
 @check("rk4-limit", "N", (8, 20, 49, 200, 1000), 1e-3)
 def rk4_limit(n: float) -> float:
     """RK4 step limit of a pinned chain against 2 sqrt(2) over its highest mode in closed form."""
-    from verify.chain.dynamics import at_rest
-    from verify.chain.stepping import step_limit
+    from verify.chain.motion import step_limit
     from verify.chain.system import build_system
 
     s2 = sin((n - 1.0) * pi / n / 2.0) ** 2
     highest = sqrt(48.0 * s2 * s2 / (3.0 - 2.0 * s2)) * STRIP.wave_constant * (n / STRIP.length) ** 2
     system = build_system(STRIP, int(n))
-    return abs(step_limit(system, at_rest(system)) * highest / (2.0 * sqrt(2.0)) - 1.0)
+    return abs(step_limit(system) * highest / (2.0 * sqrt(2.0)) - 1.0)

@@ -1,0 +1,103 @@
+"""Benchmark motions of the nonlinear chain and its departure from the linear one by axial inertia."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from msgspec import structs
+from reference.multibody import rigid_motion, woinowsky_krieger
+
+from verify.chain.benchmarks import (
+    contact_line_error,
+    departure,
+    energy_balance_error,
+    energy_drift,
+    large_amplitude_frequency,
+    linear_deflection,
+    rms,
+    transient,
+)
+from verify.chain.system import build_system
+from verify.errors import InputError
+from verify.problem.beam import Beam, PointForce
+from verify.segment_model import SegmentModel
+
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0)
+PLATE = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+HERTZ, TIME = 4276.0, 1e-3
+
+
+def forces(amplitude):
+    return (
+        PointForce(position=0.0116, amplitude=amplitude, phase_deg=-90.0),
+        PointForce(position=0.4871, amplitude=1.3 * amplitude),
+    )
+
+
+def departed(amplitude, inertia, n=17):
+    return departure(PLATE, forces(amplitude), HERTZ, TIME, n, x=0.23, inertia=inertia)
+
+
+@pytest.mark.parametrize("tip", ["free", "roller"])
+def test_work_energy_and_damping_balance_under_all_loads(tip):
+    assert energy_balance_error(6, tip, 1e-9) < 2e-7
+    assert energy_balance_error(6, tip, 1e-6) < 2e-4
+
+
+def test_energy_drift_falls_with_the_fourth_power_of_the_step_or_faster():
+    limit = 2.0 * 2.0**0.5 / (2.0 * pi * SegmentModel(STRIP, 6).modes(5).frequencies_hz[-1])
+    drifts = [energy_drift(STRIP, 6, share * limit) for share in (0.4, 0.2)]
+    assert 3.7 < np.log2(drifts[0] / drifts[1]) < 6.0
+    assert energy_drift(STRIP, 6, tolerance=1e-9) < 1e-7
+
+
+@pytest.mark.parametrize("amplitude", [0.8, 2.0])
+def test_immovable_ends_stiffen_as_woinowsky_and_krieger_state(amplitude):
+    assert large_amplitude_frequency(STRIP, amplitude, 10) == pytest.approx(woinowsky_krieger(amplitude), rel=2e-4)
+
+
+def test_the_linear_chain_is_the_limit_of_small_forces():
+    system, times = build_system(PLATE, 9, forces(1e-3), HERTZ), np.linspace(0.0, 3e-4, 7)
+    exact, nodes = rigid_motion(system, 3e-4), np.linspace(0.0, 0.5, 10)
+    expected = np.array([np.interp(0.23, nodes, exact(t)[0]) for t in times])
+    assert linear_deflection(system, times, 0.23) == pytest.approx(expected, abs=1e-6 * abs(expected).max())
+
+
+@pytest.mark.parametrize("inertia", ["full", "elastic"])
+def test_departure_grows_with_the_square_of_the_force(inertia):
+    small, large = (departed(force, inertia) for force in (1.0, 4.0))
+    assert large.rms / small.rms == pytest.approx(16.0, rel=0.05)
+    assert small.rms > 1e-8
+
+
+def test_departure_vanishes_without_axial_inertia_and_is_less_for_links_that_stretch():
+    full, transverse, elastic = (departed(8.0, inertia, 25).rms for inertia in ("full", "transverse", "elastic"))
+    assert transverse < 0.02 * full
+    assert transverse < elastic < 0.9 * full
+
+
+def test_stiff_links_tend_to_rigid_ones_with_the_inverse_of_their_stiffness():
+    def deflection(beam, inertia):
+        motion = transient(beam, forces(60.0), HERTZ, np.linspace(0.0, 4e-4, 101), 9, inertia=inertia)
+        return motion.deflection([0.23])[:, 0]
+
+    gaps = []
+    for factor in (40.0, 400.0):  # EA over EI as the inverse square of the thickness
+        thin = {"thickness": PLATE.thickness / factor**0.5, "width": PLATE.width * factor**0.5}
+        stiff = structs.replace(PLATE, **thin, youngs_modulus=factor * PLATE.youngs_modulus)
+        assert stiff.bending_stiffness == pytest.approx(PLATE.bending_stiffness)
+        gaps.append(rms(deflection(stiff, "elastic") - deflection(stiff, "full")))
+    assert gaps[0] / gaps[1] == pytest.approx(10.0, rel=0.3)
+
+
+def test_a_departure_at_a_node_is_refused():
+    symmetric = [PointForce(position=x, amplitude=s) for x, s in ((0.1, 1.0), (0.4, -1.0))]
+    with pytest.raises(InputError, match="does not move"):
+        departure(PLATE, symmetric, HERTZ, 2e-4, 8)
+
+
+@pytest.mark.parametrize(("support", "x", "expected"), [("pinned", 0.2, 3.0), ("clamped", 0.003, 1.0)])
+def test_the_contact_lines_slope_converges_inside_with_order_three_and_at_a_wall_with_one(support, x, expected):
+    beam = structs.replace(PLATE, supports=(support, "pinned"))
+    errors = [contact_line_error(beam, 3, n, x) for n in (20, 40, 80)]
+    assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(expected, abs=0.6)

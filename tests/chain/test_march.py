@@ -1,0 +1,95 @@
+"""The Runge-Kutta march with other accelerations than a chain's, and in pieces under forces that change."""
+
+import numpy as np
+import pytest
+from scipy.special import ellipj, ellipk
+
+from verify.chain import rigid_links
+from verify.chain.kinematics import at_rest
+from verify.chain.motion import simulate
+from verify.chain.runge_kutta import ACCELERATION, DONE, DORMAND_PRINCE, RK4, integrate, march
+from verify.chain.system import LinkLoad, build_system
+from verify.jit import jit
+from verify.problem.beam import Beam
+
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0)
+
+
+@jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False)
+def pendulum(t, y, out, links, loads, numbers, scratch):
+    """theta'' = -omega^2 sin theta, and the action integral of theta'^2."""
+    out[1] = -numbers[0] ** 2 * np.sin(y[0])
+    out[2] = y[1] ** 2
+
+
+DATA = (np.zeros((0, 1)), np.zeros((0, 1)), np.array([2.7]), np.zeros((1, 1)))
+
+
+def swing(tableau, times, step, tolerance=1e-10):
+    y = np.array([2.1, 0.0, 0.0])
+    control = (tolerance, 1e-3 * tolerance, 1e-3 * tolerance, np.inf)
+    run = integrate(pendulum, DATA, tableau, 1, y, 0.0, np.asarray(times), step, control)
+    assert run.status == DONE
+    assert run.kept[-1] == pytest.approx(y, abs=0.0)
+    return run.kept
+
+
+def exact(times):
+    m = np.sin(0.5 * 2.1) ** 2
+    return 2.0 * np.arcsin(np.sqrt(m) * ellipj(ellipk(m) - 2.7 * np.asarray(times), m)[0])
+
+
+def test_a_pendulum_of_large_amplitude_swings_by_jacobis_function():
+    times = np.linspace(0.0, 7.3, 23)
+    kept = swing(DORMAND_PRINCE, times, 0.1)
+    assert kept[:, 0] == pytest.approx(exact(times), abs=3e-8)
+    assert 0.5 * kept[:, 1] ** 2 - 2.7**2 * np.cos(kept[:, 0]) == pytest.approx(-(2.7**2) * np.cos(2.1), rel=1e-7)
+    period = 4.0 * ellipk(np.sin(1.05) ** 2) / 2.7
+    action = swing(DORMAND_PRINCE, [period], 0.1)[-1, 2]
+    fine = np.linspace(0.0, period, 20_001)
+    assert action == pytest.approx(np.trapezoid(np.gradient(exact(fine), fine, edge_order=2) ** 2, fine), rel=1e-6)
+
+
+def error(tableau, step, tolerance=1e-10):
+    times = np.linspace(0.0, 3.2, 321)
+    return abs(swing(tableau, times, step, tolerance)[:, 0] - exact(times)).max()
+
+
+def test_fixed_steps_converge_with_order_four_between_steps_too():
+    errors = [error(RK4, step) for step in (0.04, 0.02, 0.01)]
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([4.0, 4.0], abs=0.3)
+
+
+def test_controlled_steps_converge_with_their_tolerance():
+    loose, tight = (error(DORMAND_PRINCE, 0.1, size) for size in (1e-5, 1e-8))
+    assert tight < 1e-6
+    assert 100.0 < loose / tight < 10_000.0
+
+
+@jit
+def advance(forces, spacing, links, loads, numbers, scratch, a, c, weights, n, y, k, clock, kept, control, counts):
+    """March in pieces from compiled code, each under its own force at the last load."""
+    samples = kept[1]
+    for piece in range(forces.size):
+        loads[loads.shape[0] - 1, rigid_links.FY] = forces[piece]
+        samples[0], counts[3] = (piece + 1) * spacing, 0
+        march(rigid_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock, samples[:1], kept,
+              control, counts, 1000)  # fmt: skip
+
+
+def test_a_march_in_pieces_from_compiled_code_is_that_of_loads_that_jump():
+    forces, spacing, n = np.array([0.7, -1.9, 0.4]), 1.3e-4, 7
+    system = build_system(STRIP, n)
+    load = LinkLoad(link=3, at=0.01, force=(0.0, 0.0))
+    state = at_rest(system)
+    for piece, force in enumerate(forces):
+        loaded = type(load)(link=3, at=0.01, force=(0.0, force))
+        changed = type(system)(**{**vars(system), "loads": (loaded,)})
+        state = simulate(changed, state, [(piece + 1) * spacing], tolerance=1e-11).state(0)
+    model = rigid_links.flatten(type(system)(**{**vars(system), "loads": (load,)}))
+    y, control, clock = np.zeros(2 * n + 2), np.array([1e-11, 1e-20, 1e-16, np.inf, 0, 0, 0]), np.array([0.0, 1e-7])
+    work = (y, np.zeros((9, y.size)), clock, np.zeros((2, y.size)), control, np.zeros(4, dtype=np.int64))
+    advance(forces, spacing, *model, *DORMAND_PRINCE, n, *work)
+    assert clock[0] == 3 * spacing
+    assert y[:n] == pytest.approx(np.cumsum(state.angles), rel=1e-8, abs=1e-9 * abs(state.angles).max())
+    assert y[n : 2 * n] == pytest.approx(np.cumsum(state.rates), rel=1e-7, abs=1e-8 * abs(state.rates).max())

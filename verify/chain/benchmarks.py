@@ -1,0 +1,260 @@
+"""Benchmark problems of the nonlinear chain, and its departure from the linear chain by axial inertia.
+
+Rigid links cannot stretch, so that bending draws the tip in and accelerates the chain's mass along x: an inertia of
+relative size (kL)^2 <theta^2>, which grows with the square of the force. Links that stretch by EA/l have part of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import ceil, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.chain.kinematics import at_rest
+from verify.chain.linearisation import linearise
+from verify.chain.motion import ChainMotion, ElasticMotion, Method, Progress, check_moved, from_rest, simulate
+from verify.chain.statics import Bent, bend
+from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, axial_stiffness, build_system, link_at
+from verify.errors import InputError
+from verify.options import Inertia, Links, Tip, Wall
+from verify.problem.beam import Beam, PointForce
+from verify.segments.chain import link_inertia
+from verify.validation import check_number, check_whole
+
+CHAINS: dict[Inertia, Links] = {"full": "rigid", "transverse": "rigid", "elastic": "stretching"}
+CANTILEVER = Beam(
+    length=1.0, width=1.2, thickness=0.01, youngs_modulus=1e7, density=1000.0, supports=("clamped", "free")
+)
+EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CANTILEVER.mass_per_length)
+"""Bending stiffness of the cantilever, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
+NODE = 1e-9
+"""Displacement over that of the free beam, F / (m omega^2), below which a place is a node but for rounding."""
+
+
+def silent(part: float) -> None:
+    """Show no progress."""
+
+
+def cantilever_tip(load: float, count: int, wall: Wall = "gregory") -> Bent:
+    """A cantilever of unit length under a dead transverse tip force, `load` = P L^2 / EI.
+
+    The reference is the elastica: K. E. Bisshopp and D. C. Drucker, Quart. Appl. Math. 3 (1945) 272.
+    """
+    return bend(CANTILEVER, count, load * EI, wall=wall)
+
+
+def rollup_gap(count: int, wall: Wall = "half", turns: float = 1.0) -> float:
+    """Distance of the ends over L of a cantilever under an end moment 2 pi EI / L times `turns`.
+
+    Equal joints, the wall's 2EI/l among them, close the circle exactly; Gregory's weights leave a gap.
+    """
+    return float(np.hypot(*bend(CANTILEVER, count, moment=2.0 * pi * turns * EI, wall=wall).tip))
+
+
+def hanging_frequency(mode: int, count: int) -> float:
+    """Omega sqrt(L / g) of uniform links hanging from a pin, without springs.
+
+    sqrt(3/2) for one link; its limit j_{0,n} / 2 (Daniel Bernoulli) is approached with order 2. Raises InputError for
+    more modes than links.
+    """
+    check_whole("segments", count, mode)
+    unit, zero = np.full(count, 1.0 / count), np.zeros(count)
+    links = {"lengths": unit, "masses": unit, "inertias": link_inertia(unit, unit)}
+    system = ChainSystem(**links, stiffness=zero, dashpots=zero, gravity=(1.0, 0.0))
+    return float(linearise(system, at_rest(system)).frequencies()[mode - 1])
+
+
+def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregory") -> float:
+    """Omega sqrt(rho A L^4 / EI) of a cantilever in the plane of its hub's rotation, `speed` in the same unit.
+
+    Lead-lag: its square is that of the flapping beam less the speed's (A. D. Wright et al., J. Appl. Mech. 49 (1982)
+    197). Order 2, by the centrifugal force. Raises InputError for more modes than links.
+    """
+    check_whole("segments", count, mode)
+    system = replace(build_system(CANTILEVER, count, wall=wall), rotation=Rotation(rate=speed * OMEGA))
+    return float(linearise(system, at_rest(system)).frequencies()[mode - 1]) / OMEGA
+
+
+def _sine_shape(beam: Beam, count: int, amplitude: float, immovable: bool) -> tuple[ChainSystem, ChainState, float]:
+    """Chain between hinges, its state at rest on amplitude sin(pi x / L), and its first linear frequency, rad/s."""
+    if beam.supports != ("pinned", "pinned"):
+        raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark is of a beam with pinned ends")
+    check_whole("segments", count, 2)
+    check_number("amplitude", amplitude / beam.length, "of the length at mid-span", above=0, at_most=0.1)
+    system = build_system(beam, count, immovable=immovable)
+    rise = np.diff(amplitude * np.sin(pi * np.arange(count + 1) / count)) / system.lengths
+    start = at_rest(system, np.diff(np.arcsin(rise), prepend=0.0))
+    return system, start, float(linearise(system, at_rest(system)).frequencies()[0])
+
+
+def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress: Progress = silent) -> float:
+    """First frequency between immovable hinges over the linear chain's, `amplitude` in radii of gyration sqrt(I/A).
+
+    The immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J. Appl. Mech. 17 (1950) 35): q'' +
+    q + a^2/4 q^3 = 0, which a chain of equal links obeys but for the square of its slopes. Raises InputError for a
+    beam that is not uniform or not between hinges, and an amplitude below 1e-6 (rounding) or above L/10.
+    """
+    piece = beam.pieces[0]
+    if not beam.uniform or piece.second_moment is None or piece.area is None:
+        raise InputError("beam: this benchmark takes a uniform beam with a shape, sizes and youngs_modulus")
+    check_number("amplitude", amplitude, "radii of gyration", at_least=1e-6)
+    height = amplitude * sqrt(piece.second_moment / piece.area)
+    system, start, linear = _sine_shape(beam, count, height, immovable=True)
+    times = np.linspace(0.0, 1.01 * pi / 2 / linear, 801)
+    motion = simulate(system, start, times, tolerance=1e-10, progress=progress)
+    check_moved(motion)
+    middle = motion.deflection([0.5 * beam.length])[:, 0]
+    k = int(np.argmax(middle <= 0.0))  # stiffer than linear: back within a quarter of the linear period
+    return pi / 2.0 / float(np.interp(0.0, [middle[k], middle[k - 1]], [times[k], times[k - 1]])) / linear
+
+
+def energy_drift(
+    beam: Beam, count: int, step: float | None = None, tolerance: float = 1e-8, progress: Progress = silent
+) -> float:
+    """Largest change of energy over the energy of an undamped roller-ended chain released from L/20 sin(pi x/L).
+
+    Over a period of the linear first mode, by RK4 where a step (s) is given, else adaptive. Raises InputError.
+    """
+    system, start, linear = _sine_shape(beam, count, 0.05 * beam.length, immovable=False)
+    times = np.linspace(0.0, 2.0 * pi / linear, 65)
+    method: Method = "rk4" if step else "adaptive"
+    motion = simulate(system, start, times, method=method, step=step, tolerance=tolerance, progress=progress)
+    check_moved(motion)
+    kinetic, elastic, _ = motion.energies()
+    return float(abs(motion.residual()).max() / (kinetic + elastic)[0])
+
+
+def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progress = silent) -> float:
+    """Largest residual of a chain's energy balance over its damping loss.
+
+    A hub that rotates and swings, an eccentric harmonic load with a moment and dashpots do work; the tip is free or a
+    roller on an axial spring.
+    """
+    check_whole("segments", count, 3)
+    force, moment, hertz = (0.2 * EI, -0.4 * EI), 0.13 * EI, 0.9 * OMEGA
+    load = LinkLoad(link=count, at=0.3 / count, force=force, moment=moment, frequency_hz=hertz, phase_deg=40.0)
+    system = replace(
+        build_system(CANTILEVER, count),
+        dashpots=np.full(count, 0.003 * count * EI / OMEGA),
+        tip=tip,
+        axial_spring=40.0 * EI if tip == "roller" else 0.0,
+        rotation=Rotation(offset=0.1, rate=0.05 * OMEGA, amplitude=0.2, frequency_hz=0.7 * OMEGA, phase_deg=20.0),
+        loads=(load,),
+    )
+    times = np.linspace(0.0, 1.0 / OMEGA, 17)
+    motion = simulate(system, at_rest(system), times, tolerance=tolerance, progress=progress)
+    check_moved(motion)
+    return float(abs(motion.residual()).max() / motion.dissipated[-1])
+
+
+def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
+    """Largest error of the surface slope of a chain in one of its modes on the piece at x, over the largest slope.
+
+    The mode is a millionth of the length high; the exact mode is the reference. Order 3, at a clamped wall 1.
+    """
+    from verify.analytic_modes import ExactModel
+    from verify.chain.ride import touched
+    from verify.segment_model import SegmentModel
+
+    check_whole("segments", count, 2)
+    system, exact = build_system(beam, count), ExactModel(beam)
+    joints = SegmentModel(beam, count).modes(mode).readings["raw"]()[mode - 1]
+    size = 1e-6 * beam.length / float(abs(joints).max())
+    pieces, edges = touched(system, size * np.diff(joints), x)
+    xi = np.linspace(0.0, 1.0, 17)
+    slope = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(pieces)) / (size * np.ptp(edges))
+    error = slope - exact.mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
+    return float(abs(error).max()) / float(abs(exact.mode_shape(mode, system.nodes, 1)).max())
+
+
+def linear_deflection(system: ChainSystem, times: Array, x: float) -> Array:
+    """Deflection at x of the linearised chain from rest, undamped, by its modes, (n,), m.
+
+    The system is straight and its loads are transverse and harmonic. Raises InputError for x off the chain.
+    """
+    from scipy.linalg import eigh
+
+    check_number("x", x, "metres, on the chain", at_least=0, at_most=system.length)
+    linear = linearise(system, at_rest(system))
+    basis = linear.independent()
+    values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
+    modes, omega = basis @ vectors, np.sqrt(np.maximum(values, 0.0))
+
+    def at(link: int, distance: float) -> Array:
+        """Modal displacements of a point of a link."""
+        arms = np.maximum(system.nodes[link - 1] + distance - system.nodes[:-1], 0.0)
+        return np.asarray(modes.T @ (arms * (np.arange(system.n_links) < link)))
+
+    turn = np.outer(times, omega)
+    integral = times[:, None] * np.sinc(turn / pi)  # sin(omega t) / omega
+    deflection, reading = np.zeros(len(times)), at(*link_at(system, x))
+    for load in system.loads:
+        drive, phase = 2.0 * pi * load.frequency_hz, np.deg2rad(load.phase_deg)
+        detuning, floor = omega**2 - drive**2, 1e-6 * drive**2
+        detuning = np.where(abs(detuning) < floor, floor, detuning)
+        share = reading * at(load.link, load.at) * load.force[1] / detuning
+        free = np.cos(phase) * np.cos(turn) - drive * np.sin(phase) * integral
+        deflection += np.cos(drive * times + phase) * share.sum() - free @ share
+    return deflection
+
+
+def transient(
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    times: Sequence[float] | Array,
+    count: int,
+    *,
+    inertia: Inertia = "full",
+    tolerance: float = 1e-9,
+    progress: Progress = silent,
+) -> ChainMotion | ElasticMotion:
+    """The chain from rest under harmonic forces; links without inertia along x ("transverse") or of axial stiffness EA.
+
+    Raises InputError for a run that diverges, and for large rotations that a second run does not confirm.
+    """
+    system = build_system(beam, count, forces, frequency_hz, axial_inertia=inertia != "transverse")
+    stiffness, links = axial_stiffness(beam, count), CHAINS[inertia]
+    return from_rest(system, links, stiffness, np.asarray(times, dtype=float), tolerance=tolerance, progress=progress)
+
+
+class Departure(NamedTuple):
+    """Deflection of a nonlinear chain less the linear one's at one place, over the rms of the latter."""
+
+    end: float
+    """At the end of the run."""
+    rms: float
+    slope: float
+    """Rms rotation of the links, rad; NaN for links that stretch."""
+
+
+def departure(
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    duration: float,
+    count: int,
+    *,
+    x: float | None = None,
+    inertia: Inertia = "full",
+    progress: Progress = silent,
+) -> Departure:
+    """Effect of axial inertia on the deflection at x (mid-span unless given) from rest. Raises InputError at a node."""
+    x = 0.5 * beam.length if x is None else x
+    times = np.linspace(0.0, duration, max(1001, ceil(40 * frequency_hz * duration) + 1))
+    system = build_system(beam, count, forces, frequency_hz)
+    linear = linear_deflection(system, times, x)
+    largest = max(abs(load.force[1]) for load in system.loads)
+    if not rms(linear) > NODE * largest / (system.masses.sum() * (2.0 * pi * frequency_hz) ** 2):
+        raise InputError(f"x = {x!r}: the beam does not move there under these forces, give another place")
+    motion = transient(beam, forces, frequency_hz, times, count, inertia=inertia, tolerance=1e-10, progress=progress)
+    gap = motion.deflection([x])[:, 0] - linear
+    slope = rms(motion.directions()) if isinstance(motion, ChainMotion) else float("nan")
+    return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear), slope)
+
+
+def rms(values: Array) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2)))

@@ -1,0 +1,97 @@
+"""Acceleration of the chain whose links stretch (EA / l), under the march of `runge_kutta`: axial inertia as of a beam.
+
+A link that stretches evenly moves linearly with the positions of its joints: the mass matrix is constant and tridiagonal,
+the same along x and y, and no joint force is unknown. Coordinates are the joints' displacements from the straight chain,
+x and y of joints 0..N, so that small stretches keep their digits.
+"""
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.chain.runge_kutta import ACCELERATION
+from verify.chain.system import ChainSystem, circular
+from verify.jit import inline, jit
+from verify.segments.chain import joint_masses
+
+LENGTH, MASS, AXIAL, SPRING, DASHPOT, FACTOR = range(6)
+"""Columns of `links`, (N + 1, 9): of link i; then of joint i, along x and y, the factor of L and the reciprocal pivot."""
+
+
+@inline(fastmath={"contract"})
+def strain(links: Array, i: int, u: Array) -> tuple[float, float, float, float]:
+    """Length, cosine, sine and stretch of a link."""
+    length, dx, dy = links[i, LENGTH], u[2 * i + 2] - u[2 * i], u[2 * i + 3] - u[2 * i + 1]
+    now = np.sqrt((length + dx) ** 2 + dy * dy)
+    return now, (length + dx) / now, dy / now, (dx * (2.0 * length + dx) + dy * dy) / (now + length)
+
+
+@inline(fastmath={"contract"})
+def twist(force: Array, i: int, now: float, c: float, s: float, moment: float) -> None:
+    """A moment on a link as forces across it at both of its joints."""
+    x, y = moment / now * s, moment / now * c
+    force[2 * i] += x
+    force[2 * i + 1] -= y
+    force[2 * i + 2] -= x
+    force[2 * i + 3] += y
+
+
+@jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath={"contract"})
+def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, gravity: Array, scratch: Array) -> None:
+    """Accelerations of joints 0..N into out[2 N + 2:], zero at bilateral supports (see `runge_kutta`)."""
+    n, size = links.shape[0] - 1, 2 * links.shape[0]
+    u, v, force = y[:size], y[size:], out[size:]
+    for j in range(size):
+        force[j] = 0.0
+    old_now, old_c, old_s, old_rate = 1.0, 1.0, 0.0, 0.0
+    for i in range(n):
+        now, c, s, stretch = strain(links, i, u)
+        rate = (c * (v[2 * i + 3] - v[2 * i + 1]) - s * (v[2 * i + 2] - v[2 * i])) / now
+        bend = np.arctan2(old_c * s - old_s * c, old_c * c + old_s * s)
+        moment = links[i, SPRING] * bend + links[i, DASHPOT] * (rate - old_rate)
+        pull, weight = links[i, AXIAL] * stretch, 0.5 * links[i, MASS]
+        force[2 * i] += pull * c + weight * gravity[0]
+        force[2 * i + 1] += pull * s + weight * gravity[1]
+        force[2 * i + 2] += weight * gravity[0] - pull * c
+        force[2 * i + 3] += weight * gravity[1] - pull * s
+        twist(force, i, now, c, s, -moment)
+        if i > 0:
+            twist(force, i - 1, old_now, old_c, old_s, moment)
+        old_now, old_c, old_s, old_rate = now, c, s, rate
+    for k in range(loads.shape[0]):
+        i, load = int(loads[k, 6]), np.cos(loads[k, 4] * t + loads[k, 5])
+        for end in range(2):
+            part = load * (loads[k, 0] if end else 1.0 - loads[k, 0])
+            force[2 * (i + end)] += part * loads[k, 1]
+            force[2 * (i + end) + 1] += part * loads[k, 2]
+        now, c, s, _ = strain(links, i, u)
+        twist(force, i, now, c, s, load * loads[k, 3])
+    for axis in range(2):
+        column = FACTOR + 2 * axis
+        for j in range(1, n + 1):
+            force[2 * j + axis] -= links[j, column] * force[2 * j - 2 + axis]
+        for j in range(n + 1):
+            force[2 * j + axis] *= links[j, column + 1]
+        for j in range(n - 1, -1, -1):
+            force[2 * j + axis] -= links[j + 1, column] * force[2 * j + 2 + axis]
+
+
+def flatten(system: ChainSystem, stiffness: Array, immovable: bool) -> tuple[Array, Array, Array, Array]:
+    """(links, loads, gravity, scratch) of a chain, the data of `accelerate`; `stiffness` is EA, N, (N,)."""
+    n, lengths = system.n_links, system.lengths
+    loads = [
+        (p.at / lengths[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
+        for p in system.loads
+    ]
+    links = np.zeros((n + 1, 9))
+    links[:-1, :FACTOR] = np.stack(
+        [lengths, system.masses, stiffness / lengths, system.stiffness, system.dashpots], axis=1
+    )
+    # L D L^T of the mass matrix: the pivot of a joint that is not free has the reciprocal 0
+    diagonal, coupling = joint_masses(system.masses, system.inertias, lengths)
+    for axis, fixed in enumerate((immovable, system.tip == "roller")):
+        reciprocal = 0.0
+        for j in range(1, n + 1):
+            factor = coupling[j - 1] * reciprocal
+            reciprocal = 0.0 if fixed and j == n else 1.0 / (diagonal[j] - factor * coupling[j - 1])
+            links[j, FACTOR + 2 * axis : FACTOR + 2 * axis + 2] = factor, reciprocal
+    return links, np.array(loads, dtype=float).reshape(len(loads), 7), np.array(system.gravity, float), np.zeros((1, 1))

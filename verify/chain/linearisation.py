@@ -1,0 +1,107 @@
+"""Small motion of the nonlinear chain about an equilibrium: matrices, natural frequencies, stability."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.chain.statics import inertia_products, potential
+from verify.chain.system import ChainState, ChainSystem
+from verify.errors import InputError
+
+FLUTTER = 1e-6
+"""Share of real and imaginary part above which a root of a rotating chain is flutter and not rounding."""
+ROUNDING = 1e-13
+"""Relative rounding of the roots of a dense eigenvalue problem."""
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """M q'' + (C + G) q' + K q = 0 with constraint q = 0, q the relative angles; N x N matrices."""
+
+    mass: Array
+    """kg m^2."""
+    damping: Array
+    """N m s."""
+    stiffness: Array
+    """N m, with the geometric stiffness of loads and of the roller's reaction."""
+    gyroscopic: Array
+    """N m s, antisymmetric; 0 unless a rotating chain is bent."""
+    constraint: Array
+    """(n, N), m: derivatives of the roller's y; n = 0 for a free tip."""
+
+    def independent(self) -> Array:
+        """Basis (N, N - n) of the admissible motions, by coordinate partitioning: the longest lever arm depends.
+
+        R. A. Wehage and E. J. Haug, J. Mech. Design 104 (1982) 247.
+        """
+        n = len(self.mass)
+        if not len(self.constraint):
+            return np.eye(n)
+        row = self.constraint[0]
+        pivot = int(abs(row).argmax())
+        return np.delete(np.eye(n) - np.outer(np.eye(n)[pivot], row / row[pivot]), pivot, axis=1)
+
+    def squares(self) -> Array:
+        """Signed squares of the undamped circular frequencies, (N - n,), ascending, 1/s^2; negative where unstable.
+
+        Squares within rounding are 0. Raises InputError where a bent rotating chain flutters.
+        """
+        from scipy.linalg import LinAlgError, eigh
+
+        basis = self.independent()
+        mass, gyroscopic, stiffness = (basis.T @ m @ basis for m in (self.mass, self.gyroscopic, self.stiffness))
+        n = len(mass)
+        if self.gyroscopic.any():
+            lower = np.linalg.solve(mass, np.hstack([-stiffness, -gyroscopic]))
+            roots = np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), lower]))
+            scale = FLUTTER * abs(roots) + ROUNDING * abs(roots).max()
+            if (np.minimum(abs(roots.real), abs(roots.imag)) > scale).any():
+                raise InputError("the equilibrium is unstable: flutter, give a smaller load or a slower rotation.rate")
+            squares = np.sort(-(roots**2).real)[::2]  # roots come in pairs of both signs
+            return np.where(abs(squares) <= ROUNDING * abs(squares).max(), 0.0, squares)
+        try:  # the inverse problem keeps the digits of low frequencies
+            return np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1])
+        except LinAlgError:  # unstable, or free to rotate as a whole
+            squares = eigh(stiffness, mass, eigvals_only=True)
+            return np.where(abs(squares) <= n * np.finfo(float).eps * abs(squares).max(), 0.0, squares)
+
+    def frequencies(self) -> Array:
+        """Undamped circular frequencies, (N - n,), ascending, rad/s. Raises InputError at an unstable equilibrium."""
+        squares = self.squares()
+        growing = squares[squares < 0.0]
+        if len(growing):
+            raise InputError(
+                f"the equilibrium is unstable: {len(growing)} modes grow (lowest omega^2 = {growing[0]:.4g} 1/s^2), "
+                "give a smaller load or another equilibrium"
+            )
+        return np.asarray(np.sqrt(squares))
+
+
+def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
+    """The chain's equations linearised about an equilibrium under its constant loads, in the frame of its hub.
+
+    About the straight chain the matrices are those of `SegmentModel`. Raises InputError for a moving state, and where
+    the chain is upright below its roller.
+    """
+    if np.any(state.rates):
+        raise InputError("state.rates: a chain is linearised about an equilibrium, give rates of zero")
+    angles = np.asarray(state.angles, dtype=float)
+    at, products = potential(system, angles), inertia_products(system)
+    if system.tip == "roller" and abs(at.closure).max() <= 1e-9 * system.length:
+        raise InputError("state.angles: the chain stands upright below its roller, give others")
+    theta = np.cumsum(angles) + system.rotation.constant
+    difference = np.subtract.outer(theta, theta)
+    transverse = products * np.outer(np.cos(theta), np.cos(theta))
+    mass = (products * np.cos(difference) if system.axial_inertia else transverse) + np.diag(system.inertias)
+    stiffness = np.diag(at.geometric + at.reaction() @ at.closure_geometric)
+    stiffness += at.full if len(at.full) else 0.0
+    sums: Any = np.tril(np.ones((system.n_links, system.n_links)))  # absolute from relative angles
+    return Linearisation(
+        mass=sums.T @ mass @ sums,
+        damping=np.diag(np.asarray(system.dashpots, dtype=float)),
+        stiffness=sums.T @ stiffness @ sums + np.diag(np.asarray(system.stiffness, dtype=float)),
+        gyroscopic=2.0 * system.rotation.rate * sums.T @ (products * np.sin(difference)) @ sums,
+        constraint=at.closure @ sums,
+    )

@@ -1,0 +1,379 @@
+"""The nonlinear chain in time: `simulate` with rigid links, `simulate_elastic` with stretching ones, `from_rest`.
+
+Links that turn far soon move chaotically: step errors grow by a factor in each of their swings, and a result with all
+digits may have none right. `from_rest` confirms such a motion by a second run, at ten times the tolerance.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.chain.kinematics import at_rest, energies, hub, place, project
+from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
+from verify.errors import InputError
+from verify.motion.result import END, INTERRUPTED, Statistics
+from verify.options import LINKS, Links
+from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
+from verify.validation import check_number, check_unmasked, check_word
+
+if TYPE_CHECKING:
+    from verify.chain.runge_kutta import Marched
+
+Method = Literal["rk4", "adaptive"]
+Progress = Callable[[float], None]
+"""Called with the completed fraction of a motion, 0 to 1."""
+FAR = 0.3
+"""Rotation of links, rad, above which a motion from rest is confirmed by a second run."""
+AGREED = 0.01
+"""Distance of two runs over the largest deflection up to which the second confirms the first."""
+
+
+class ChainStatistics(Statistics, frozen=True, kw_only=True):
+    """Cost and end of a chain's run."""
+
+    method: Method
+    rejected: int = 0
+    """Steps that the error estimate rejected."""
+    correction: float = 0.0
+    """Largest change of an angle or (times 1 s) rate that brought the start onto the roller."""
+    furthest: float
+    """Largest rotation of a link from the straight chain, rad, at the ends of steps; of stretching links at samples."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MovedChain:
+    """A chain at its times."""
+
+    system: ChainSystem
+    times: Array
+    """(n,), s; fewer than requested where the run stopped early."""
+    statistics: ChainStatistics
+
+    @property
+    def finished(self) -> bool:
+        """Whether every requested time is here."""
+        return self.statistics.finished
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChainMotion(MovedChain):
+    """Motion of a chain of rigid links, and its energy balance."""
+
+    angles: Array
+    """(n, N), relative, rad."""
+    rates: Array
+    """(n, N), rad/s."""
+    dissipated: Array
+    """(n,), J since the start."""
+    work_in: Array
+    """(n,), J, of loads and hub since the start."""
+
+    def state(self, index: int) -> ChainState:
+        """The state at one of the times."""
+        return ChainState(self.angles[index], self.rates[index], float(self.times[index]))
+
+    def energies(self) -> tuple[Array, Array, Array]:
+        """Kinetic, elastic and gravitational energy, (n,) each, J."""
+        kinetic, elastic, gravitational = energies(self.system, self.times, self.angles, self.rates)
+        return kinetic, elastic, gravitational
+
+    def residual(self) -> Array:
+        """Change of energy less work plus dissipation, (n,), J: the error of the time steps."""
+        balance = np.sum(self.energies(), axis=0) - self.work_in + self.dissipated
+        return np.asarray(balance - balance[0])
+
+    def directions(self) -> Array:
+        """Absolute angles of the links, (n, N), rad."""
+        return np.asarray(np.cumsum(self.angles, axis=1) + hub(self.system.rotation, self.times)[0][:, None])
+
+    def points(self, x: Sequence[float]) -> Array:
+        """Positions of material points at x of the straight chain, (n, len(x), 2), m, on their links."""
+        joints = place(self.system, self.times, self.angles, self.rates).joints
+        return _on_links(self.system, x, joints)
+
+    def deflection(self, x: Sequence[float]) -> Array:
+        """Deflection of material points on their links, (n, len(x)), m."""
+        return self.points(x)[..., 1]
+
+    def heights(self) -> Array:
+        """Deflection of joints 1..N, (n, N), m."""
+        return np.asarray(np.cumsum(self.system.lengths * np.sin(self.directions()), axis=1))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElasticMotion(MovedChain):
+    """Motion of a chain of stretching links."""
+
+    displacements: Array
+    """(n, N + 1, 2), m from the straight chain."""
+    velocities: Array
+    """(n, N + 1, 2), m/s."""
+    axial_stiffness: Array
+    """EA of the links, N, (N,)."""
+
+    @cached_property
+    def energies(self) -> Array:
+        """Kinetic, elastic (of links and joints) and gravitational energy together, (n,), J."""
+        system, v = self.system, self.velocities
+        diagonal, coupling = joint_masses(system.masses, system.inertias, system.lengths)
+        kinetic = 0.5 * (v**2).sum(axis=2) @ diagonal + (v[:, 1:] * v[:, :-1]).sum(axis=2) @ coupling
+        lengths, spans = system.lengths, np.diff(self.displacements, axis=1)
+        along, across = lengths + spans[..., 0], spans[..., 1]
+        squares = spans[..., 0] * (2.0 * lengths + spans[..., 0]) + across**2
+        stretches = squares / (np.hypot(along, across) + lengths)
+        bends = np.diff(np.arctan2(across, along), axis=1, prepend=0.0)
+        bends -= 2.0 * np.pi * np.round(bends / (2.0 * np.pi))
+        elastic = 0.5 * (stretches**2 @ (self.axial_stiffness / lengths) + bends**2 @ system.stiffness)
+        u = self.displacements @ np.array(system.gravity)
+        return np.asarray(kinetic + elastic - 0.5 * (u[:, 1:] + u[:, :-1]) @ system.masses)
+
+    def deflection(self, x: Sequence[float]) -> Array:
+        """Deflection of material points on their links, (n, len(x)), m."""
+        return _on_links(self.system, x, self.displacements)[..., 1]
+
+    def heights(self) -> Array:
+        """Deflection of joints 1..N, (n, N), m."""
+        return self.displacements[:, 1:, 1]
+
+
+def _on_links(system: ChainSystem, x: Sequence[float], joints: Array) -> Array:
+    """Values at joints, (n, N + 1, 2), linear on the links, at x of the straight chain, (n, len(x), 2)."""
+    columns = []
+    for position in x:
+        check_number("x", position, "metres, on the chain", at_least=0, at_most=system.length * (1.0 + 1e-12))
+        link, at = link_at(system, position)
+        share = at / system.lengths[link - 1]
+        columns.append((1.0 - share) * joints[:, link - 1] + share * joints[:, link])
+    return np.stack(columns, axis=1)
+
+
+def highest_frequency(system: ChainSystem) -> tuple[float, float]:
+    """(largest circular frequency of the straight chain at rest, rad/s, largest damping coefficient c / m, 1/s)."""
+    from scipy.linalg import eigh
+    from scipy.sparse import diags_array
+    from scipy.sparse.linalg import eigsh
+
+    chain = straight_chain(system)
+    differences, scale, angles = plain_factors(chain)
+    bends, mass = angles @ scale @ differences, link_mass(Motions(chain))
+
+    def largest(coefficients: Array) -> float:
+        if not coefficients.any():
+            return 0.0
+        matrix = bends.T @ diags_array(coefficients[system.n_links - bends.shape[0] :]) @ bends
+        if mass.shape[0] <= 8:
+            return float(eigh(matrix.toarray(), mass.toarray(), eigvals_only=True)[-1])
+        start = np.random.default_rng(49).standard_normal(mass.shape[0])
+        return float(eigsh(matrix.tocsc(), 1, mass, which="LM", v0=start, tol=1e-6, return_eigenvectors=False)[0])
+
+    return float(np.sqrt(largest(system.stiffness))), largest(system.dashpots)
+
+
+def step_limit(system: ChainSystem) -> float:
+    """The longest stable step of RK4 about the straight chain at rest, s; infinite without springs.
+
+    2 sqrt(2) over the highest circular frequency; with dashpots 2.785 over the fastest root, the least radius of the
+    stability region.
+    """
+    omega, damping = highest_frequency(system)
+    fastest = max(omega, 0.5 * damping + np.sqrt(max(0.25 * damping**2 - omega**2, 0.0)))
+    return float((2.785 if damping else 2.0 * np.sqrt(2.0)) / fastest) if fastest else float("inf")
+
+
+def elastic_step_limit(system: ChainSystem, axial_stiffness: float | Array) -> float:
+    """A stable step of RK4 of stretching links, s: 2 sqrt(2) over a bound on the highest circular frequency.
+
+    No frequency of the chain exceeds the highest of any link by itself (B. M. Irons and G. Treharne): sqrt(EA l / J)
+    in stretching, sqrt(2 (k_i + k_j) / J) in bending.
+    """
+    springs = system.stiffness + np.append(system.stiffness[1:], 0.0)
+    fastest = np.maximum(axial_stiffness * system.lengths, 2.0 * springs) / system.inertias
+    return float(2.0 * np.sqrt(2.0 / fastest.max()))
+
+
+def simulate(
+    system: ChainSystem,
+    start: ChainState,
+    times: Sequence[float] | Array,
+    *,
+    method: Method = "adaptive",
+    step: float | None = None,
+    tolerance: float = 1e-8,
+    progress: Progress = lambda part: None,
+) -> ChainMotion:
+    """The motion from `start`, at `times` (ascending, from start.time on), of which the last is a step's exact end.
+
+    "rk4" takes a fixed `step`, at most `step_limit`; "adaptive" is Dormand and Prince's pair of orders 5 and 4, its
+    error per step at most `tolerance` of the largest motion so far. A start off the roller is projected. An interrupt
+    returns the states so far. Raises InputError.
+    """
+    began = perf_counter()
+    check_word("method", method, get_args(Method))
+    if (method == "rk4") != (step is not None):
+        raise InputError(f"step = {step!r}: give a step in seconds with method = 'rk4', and none with 'adaptive'")
+    check_number("tolerance", tolerance, "relative", above=0, below=0.1)
+    check_unmasked("times", times, "seconds")
+    samples = np.atleast_1d(np.asarray(times, dtype=float))
+    if not samples.size or not np.isfinite(samples).all() or (np.diff(samples) <= 0).any() or samples[0] < start.time:
+        raise InputError(f"times: give ascending finite times from {start.time!r} s on")
+    state, correction = project(system, start)
+    if step is not None:
+        limit = step_limit(system)
+        check_number("step", step, "seconds", above=0)
+        if step > limit:
+            raise InputError(
+                f"step = {step!r} s lies above the stability limit {limit:.4g} s of rk4 on this chain: "
+                "give a smaller step, fewer segments or method = 'adaptive'"
+            )
+    from verify.chain import rigid_links
+    from verify.chain.runge_kutta import DORMAND_PRINCE, RK4, integrate
+
+    n, fastest = system.n_links, 0.0 if step else highest_frequency(system)[0]
+    first = step or min(0.1 / max(fastest, 1e-12), max(float(samples[-1]) - start.time, 1e-12))
+    floor = 1e-3 * tolerance**1.5
+    control = (tolerance, floor, floor * max(fastest, 1.0), np.pi if step else np.inf)
+    model, y, ready = rigid_links.flatten(system), rigid_links.absolute(system, state), perf_counter()
+    table = RK4 if step else DORMAND_PRINCE
+    run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
+    reached = samples[: len(run.kept)]
+    (angle, rate), rows = hub(system.rotation, reached), run.kept
+    return ChainMotion(
+        system=system,
+        times=reached,
+        angles=np.diff(rows[:, :n], prepend=angle[:, None]),
+        rates=np.diff(rows[:, n : 2 * n], prepend=rate[:, None]),
+        dissipated=rows[:, 2 * n],
+        work_in=rows[:, 2 * n + 1],
+        statistics=_statistics(method, run, run.furthest, (ready - began, perf_counter() - ready), correction),
+    )
+
+
+def simulate_elastic(
+    system: ChainSystem,
+    axial_stiffness: float | Array,
+    times: Sequence[float] | Array,
+    *,
+    step: float | None = None,
+    immovable: bool = False,
+    deflected: Array | None = None,
+) -> ElasticMotion:
+    """The motion of stretching links from rest, straight or from joint deflections (N + 1,), at even `times` from 0.
+
+    `axial_stiffness` is EA in newton, of all links or of each (N,); `step` of RK4 is at most `elastic_step_limit`, half
+    of it unless given, shortened to divide the spacing of the times; `immovable` fixes the tip along x too. Raises
+    InputError, also for a rotating hub, an axial spring and links without inertia along x.
+    """
+    began = perf_counter()
+    stiffness = np.asarray(axial_stiffness, dtype=float)
+    if stiffness.shape not in ((), (system.n_links,)):
+        raise InputError(
+            f"axial_stiffness has the shape {stiffness.shape}: give one value or one for each of {system.n_links} links"
+        )
+    for value in np.atleast_1d(stiffness).tolist():
+        check_number("axial_stiffness", value, "newton", above=0)
+    turned = system.rotation.rate or system.rotation.amplitude or system.rotation.offset
+    if turned or system.axial_spring or not system.axial_inertia:
+        raise InputError(
+            "chain: stretching links take no rotation, no axial_spring (give immovable = True) and no axial_inertia = "
+            "False"
+        )
+    check_unmasked("times", times, "seconds")
+    samples = np.asarray(times, dtype=float)
+    if samples.ndim != 1 or len(samples) < 2 or samples[0] != 0.0 or np.ptp(np.diff(samples)) > 1e-9 * samples[1]:
+        raise InputError("times: give two or more, evenly spaced, from 0")
+    limit = elastic_step_limit(system, stiffness)
+    step = 0.5 * limit if step is None else step
+    check_number("step", step, "seconds", above=0, at_most=limit)
+    from verify.chain import elastic_links
+    from verify.chain.runge_kutta import RK4, integrate
+
+    size, stiffness = 2 * system.n_links + 2, np.broadcast_to(stiffness, system.n_links)
+    model, y = elastic_links.flatten(system, stiffness, immovable), np.zeros(2 * size)
+    y[1:size:2] = 0.0 if deflected is None else deflected
+    spacing, ready = float(samples[1]), perf_counter()
+    step = spacing / np.ceil(spacing / step - 1e-9)
+    run = integrate(elastic_links.accelerate, model, RK4, size, y, 0.0, samples, step, (0.0, 0.0, 0.0, np.inf))
+    places, speeds = (run.kept[:, part].reshape(-1, system.n_links + 1, 2) for part in (slice(size), slice(size, None)))
+    spans = np.diff(places, axis=1)
+    furthest = float(abs(np.arctan2(spans[..., 1], system.lengths + spans[..., 0])).max())
+    return ElasticMotion(
+        system=system,
+        times=samples[: len(places)],
+        displacements=places,
+        velocities=speeds,
+        axial_stiffness=stiffness,
+        statistics=_statistics("rk4", run, furthest, (ready - began, perf_counter() - ready)),
+    )
+
+
+def _statistics(
+    method: Method, run: "Marched", furthest: float, took: tuple[float, float], correction: float = 0.0
+) -> ChainStatistics:
+    """Cost and end of a run; `took` are the seconds before and in it."""
+    steps, rejected, evaluations, _ = (int(count) for count in run.counts)
+    reasons = (f"{INTERRUPTED} at", "", "diverged at", "the step became too small at")
+    return ChainStatistics(
+        method=method,
+        steps=steps,
+        rejected=rejected,
+        evaluations=evaluations,
+        step_s=run.step,
+        set_up_s=took[0],
+        wall_s=took[1],
+        stopped=END if run.status == 1 else f"{reasons[run.status]} t = {run.time:.6g} s",
+        correction=correction,
+        furthest=furthest,
+    )
+
+
+def check_moved(moved: ChainMotion | ElasticMotion) -> None:
+    """Raise InputError for a motion that did not reach its end, KeyboardInterrupt for one that was interrupted."""
+    if moved.statistics.interrupted:
+        raise KeyboardInterrupt
+    if not moved.finished:
+        raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces or a smaller step")
+
+
+def from_rest(
+    system: ChainSystem,
+    links: Links,
+    axial_stiffness: Array,
+    times: Array,
+    *,
+    tolerance: float,
+    progress: Progress = lambda part: None,
+) -> ChainMotion | ElasticMotion:
+    """The motion from rest at `times`, (n,), s: rigid links with `tolerance`, or those of `axial_stiffness`, N, (N,).
+
+    Where links turn by more than `FAR` a run at ten times the tolerance (half the step) confirms it to `AGREED` of the
+    largest deflection. Raises InputError for a run that diverges and one that is not confirmed.
+    """
+    check_word("links", links, LINKS)
+
+    def run(size: float | None) -> ChainMotion | ElasticMotion:
+        if links == "stretching":
+            return simulate_elastic(system, axial_stiffness, times, step=size)
+        return simulate(system, at_rest(system), times, tolerance=size or tolerance, progress=progress)
+
+    motion = run(None)
+    check_moved(motion)
+    if motion.statistics.furthest > FAR:
+        coarser = 0.1 * tolerance if tolerance > 1e-3 else 10.0 * tolerance
+        name, other = ("step", 0.5 * motion.statistics.step_s) if links == "stretching" else ("tolerance", coarser)
+        second: Any = run(other)
+        heights, others = motion.heights(), second.heights()
+        largest = np.maximum.accumulate(abs(heights).max(axis=1))[: len(others)]
+        apart = ~(abs(heights[: len(others)] - others).max(axis=1) <= AGREED * largest)
+        if apart.any() or len(others) < len(heights):
+            last = motion.times[int(np.argmax(apart)) if apart.any() else len(others)]
+            raise InputError(
+                f"{name} does not converge after {last:.4g} s, where links turn by up to "
+                f"{motion.statistics.furthest:.2g} rad: a run with {name} = {other:g} departs from it; give a shorter "
+                "time or smaller forces"
+            )
+    return motion
