@@ -1,8 +1,8 @@
-"""Acceleration of the chain whose links stretch (EA / l), under the march of `runge_kutta`: axial inertia as of a beam.
+"""Acceleration of the chain whose links stretch (EA / l), under the march of `runge_kutta`: a beam's axial inertia.
 
-A link that stretches evenly moves linearly with the positions of its joints: the mass matrix is constant and tridiagonal,
-the same along x and y, and no joint force is unknown. Coordinates are the joints' displacements from the straight chain,
-x and y of joints 0..N, so that small stretches keep their digits.
+A link that stretches evenly moves linearly with its joints: the mass matrix is constant, tridiagonal and the same along
+x and y, and no joint force is unknown. Coordinates are the displacements of joints 0..N from the straight chain, x and
+y in turn, so that small stretches keep their digits.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from verify.jit import inline, jit
 from verify.segments.chain import joint_masses
 
 LENGTH, MASS, AXIAL, SPRING, DASHPOT, FACTOR = range(6)
-"""Columns of `links`, (N + 1, 9): of link i; then of joint i, along x and y, the factor of L and the reciprocal pivot."""
+"""Columns of `links`, (N + 1, 9): of link i; then of joint i the factor of L and the reciprocal pivot, for x and y."""
 
 
 @inline(fastmath={"contract"})

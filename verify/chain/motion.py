@@ -4,6 +4,7 @@ Links that turn far soon move chaotically: step errors grow by a factor in each 
 digits may have none right. `from_rest` confirms such a motion by a second run, at ten times the tolerance.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -46,8 +47,8 @@ class ChainStatistics(Statistics, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MovedChain:
-    """A chain at its times."""
+class MovedChain(ABC):
+    """Motion of a chain at its times."""
 
     system: ChainSystem
     times: Array
@@ -58,6 +59,28 @@ class MovedChain:
     def finished(self) -> bool:
         """Whether every requested time is here."""
         return self.statistics.finished
+
+    @abstractmethod
+    def joints(self) -> Array:
+        """Joints 0..N, (n, N + 1, 2), m: positions of rigid links, displacements of stretching ones."""
+
+    def heights(self) -> Array:
+        """Deflection of joints 1..N, (n, N), m."""
+        return self.joints()[:, 1:, 1]
+
+    def points(self, x: Sequence[float]) -> Array:
+        """Material points at x of the straight chain, on their links, (n, len(x), 2), m; see `joints`."""
+        columns, joints = [], self.joints()
+        for position in x:
+            check_number("x", position, "metres, on the chain", at_least=0, at_most=self.system.length * (1.0 + 1e-12))
+            link, at = link_at(self.system, position)
+            share = at / self.system.lengths[link - 1]
+            columns.append((1.0 - share) * joints[:, link - 1] + share * joints[:, link])
+        return np.stack(columns, axis=1)
+
+    def deflection(self, x: Sequence[float]) -> Array:
+        """Deflection of material points on their links, (n, len(x)), m."""
+        return self.points(x)[..., 1]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,18 +114,9 @@ class ChainMotion(MovedChain):
         """Absolute angles of the links, (n, N), rad."""
         return np.asarray(np.cumsum(self.angles, axis=1) + hub(self.system.rotation, self.times)[0][:, None])
 
-    def points(self, x: Sequence[float]) -> Array:
-        """Positions of material points at x of the straight chain, (n, len(x), 2), m, on their links."""
-        joints = place(self.system, self.times, self.angles, self.rates).joints
-        return _on_links(self.system, x, joints)
-
-    def deflection(self, x: Sequence[float]) -> Array:
-        """Deflection of material points on their links, (n, len(x)), m."""
-        return self.points(x)[..., 1]
-
-    def heights(self) -> Array:
-        """Deflection of joints 1..N, (n, N), m."""
-        return np.asarray(np.cumsum(self.system.lengths * np.sin(self.directions()), axis=1))
+    def joints(self) -> Array:
+        """Positions of joints 0..N, (n, N + 1, 2), m."""
+        return place(self.system, self.times, self.angles, self.rates).joints
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -132,24 +146,9 @@ class ElasticMotion(MovedChain):
         u = self.displacements @ np.array(system.gravity)
         return np.asarray(kinetic + elastic - 0.5 * (u[:, 1:] + u[:, :-1]) @ system.masses)
 
-    def deflection(self, x: Sequence[float]) -> Array:
-        """Deflection of material points on their links, (n, len(x)), m."""
-        return _on_links(self.system, x, self.displacements)[..., 1]
-
-    def heights(self) -> Array:
-        """Deflection of joints 1..N, (n, N), m."""
-        return self.displacements[:, 1:, 1]
-
-
-def _on_links(system: ChainSystem, x: Sequence[float], joints: Array) -> Array:
-    """Values at joints, (n, N + 1, 2), linear on the links, at x of the straight chain, (n, len(x), 2)."""
-    columns = []
-    for position in x:
-        check_number("x", position, "metres, on the chain", at_least=0, at_most=system.length * (1.0 + 1e-12))
-        link, at = link_at(system, position)
-        share = at / system.lengths[link - 1]
-        columns.append((1.0 - share) * joints[:, link - 1] + share * joints[:, link])
-    return np.stack(columns, axis=1)
+    def joints(self) -> Array:
+        """Displacements of joints 0..N, (n, N + 1, 2), m."""
+        return self.displacements
 
 
 def highest_frequency(system: ChainSystem) -> tuple[float, float]:
@@ -237,7 +236,8 @@ def simulate(
     first = step or min(0.1 / max(fastest, 1e-12), max(float(samples[-1]) - start.time, 1e-12))
     floor = 1e-3 * tolerance**1.5
     control = (tolerance, floor, floor * max(fastest, 1.0), np.pi if step else np.inf)
-    model, y, ready = rigid_links.flatten(system), rigid_links.absolute(system, state), perf_counter()
+    model = rigid_links.flatten(system)
+    y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
     run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
     reached = samples[: len(run.kept)]

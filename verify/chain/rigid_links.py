@@ -1,12 +1,12 @@
-"""Acceleration of the planar chain of rigid links in O(N), absolute angles: articulated bodies, and a rolling tip.
+"""Acceleration of the planar chain of rigid links in O(N): absolute angles, articulated bodies, a rolling tip.
 
-State: absolute angles, their rates, energy lost in dashpots, work of loads and hub. Link i has the direction
-e = (cos, sin) and the normal t = (-sin, cos). From the tip towards the base the chain beyond a joint that accelerates by
-a needs the force B a + beta there, B a symmetric 2 x 2 mass: one link adds itself by a rank-one update (R. Featherstone,
-Rigid Body Dynamics Algorithms, 2008, chapter 7, here in the frame of the base); from the base on follow the angular
-accelerations. The roller's force is that which cancels the tip's acceleration across, by the response to a unit force
-there. Its closure y_N = 0 is one dependent joint angle, that with the longest lever arm: all links beyond turn with it
-(R. A. Wehage and E. J. Haug, J. Mech. Design 104 (1982) 247, the paper's ref. 6).
+State: absolute angles, their rates, energy lost in dashpots, work of loads and hub. A link has the direction (cos, sin)
+and the normal t = (-sin, cos). A joint with the acceleration a takes the force B a + beta from the chain beyond it, B a
+symmetric 2 x 2 mass; from the tip towards the base every link adds itself by a rank-one update, and from the base on
+follow the angular accelerations (R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7, in the frame of the
+base). The roller's force cancels the tip's acceleration across, by the response to a unit force there. The closure
+y_N = 0 is met in every stage by one dependent joint angle, that with the longest lever arm: the links beyond turn as
+one (R. A. Wehage and E. J. Haug, J. Mech. Design 104 (1982) 247, the paper's ref. 6).
 """
 
 from collections.abc import Sequence
@@ -14,40 +14,40 @@ from collections.abc import Sequence
 import numpy as np
 
 from verify.arrays import Array
-from verify.chain.kinematics import hub
+from verify.chain.kinematics import place
 from verify.chain.runge_kutta import ACCELERATION
 from verify.chain.system import ChainState, ChainSystem, circular
 from verify.jit import FAST, inline, jit
 
-HALF, MASS_X, MASS_Y, INERTIA, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y = range(8)
-"""Columns of `links`, (N, 8): half length, mass that resists along x and y, inertia, joint, weight."""
+HALF, MASS_X, MASS_Y, INERTIA, SKEW, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y = range(9)
+"""Columns of `links`, (N, 9): half length, mass that resists along x and y, inertia J + h^2 m_y about an end, (m_x -
+m_y)/4, joint, weight."""
 ARM, FX, FY, MOMENT, OMEGA, PHASE, LINK = range(7)
 """Columns of `loads`, (n_loads, 7): a load on link 0..N-1, its arm from the middle; times cos(omega t + phase)."""
 OFFSET, RATE, SWING, SWING_OMEGA, SWING_PHASE, ROLLER, TIP_SPRING, PIVOT, LENGTH = range(9)
 """Entries of `numbers`: rotation of the hub, roller, axial spring there, dependent joint; length."""
-COS, SIN, TORQUE, FORCE_X, FORCE_Y, INWARD, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(12)
-"""Columns of `scratch`, (N + 1, 12); `UNIT` ends as the accelerations per force of the roller, the last the tip's."""
+COS, SIN, TORQUE, FORCE_X, FORCE_Y, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(11)
+"""Columns of `scratch`, (N + 1, 11); `UNIT` ends as accelerations per force of the roller, the last the tip's."""
+TINY = 1e-250
+"""Forces below this are zero: they fall by 0.27 a link, and subnormal numbers take a hundred times as long."""
 SHORT_ARM = 0.1
-"""A dependent joint is exchanged where its lever arm falls below this part of the chain."""
+"""A dependent joint is exchanged, for the next stage, where its lever arm falls below this part of the chain."""
+Tip = tuple[float, float, float, float, float, float]
 
 
 @inline(fastmath=FAST)
-def place(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -> tuple[float, float, float, float, float, float]:
-    """Cosines and sines; the tip's y and its rate due to links before `pivot`, x, y, and their rates due to the others.
-
-    Below 0.5 rad by their series, at a third of the time.
-    """
+def directions(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -> Tip:
+    """Cosines and sines of links; the tip's y and its rate due to links before `pivot`, x, y, their rates beyond."""
     n, largest = theta.size, 0.0
     for i in range(n):
         largest = max(largest, abs(theta[i]))
-    small, x, y, vx, vy, rise, climb = largest <= 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    small, x, y, vx, vy, rise, climb = largest <= 0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(n):
-        if small:
+        if small:  # series to rounding, at a third of the time
             z = theta[i] * theta[i]
-            p = 1 / 40320 - z * (1 / 3628800 - z * (1 / 479001600 - z / 87178291200))
-            q = 1 / 362880 - z * (1 / 39916800 - z * (1 / 6227020800 - z / 1307674368000))
-            c = 1.0 - z * (0.5 - z * (1 / 24 - z * (1 / 720 - z * p)))
-            s = theta[i] * (1.0 - z * (1 / 6 - z * (1 / 120 - z * (1 / 5040 - z * q))))
+            p = 1 / 720 - z * (1 / 40320 - z * (1 / 3628800 - z / 479001600))
+            q = 1 / 5040 - z * (1 / 362880 - z * (1 / 39916800 - z / 6227020800))
+            c, s = 1.0 - z * (0.5 - z * (1 / 24 - z * p)), theta[i] * (1.0 - z * (1 / 6 - z * (1 / 120 - z * q)))
         else:
             c, s = np.cos(theta[i]), np.sin(theta[i])
         w[i, COS], w[i, SIN] = c, s
@@ -59,87 +59,86 @@ def place(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -> tup
     return rise, climb, x, y, vx, vy
 
 
-@inline(fastmath=FAST)
-def close(theta: Array, omega: Array, links: Array, numbers: Array, w: Array) -> tuple[float, float]:
-    """Turn of the links beyond the dependent joint, and change of their rates, by which the tip stays on y = 0."""
-    rise, climb, x, y, vx, vy = place(theta, omega, links, int(numbers[PIVOT]), w)
+@inline(fastmath={"contract"})
+def close(tip: Tip, links: Array, numbers: Array, w: Array) -> tuple[float, float, float, float]:
+    """Rotation of the links beyond the dependent joint that closes the chain, change of their rate, cosine and sine."""
+    if not numbers[ROLLER] > 0.0:
+        return 0.0, 0.0, 1.0, 0.0
+    rise, climb, x, y, vx, vy = tip
     if abs(x) < SHORT_ARM * numbers[LENGTH]:
         arm, longest = 0.0, 0.0
-        for i in range(theta.size - 1, -1, -1):
+        for i in range(links.shape[0] - 1, -1, -1):
             arm += 2.0 * links[i, HALF] * w[i, COS]
             if abs(arm) > longest:
                 longest, numbers[PIVOT] = abs(arm), i
-        rise, climb, x, y, vx, vy = place(theta, omega, links, int(numbers[PIVOT]), w)
-    angle = np.arcsin(-rise / np.sqrt(x * x + y * y))
-    turn = (angle if x > 0.0 else np.pi - angle) - np.arctan2(y, x)
-    turn -= 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
-    c, s = np.cos(turn), np.sin(turn)
-    return turn, -(climb + c * vy + s * vx) / (c * x - s * y)
+    # the links beyond end at -rise from the dependent joint, on the side where they are
+    square, along = x * x + y * y, np.copysign(np.sqrt(x * x + y * y - rise * rise), x)
+    c, s = (along * x - rise * y) / square, -(rise * x + along * y) / square
+    turn = s * (1.0 + s * s / 6.0) if abs(s) < 1e-3 else np.arctan2(s, c)
+    return turn, -(climb + c * vy + s * vx) / along, c, s
 
 
 @inline(fastmath={"contract"})
 def from_tip(links: Array, pull: float, w: Array, out: Array) -> None:
-    """Gains, free and unit terms of all links from directions, torques, forces and inward accelerations in `w`.
-
-    `pull` is a force along x at the tip.
-    """
+    """Gains, free and unit terms of the links from directions, torques and forces in `w`, and a force at the tip."""
     b11, b12, b22, f1, f2, r1, r2 = 0.0, 0.0, 0.0, -pull, 0.0, 0.0, -1.0
     for i in range(links.shape[0] - 1, -1, -1):
-        c, s, h, mx, my, u = w[i, COS], w[i, SIN], links[i, HALF], links[i, MASS_X], links[i, MASS_Y], w[i, INWARD]
-        hs, hc = 2.0 * h * s, 2.0 * h * c
+        hs, hc = 2.0 * links[i, HALF] * w[i, SIN], 2.0 * links[i, HALF] * w[i, COS]
+        mx, my, p1, p2, ss = links[i, MASS_X], links[i, MASS_Y], w[i, FORCE_X], w[i, FORCE_Y], hs * hs
         # the recursion is as long as its latency: three fused products, a division, another product
-        own = links[i, INERTIA] + 0.25 * (mx * hs * hs + my * hc * hc)
-        g = 1.0 / (own + b11 * (hs * hs) - b12 * (2.0 * hs * hc) + b22 * (hc * hc))
-        u1, u2 = b12 * hc - b11 * hs - 0.5 * mx * hs, b22 * hc - b12 * hs + 0.5 * my * hc
-        # bias at the far joint, and forces with those of inertia, by the inward acceleration
-        f1, f2 = f1 - 2.0 * u * (b11 * c + b12 * s), f2 - 2.0 * u * (b12 * c + b22 * s)
-        p1, p2 = w[i, FORCE_X] + u * mx * c, w[i, FORCE_Y] + u * my * s
+        own = links[i, INERTIA] + links[i, SKEW] * ss
+        g = 1.0 / ((own + b11 * ss) + (b22 * (hc * hc) - b12 * (2.0 * hs * hc)))
+        u1, u2 = b12 * hc - (b11 + 0.5 * mx) * hs, (b22 + 0.5 * my) * hc - b12 * hs
         free = g * (w[i, TORQUE] + hc * (0.5 * p2 - f2) - hs * (0.5 * p1 - f1))
         unit = g * (hs * r1 - hc * r2)
         w[i, GAIN_X], w[i, GAIN_Y], w[i, MOBILITY], w[i, UNIT], out[i] = g * u1, g * u2, g, unit, free
         b11, b12, b22 = b11 + mx - g * (u1 * u1), b12 - g * (u1 * u2), b22 + my - g * (u2 * u2)
         f1, f2, r1, r2 = f1 - p1 + u1 * free, f2 - p2 + u2 * free, r1 + u1 * unit, r2 + u2 * unit
+        if i & 63 == 0:
+            r1, r2 = (0.0, 0.0) if abs(r1) + abs(r2) < TINY else (r1, r2)
+            f1, f2 = (0.0, 0.0) if abs(f1) + abs(f2) < TINY else (f1, f2)
 
 
 @inline(fastmath={"contract"})
-def from_base(links: Array, roller: bool, w: Array, out: Array) -> None:
-    """Angular accelerations, (N,), from the terms of `from_tip`; those per unit force at the tip remain in `w`."""
+def from_base(links: Array, roller: bool, drift: float, w: Array, out: Array) -> None:
+    """Angular accelerations, (N,), from the terms of `from_tip`; those per unit force at the tip remain in `w`.
+
+    `drift` is the tip's acceleration across by the present rates.
+    """
     a1, a2, r1, r2 = 0.0, 0.0, 0.0, 0.0
     n = out.size
     for i in range(n):
-        c, s, length, inward = w[i, COS], w[i, SIN], 2.0 * links[i, HALF], 2.0 * w[i, INWARD]
+        hs, hc = 2.0 * links[i, HALF] * w[i, SIN], 2.0 * links[i, HALF] * w[i, COS]
         free = out[i] - w[i, GAIN_X] * a1 - w[i, GAIN_Y] * a2
         unit = w[i, UNIT] - w[i, GAIN_X] * r1 - w[i, GAIN_Y] * r2
         out[i], w[i, UNIT] = free, unit
-        a1, a2 = a1 - inward * c - free * (length * s), a2 - inward * s + free * (length * c)
-        r1, r2 = r1 - unit * (length * s), r2 + unit * (length * c)
+        a1, a2, r1, r2 = a1 - free * hs, a2 + free * hc, r1 - unit * hs, r2 + unit * hc
     if roller:
-        w[n, UNIT] = r2
+        w[n, UNIT], force = r2, (a2 + drift) / r2
         for i in range(n):
-            out[i] -= a2 / r2 * w[i, UNIT]
+            out[i] -= force * w[i, UNIT]
 
 
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath=FAST)
 def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbers: Array, w: Array) -> None:
-    """Derivatives of rates, dissipation and work into out[N:], after the closure of a rolling tip (see `runge_kutta`)."""
+    """Derivatives of rates, dissipation and work into out[N:], after the closure of a rolling tip."""
     n = links.shape[0]
-    theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, 0
-    turn, change = 0.0, 0.0
-    if roller:
-        turn, change = close(theta, omega, links, numbers, w)
-        pivot = int(numbers[PIVOT])
-    else:
-        place(theta, omega, links, n, w)
-    cos_turn, sin_turn = np.cos(turn), np.sin(turn)
-    phase = numbers[SWING_OMEGA] * t + numbers[SWING_PHASE]
-    angle = numbers[OFFSET] + numbers[RATE] * t + numbers[SWING] * np.sin(phase)
-    rate = numbers[RATE] + numbers[SWING] * numbers[SWING_OMEGA] * np.cos(phase)
-    lost, power, vx, vy, moment, pull = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, int(numbers[PIVOT])
+    turn, change, cos_turn, sin_turn = close(directions(theta, omega, links, pivot, w), links, numbers, w)
+    angle, rate = numbers[OFFSET] + numbers[RATE] * t, numbers[RATE]
+    if numbers[SWING] != 0.0:
+        phase = numbers[SWING_OMEGA] * t + numbers[SWING_PHASE]
+        angle, rate = (
+            angle + numbers[SWING] * np.sin(phase),
+            rate + numbers[SWING] * numbers[SWING_OMEGA] * np.cos(phase),
+        )
+    lost, vx, vy, ax, ay, moment, pull = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     power = -rate * (links[0, SPRING] * (theta[0] - angle) + links[0, DASHPOT] * (omega[0] - rate))
     for i in range(n):
+        c, s = w[i, COS], w[i, SIN]
         if i >= pivot:
-            c, s = w[i, COS], w[i, SIN]
-            w[i, COS], w[i, SIN] = cos_turn * c - sin_turn * s, sin_turn * c + cos_turn * s
+            c, s = cos_turn * c - sin_turn * s, sin_turn * c + cos_turn * s
+            w[i, COS], w[i, SIN] = c, s
             theta[i] += turn
             omega[i] += change
         turning = omega[i] - rate
@@ -147,10 +146,13 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
         lost += links[i, DASHPOT] * turning * turning
         w[i - 1, TORQUE] = moment - after
         angle, rate, moment = theta[i], omega[i], after
+        # velocity of the near joint, and forces of inertia by the accelerations that belong to the rates
         swing = links[i, HALF] * rate
-        w[i, FORCE_X], w[i, FORCE_Y], w[i, INWARD] = links[i, WEIGHT_X], links[i, WEIGHT_Y], swing * rate
+        along, across = swing * rate * c, swing * rate * s
         w[i, VX], w[i, VY] = vx, vy
-        vx, vy = vx - 2.0 * swing * w[i, SIN], vy + 2.0 * swing * w[i, COS]
+        w[i, FORCE_X] = links[i, WEIGHT_X] - links[i, MASS_X] * (ax - along)
+        w[i, FORCE_Y] = links[i, WEIGHT_Y] - links[i, MASS_Y] * (ay - across)
+        vx, vy, ax, ay = vx - 2.0 * swing * s, vy + 2.0 * swing * c, ax - 2.0 * along, ay - 2.0 * across
     w[n - 1, TORQUE] = moment
     for k in range(loads.shape[0]):
         i, now = int(loads[k, LINK]), np.cos(loads[k, OMEGA] * t + loads[k, PHASE])
@@ -165,7 +167,7 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
             c, s = w[i, COS], w[i, SIN]
             pull += numbers[TIP_SPRING] * 2.0 * links[i, HALF] * (s * s / (1.0 + c) if c > 0.0 else 1.0 - c)
     from_tip(links, pull, w, out[n : 2 * n])
-    from_base(links, roller, w, out[n : 2 * n])
+    from_base(links, roller, ay, w, out[n : 2 * n])
     out[2 * n], out[2 * n + 1] = lost, power
 
 
@@ -203,11 +205,16 @@ def point_acceleration(link: int, arm: float, alpha: Array, links: Array, w: Arr
     return x, y
 
 
-def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
-    """(links, loads, numbers, scratch) of a chain, the data of `accelerate`."""
+def flatten(system: ChainSystem, spare: int = 0) -> tuple[Array, Array, Array, Array]:
+    """(links, loads, numbers, scratch) of a chain, the data of `accelerate`; `spare` rows of loads stay empty.
+
+    A spare row (arm, F_x, F_y, 0, 0, 0, link from 0) is a force that is constant over a piece of a march.
+    """
     half, turn, masses, n = system.lengths / 2.0, system.rotation, system.masses, system.n_links
     weights = [component * masses for component in system.gravity]
-    own = [half, masses * system.axial_inertia, masses, system.inertias, system.stiffness, system.dashpots, *weights]
+    along = masses * system.axial_inertia
+    inertia = [system.inertias + half**2 * masses, 0.25 * (along - masses)]
+    own = [half, along, masses, *inertia, system.stiffness, system.dashpots, *weights]
     loads = [
         (p.at - half[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
         for p in system.loads
@@ -216,23 +223,25 @@ def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
     numbers = (turn.offset, turn.rate, *swing, system.tip == "roller", system.axial_spring, 0.0, system.length)
     return (
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
-        np.array(loads, dtype=float).reshape(len(loads), 7),
+        np.concatenate([np.array(loads, dtype=float).reshape(len(loads), 7), np.zeros((spare, 7))]),
         np.array(numbers, dtype=float),
         np.zeros((n + 1, UNIT + 1)),
     )
 
 
-def absolute(system: ChainSystem, state: ChainState) -> Array:
-    """The march's state, (2 N + 2,), of relative angles and rates."""
-    angle, rate = hub(system.rotation, state.time)
-    return np.concatenate([angle + np.cumsum(state.angles), rate + np.cumsum(state.rates), [0.0, 0.0]])
+def begin(system: ChainSystem, state: ChainState, numbers: Array) -> Array:
+    """The march's state, (2 N + 2,), of relative angles and rates; the joint of the longest lever arm depends."""
+    placed = place(system, state.time, state.angles, state.rates)
+    numbers[PIVOT] = np.argmax(abs(placed.joints[-1, 0] - placed.joints[:-1, 0]))
+    return np.concatenate([placed.directions, placed.rates, [0.0, 0.0]])
 
 
 def accelerations(system: ChainSystem, state: ChainState) -> Array:
     """Relative angular accelerations, (N,), rad/s^2, at a state that meets the roller."""
-    y, turn = absolute(system, state), system.rotation
+    model, turn = flatten(system), system.rotation
+    y = begin(system, state, model[2])
     out = np.zeros_like(y)
-    accelerate(state.time, y, out, *flatten(system))
+    accelerate(state.time, y, out, *model)
     omega = circular(turn.frequency_hz)
     base = -turn.amplitude * omega**2 * np.sin(omega * state.time + np.deg2rad(turn.phase_deg))
     return np.diff(out[system.n_links : -2], prepend=base)
@@ -243,9 +252,9 @@ def delassus(system: ChainSystem, state: ChainState, points: Sequence[tuple[int,
 
     A point is its link, 1..N, and metres from the link's near joint.
     """
-    y, model = absolute(system, state), flatten(system)
+    links, _, numbers, w = model = flatten(system)
+    y = begin(system, state, numbers)
     accelerate(state.time, y, np.zeros_like(y), *model)
-    links, _, numbers, w = model
     places = [(link - 1, at - float(links[link - 1, HALF])) for link, at in points]
     alpha, columns = np.zeros(system.n_links), []
     for link, arm in places:

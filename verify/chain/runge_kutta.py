@@ -26,7 +26,7 @@ RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
 TIME, STEP = 0, 1
 """Entries of `clock`."""
 RELATIVE, ABSOLUTE, ABSOLUTE_RATE, TURN, LARGEST, LARGEST_RATE, FURTHEST = range(7)
-"""Entries of `control`: tolerances, largest mean change of a coordinate in a step; largest rms so far, largest coordinate."""
+"""Entries of `control`: tolerances, largest mean change of a coordinate in a step; largest rms, coordinate so far."""
 STEPS, REJECTED, EVALUATIONS, KEPT = range(4)
 """Entries of `counts`."""
 
@@ -85,7 +85,9 @@ def interpolate(n: int, s: float, h: float, y: Array, new: Array, k0: Array, k1:
 
 
 @inline(fastmath=FAST)
-def control_step(n: int, h: float, weights: Array, y: Array, k: Array, trial: Array, control: Array) -> tuple[bool, float]:
+def control_step(
+    n: int, h: float, weights: Array, y: Array, k: Array, trial: Array, control: Array
+) -> tuple[bool, float]:
     """Whether a step's estimated error lies within its tolerance, and the next step.
 
     The error of coordinates, and that of rates, is the root mean square over that of the largest state so far.
@@ -115,9 +117,10 @@ def step_stages(
 ) -> None:  # fmt: skip
     """The result of a step into `new`, derivatives of stages 1 to s and at the result into k[1:]."""
     for s in range(1, c.size + 1):
+        first = h * a[s, 0]
         for i in range(y.size):
-            new[i] = y[i]
-        for j in range(s):
+            new[i] = y[i] + first * k[0, i]
+        for j in range(1, s):
             weight = h * a[s, j]
             if weight != 0.0:
                 for i in range(y.size):
@@ -217,8 +220,8 @@ def integrate(
 ) -> Marched:
     """March from `y` at `start`, s, until all ascending `samples` are kept or the march ends; `y` becomes the end.
 
-    `control` is the relative tolerance, those of coordinates and rates, and the largest mean change of a
-    coordinate in a step, above which it has diverged. An interrupt returns what is kept. `progress` is called with the fraction of time done.
+    `control` is the relative tolerance, those of coordinates and rates, and the mean change of a coordinate in a step
+    at which it has diverged. An interrupt returns what is kept. `progress` is called with the fraction of time done.
     """
     k, kept, clock = np.zeros((len(tableau.c) + 3, y.size)), np.zeros((len(samples), y.size)), np.array([start, step])
     counts, numbers = np.zeros(4, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])

@@ -1,7 +1,7 @@
-"""The nonlinear chain described: rigid links, joints, supports, loads. Data checked, no mechanics.
+"""Description of the nonlinear chain: rigid links, joints, supports, loads.
 
 Links are numbered 1..N from the base; joint i lies at the near end of link i. x runs along the straight chain, y
-across it. Sections 2 and 7 of the paper's formalism: relative joint coordinates q_i = theta_i - theta_{i-1}.
+across it. Coordinates are the paper's relative joint angles q_i = theta_i - theta_{i-1}.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from verify.validation import check_number, check_unmasked
 
 @dataclass(frozen=True, kw_only=True)
 class Rotation:
-    """The base's prescribed angle, offset + rate t + amplitude sin(2 pi f t + phase), radians."""
+    """The hub's prescribed angle, offset + rate t + amplitude sin(2 pi f t + phase), rad."""
 
     offset: float = 0.0
     rate: float = 0.0
@@ -38,7 +38,7 @@ class Rotation:
 
     @property
     def constant(self) -> float:
-        """The part of the angle that stands still, radians: the offset, and an amplitude without a frequency."""
+        """The constant part of the angle, rad: the offset, and an amplitude without a frequency."""
         return self.offset + (0.0 if self.frequency_hz else self.amplitude * sin(radians(self.phase_deg)))
 
 
@@ -58,19 +58,18 @@ class LinkLoad:
     phase_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, value in zip(("force x", "force y"), self.force, strict=True):
-            check_number(f"load.{name}", value, "newton")
-        check_number("load.moment", self.moment, "N m")
+        for name, value in zip(("force x", "force y", "moment"), (*self.force, self.moment), strict=True):
+            check_number(f"load.{name}", value, "N, N m")
         check_number("load.frequency_hz", self.frequency_hz, "hertz, 0 for a constant load", at_least=0)
         check_number("load.phase_deg", self.phase_deg, "degrees")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChainSystem:
-    """N rigid links, joint springs and dashpots, a base, a tip, loads. SI.
+    """N rigid links, joint springs and dashpots, a hub, a tip, loads. SI.
 
-    Raises InputError for a link without length, mass or inertia, negative springs or dashpots, loads on links that
-    do not exist, and a tip that cannot move along x.
+    Raises InputError for a link without length, mass or inertia, negative springs or dashpots, loads off their links,
+    and a tip that cannot move along x.
     """
 
     lengths: Array
@@ -80,18 +79,18 @@ class ChainSystem:
     inertias: Array
     """(N,), about the middles."""
     stiffness: Array
-    """(N,), N m/rad; the first is the base's own, 0 for a pin."""
+    """(N,), N m/rad; the first joins the hub, 0 for a pin."""
     dashpots: Array
     """(N,), N m s/rad."""
     tip: Tip = "free"
     axial_spring: float = 0.0
-    """N/m between the roller and the place where the straight chain ends; EA/L makes an end immovable."""
+    """N/m between the roller and the end of the straight chain; EA/L makes an end immovable."""
     axial_inertia: bool = True
-    """Whether links resist acceleration along x. Rigid links pass it on undiminished, a real beam does not."""
+    """Whether links resist acceleration along x. Rigid links transmit it entirely, a real beam does not."""
     gravity: tuple[float, float] = (0.0, 0.0)
     """m/s^2."""
     rotation: Rotation = Rotation()
-    """Of the hub that the base's spring is fastened to."""
+    """Of the hub."""
     loads: tuple[LinkLoad, ...] = ()
 
     def __post_init__(self) -> None:
@@ -120,8 +119,8 @@ class ChainSystem:
         for load in self.loads:
             if not 1 <= load.link <= n:
                 raise InputError(f"load.link = {load.link!r}: the chain has links 1 to {n}")
-            length = float(self.lengths[load.link - 1])
-            check_number("load.at", load.at / length, "of the link's length", at_least=-1e-12, at_most=1.0 + 1e-12)
+            most = float(self.lengths[load.link - 1]) * (1.0 + 1e-12)
+            check_number("load.at", load.at, "metres from the link's near joint", at_least=-1e-12 * most, at_most=most)
 
     @property
     def n_links(self) -> int:
@@ -130,7 +129,7 @@ class ChainSystem:
 
     @property
     def length(self) -> float:
-        """Of the straight chain, metres."""
+        """Length of the straight chain, m."""
         return float(self.lengths.sum())
 
     @property
@@ -144,7 +143,7 @@ class ChainState:
     """Relative angles and rates at one time."""
 
     angles: Array
-    """(N,), radians; the first from the base's own direction."""
+    """(N,), rad; the first from the hub's direction."""
     rates: Array
     """(N,), rad/s."""
     time: float = 0.0
@@ -167,10 +166,9 @@ def build_system(
 ) -> ChainSystem:
     """The nonlinear chain of a beam, its joints those of `segment_model`, under transverse harmonic forces.
 
-    Pinned or clamped on the left; free, or pinned as a roller, on the right. `load` puts a force on its link
-    ("lever") or on the four joints around it ("reciprocal", `point_loads`). `immovable` holds the roller by an axial
-    spring EA/L, that of all links in series on a stepped beam. Raises InputError for other supports, a loss factor,
-    and forces off the beam.
+    Pinned or clamped on the left; free, or pinned as a roller, on the right. `load` applies a force to its link
+    ("lever") or to the four joints around it ("reciprocal"). `immovable` adds the axial spring EA/L of all links in
+    series. Raises InputError for other supports, a loss factor, and forces off the beam.
     """
     left, right = beam.supports
     if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
@@ -182,8 +180,7 @@ def build_system(
         raise InputError("wall = 'welded' is for the linear chain: choose another wall")
     if beam.loss_factor:
         raise InputError(
-            f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain moves in time and has no complex modulus, "
-            "give 0"
+            f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain has no complex modulus in time, give 0"
         )
     beam.check_added("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
@@ -224,27 +221,21 @@ def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
     return divide(beam, n_segments, grading).axial_stiffnesses * beam.own.axial_stiffness
 
 
-def straight_chain(system: ChainSystem, *, unit: float = 1.0, mass: float = 1.0, spring: float = 1.0) -> Chain:
-    """What linear theory sees of a chain at rest, in units of m, kg and N m/rad; its base is a wall if it has a spring.
-
-    A wall's slope is 0 in the readings: what turns the base is not in them.
-    """
-    flexible = np.append(system.stiffness, 0.0)
-    compliances = np.divide(spring, flexible, out=np.full(len(flexible), np.inf), where=flexible > 0.0)
-    left = "clamped" if system.stiffness[0] > 0.0 else "pinned"
-    right = "pinned" if system.tip == "roller" else "free"
+def straight_chain(system: ChainSystem) -> Chain:
+    """The linear chain of a system at rest, in SI; its base is a wall if it has a spring."""
+    springs = np.append(system.stiffness, 0.0)
     return Chain(
-        supports=(left, right),
-        unit=unit,
-        lengths=system.lengths / unit,
-        compliances=compliances,
-        masses=system.masses / mass,
-        inertias=system.inertias / (mass * unit**2),
+        supports=("clamped" if springs[0] else "pinned", "pinned" if system.tip == "roller" else "free"),
+        unit=1.0,
+        lengths=system.lengths,
+        compliances=np.divide(1.0, springs, out=np.full(len(springs), np.inf), where=springs > 0.0),
+        masses=system.masses,
+        inertias=system.inertias,
     )
 
 
 def link_at(system: ChainSystem, position: float) -> tuple[int, float]:
-    """The link that holds a place of the straight chain, 1..N, and the place on it in metres from its near joint."""
+    """The link at a position of the straight chain, 1..N, and the distance from its near joint, m."""
     nodes = system.nodes
     i = int(np.clip(np.searchsorted(nodes, position, side="right") - 1, 0, system.n_links - 1))
     return i + 1, float(np.clip(position - nodes[i], 0.0, system.lengths[i]))
