@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from verify import simulate
 from verify.errors import InputError
 from verify.motion.contact import FELT
-from verify.motion.pure_wave import terminal_speed
 from verify.motion.result import Motion
+from verify.motor.travelling_wave import terminal_speed
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.slider import Slider, changed

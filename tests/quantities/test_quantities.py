@@ -87,11 +87,11 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slider.deflection": ("driven", {**TIME, "x": 0.31}), "slider.energy": ("driven", {**TIME, "of": "friction_loss"}),
     "slider.terminal_speed": ("driven", {"amplitude": 1e-6, "slope": 310.0, "mu": 0.23}),
     "motion.reflection": ("driven", {**TIME, "time": 4e-3, "window": [0.2, 0.5], "start": "steady"}),
-    **{f"slider.{name}": ("motor", HELD) for name in ("stall_force", "normal_mean", "contact_share", "stuck_share")},
-    **{f"slider.{name}": ("motor", {**HELD, "speed": -3e-4}) for name in ("force_speed", "power", "wear_power")},
-    "slider.efficiency": ("motor", {**HELD, "speed": -3e-4}), "slider.no_load_speed": ("motor", HELD),
-    **{f"slider.{n}": ("motor", {**HELD, "periods": 400, "last": 100}) for n in ("free_speed", "start_time")},
-    "slider.contact_imbalance": ("motor", {**HELD, "periods": 60}),
+    **{f"motor.{name}": ("motor", HELD) for name in ("stall_force", "normal_mean", "contact_share", "stuck_share")},
+    **{f"motor.{name}": ("motor", {**HELD, "speed": -3e-4}) for name in ("force_speed", "power", "friction_power")},
+    "motor.efficiency": ("motor", {**HELD, "speed": -3e-4}), "motor.no_load_speed": ("motor", HELD),
+    **{f"motor.{n}": ("motor", {**HELD, "periods": 400}) for n in ("free_speed", "start_time")},
+    "motor.contact_imbalance": ("motor", {**HELD, "periods": 60}),
     "chain.cantilever_tip": ("bare", {"segments": 7, "load": 1.7}),
     "chain.rollup_gap": ("bare", {"segments": 7, "wall": "gregory"}),
     "chain.hanging_frequency": ("bare", {"segments": 7, "mode": 2}),
@@ -163,7 +163,7 @@ EFFECTS = [
     ("wave.absorber_reflection", "device", {"position": 0.04, "resistance": 1.3, "model": "analytic"}),
     ("slider.displacement", "heavy", {"count": 14}),
     ("chain.slider_displacement", "undamped", {"segments": 5, "coupling": "one-way", "normal": "massless"}),
-    ("slider.force_speed", "motor", {**HELD, "speed": -3e-4}),
+    ("motor.force_speed", "motor", {**HELD, "speed": -3e-4}),
 ]
 
 
@@ -212,7 +212,7 @@ def test_words_are_read_by_type():
     [
         ("wave.reflection", "bare", {}, "drive.force is missing: add"),
         ("slider.displacement", "bare", {}, "time is missing and the scene has no"),
-        ("slider.stall_force", "driven", {}, "slider.contact is missing: add"),
+        ("motor.stall_force", "driven", {}, "slider.contact is missing: add"),
         ("chain.transient_deflection", "bare", {}, "drive.force is missing: add"),
         ("drive.quarter_wavelength", "bare", {}, "frequency_hz is missing"),
         ("mode.frequency", "device", {"count": 14}, "does not model drive.device"),

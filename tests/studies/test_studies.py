@@ -220,7 +220,7 @@ def test_motor_figures_equal_the_quantities(run):
     cache = SolutionCache(scene.beam)
     first, arguments = overview.records()[0], {"model": "fem", "count": 49}
     for name, heading in (("stall_force", "stall force"), ("no_load_speed", "no-load speed")):
-        expected = evaluate(f"slider.{name}", arguments, scene, cache)
+        expected = evaluate(f"motor.{name}", arguments, scene, cache)
         assert first[heading] == pytest.approx(expected, rel=1e-3)
     assert column(held, "speed") == pytest.approx([0.0, -0.5 * first["crest speed"], -first["crest speed"]])
 

@@ -111,13 +111,13 @@ class WaveContact(msgspec.Struct, frozen=True, kw_only=True):
 
     def force(self, scene: Scene, points: int = 61, refine: float = 1.0) -> float:
         """-F/(mu N) of so many springs, time step over `refine`. Raises InputError where none is in contact."""
-        from verify.motor.on_wave import over_a_wave
+        from verify.motor.travelling_wave import foot_on_wave
 
         foot = msgspec.structs.asdict(self) | {"steps_per_period": round(refine * self.steps_per_period)}
-        found, _ = over_a_wave(scene.beam, drive_frequency(scene), mu=MU, points=points, **foot)
-        if found.normal_force <= 0.0:
+        means, _ = foot_on_wave(scene.beam, drive_frequency(scene), mu=MU, points=points, **foot)
+        if means.normal_force <= 0.0:
             raise InputError(f"points = {points!r}: none within {self.contact_half_angle!r} rad of a crest, give more")
-        return -found.force / (MU * found.normal_force)
+        return -means.force / (MU * means.normal_force)
 
 
 @quantity("slider.wave_force", unit="1", reads=("beam", "drive"))

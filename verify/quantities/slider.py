@@ -267,7 +267,7 @@ def terminal_speed(
     kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] = "tangential",
 ) -> float:
     """Steady mean speed along +x of a slider on a pure wave towards +x, tanh friction."""
-    from verify.motion.pure_wave import terminal_speed
+    from verify.motor.travelling_wave import terminal_speed
 
     slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
     return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))

@@ -1,8 +1,9 @@
-"""The motor of a scene: force over speed, no load, starting, stopping and reversing on every model."""
+"""The motor of a scene: force over speed, no load, start, stop and reversal, phase portrait, on every model."""
 
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
+from math import copysign
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
@@ -16,37 +17,38 @@ from verify.validation import Relative
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
-    from verify.motor.case import MotorCase
-    from verify.motor.figures import AtSpeed, Timed
-    from verify.motor.result import MotorRun
+    from verify.motor.curves import Transient
+    from verify.motor.steady_state import MotorCase, SteadyState
     from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
-HELD_PERIODS = 11_520
-"""Periods after which the means at a held speed count as not converged."""
-LAST = 0.25
-"""Fraction of a free run, at its end, over which means are formed."""
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
-LARGE = 0.1
-"""Size of a neglected effect beyond which a summary is omitted."""
-WARNINGS = {
-    "means": "{}: means at {} of {} held speeds are not converged after {} periods, values derived from them are "
-    "omitted; more slider.contact.damping or slider.preload calms the motion.",
-    "free": "{}: the free run has no steady end, the halves of its last quarter differ by {:.2g} cm/s; raise "
-    "motor.periods.",
-    "coupling": "Coupling: contact changes the surface motion by {:.1%}, which one-way coupling neglects.",
-    "sag": "Sag: the preload bends the beam by {:.2g} amplitudes of the wave, which one-way coupling neglects.",
-    "axial": "Nonlinearity: linear models neglect an axial inertia (kL)² ⟨θ²⟩ = {:.2g} of a chain of rigid links.",
-    "epsilon": "Compliance: epsilon = {:.3g}, points deflect along the surface before they slip.",
-    "step": "Time step: the period of the contact's oscillation has an error of {:.1e}; raise motor.steps_per_period.",
+VALIDITY = {
+    "coupling": (1e-3, "Coupling: contact changes the surface motion by {:.1%}, which one-way coupling neglects."),
+    "sag": (0.1, "Sag: the preload bends the beam by {:.2g} wave amplitudes, which one-way coupling neglects."),
+    "axial": (1e-3, "Nonlinearity: linear models neglect the axial inertia, (kL)² ⟨θ²⟩ = {:.2g} of a rigid chain."),
+    "epsilon": (0.1, "Compliance: epsilon = {:.3g}, points deflect along the surface before they slip."),
+    "step": (1e-3, "Time step: the contact's oscillation has a period error of {:.1e}; raise motor.steps_per_period."),
 }
-CAPTIONS = {
-    "motor-force": "Mean friction force along +x on the slider, held at each speed and at its place. Dashed: mu N.",
-    "motor-power": "Force times speed; below zero the load drives the motor.",
-    "motor-speed": "Free run from the slider's own speed (solid), drive switched off (dotted), drive phases reversed "
-    "(dashed). The beam's own transient is neglected.",
-}
+"""Size of a neglected effect from which on it is reported, and the text."""
+INVALID = 0.1
+"""Size of the first three effects from which on the summary is omitted."""
+SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
+CHARTS = {
+    "motor-force": ("Force over speed", SPEED, FORCE, "Mean friction force along +x on the slider at a prescribed "
+    "speed and fixed position. Dashed: mu N."),
+    "motor-power": ("Power over speed", SPEED, POWER, "Force times speed; below zero the load drives the motor."),
+    "motor-speed": ("Start, stop, reversal", TIME, SPEED, "Means over a sliding period of the drive: free run from the "
+    "slider's own speed (solid), drive switched off (dotted), drive phases reversed (dashed). The beam's own transient "
+    "is neglected."),
+    "motor-portrait": ("Phase portrait of a foot", ("height", "m"), ("rate", "m/s"), "Height and its rate of the first "
+    "foot over one period of the drive, at standstill."),
+}  # fmt: skip
+NOTE = (
+    "No-load speed: prescribed, without mean friction, that of a heavy slider. Free speed, contact, stick, friction "
+    "power: last quarter of a free run. Start, stop, reversal: time constants (1 - 1/e) of means over a sliding period."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,31 +57,23 @@ class Field:
 
     case: "MotorCase"
     name: str
-    crest_speed: float
-    """First-order speed amplitude of the surface at the slider, m/s."""
-    curve: "list[AtSpeed]"
+    curve: "list[SteadyState]"
     """From standstill to the crest speed, in the direction of the force."""
-    no_load: "AtSpeed | None"
-    """None where no held speed is without force."""
-    free: "MotorRun"
-    speed: float
-    """Mean over the last quarter of the free run, m/s."""
-    spread: float
-    """Difference of the means of the halves of that quarter, m/s."""
-    converged: bool
-    """Whether the free run ends at a steady speed."""
-    stop: "Timed | None"
+    no_load: float | None
+    """Prescribed speed without mean friction, m/s."""
+    free: "Transient"
+    stop: "Transient | None"
     """Drive switched off; None where the beam would ring on."""
-    reversal: "Timed | None"
+    reversal: "Transient | None"
     """Drive phases reversed."""
-    amplitude: float
-    """Of the surface under the slider, m."""
-    last: int
-    """Samples of the last quarter of the free run, an even number."""
+    times: dict[str, float | None]
+    """Time constants of start, stop and reversal, s."""
+    missing: list[str]
+    """Why figures are not available, keys of `curves.REASONS`."""
 
 
 class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A slider that may leave the beam: held at speeds, free, started, stopped and reversed."""
+    """A slider that may leave the beam: at prescribed speeds, free, started, stopped and reversed."""
 
     name: ClassVar[str] = "motor"
     title: ClassVar[str] = "The motor"
@@ -107,150 +101,135 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             )
 
     def check(self, scene: "Scene") -> None:
-        """Raise InputError without forces or a slider with contact, and for what does not combine."""
-        from verify.motor.combine import check_combines
+        """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
         from verify.motor.feet import check_on_beam
 
         if not scene.forces or scene.drive is None or scene.drive.kind != "force":
             raise InputError("motor: the beam moves under a [drive] of kind force, add its forces")
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
-        for model in self.models:
-            for start in ("steady", self.start):
-                check_combines(model, start, scene.slider)
         check_on_beam(scene.slider, scene.beam, scene.slider.start_on(scene.beam))
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
         from verify.linear.registry import MODELS
+        from verify.motor.curves import REASONS
         from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
 
         fields: list[Field] = []
         for model in self.models:
-            speeds = [at.speed for at in fields[0].curve] if fields else []
             count = self.count if MODELS[model].sized else None
             options = MotorOptions(
                 model=model, count=count, modal_damping=self.modal_damping, steps_per_period=self.steps_per_period
             )
-            fields.append(self._field(options.case(scene), speeds, progress))
-        warnings, valid = _warnings(fields)
-        first = fields[0]
-        speed, force = 100 * first.speed, first.curve[0].force
+            fields.append(self._field(options.case(scene), fields[0].curve if fields else [], cache, progress))
+        first, (invalid, warnings) = fields[0], _validity(fields)
+        converged = all(field.free.converged and field.curve[0].converged("force") for field in fields)
+        speed, force = 100 * first.free.speed, first.curve[0].means.force
+        summary = f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})."
         return Result(
-            summary=f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})." if valid else "",
+            summary=summary if converged and not invalid else "",
             tables=_tables(fields),
             figures=_figures(fields),
-            warnings=warnings,
-            data={
-                "curves": {field.name: field.curve for field in fields},
-                "margins": {field.name: field.free.motor_margins for field in fields},
-            },
+            warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing] + warnings,
         )
 
-    def _field(self, case: "MotorCase", speeds: list[float], progress: Progress) -> Field:
-        """Held speeds, free run, stopping and reversing on one model. Raises InputError."""
-        from verify.motor import figures as motor
+    def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: "SolutionCache", progress: Progress) -> Field:
+        """Prescribed speeds, free run, stop and reversal on one model. Raises InputError."""
+        from verify.motor import curves
+        from verify.motor.steady_state import PERIODS, crest_speed, steady_state
+        from verify.quantities.motor import cached
 
         name = sized_title(case.model, case.count)
         progress(f"force over speed, {name}")
-        crests = motor.crest_speed(case)
-        still, settled = motor.held(case, 0.0, periods=HELD_PERIODS)
-        way = -1.0 if still.force < 0.0 else 1.0
-        speeds = speeds or [way * crests * k / (self.speeds - 1) for k in range(self.speeds)]
-        curve = [still, *(motor.held(case, speed, settled, HELD_PERIODS)[0] for speed in speeds[1:])]
+        still: SteadyState = cached(cache, steady_state, case, 0.0, PERIODS)
+        way = copysign(1.0, still.means.force)
+        speeds = [at.speed for at in like] or [
+            way * crest_speed(case) * k / (self.speeds - 1) for k in range(self.speeds)
+        ]
+        curve = [still, *(steady_state(case, speed, PERIODS, still.run) for speed in speeds[1:])]
+        missing: list[str] = list(dict.fromkeys(one for at in curve for one in at.not_converged))
         unloaded = None
-        with suppress(InputError):  # no held speed is without force
-            unloaded = motor.no_load(case, None, settled, HELD_PERIODS)
-        target = unloaded.speed if unloaded else 0.0
+        with suppress(InputError):
+            unloaded = cached(cache, curves.no_load, case, PERIODS).speed
         progress(f"free run, {name}")
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
-        run = motor.started(begun, target, self.periods).run
-        if len(run.times) < 3:
-            raise InputError(f"motor.start: the slider {run.statistics.stopped} at once, give smaller forces")
-        last = max(int(LAST * (len(run.times) - 1)) // 2 * 2, 2)
-        speed, spread = motor.mean_speed(run, last)
-        goes_on = run.statistics.finished and self.start == "steady"
-        two_way = run.coupling is not None and run.coupling.two_way
+        free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
+        finished, coupling = free.run.statistics.finished, free.run.coupling
+        rings = coupling is not None and coupling.two_way
+        begin = free.time_constant() if free.converged else None
+        if finished and self.start == "steady":
+            shown = 2.0 * TIME_CONSTANTS * begin / case.period + 2.0 if begin else self.periods
+            periods = min(int(shown), self.periods)
+            stop = None if rings else curves.stop(case, free, periods)
+            reversal = curves.reversal(case, free, periods)
+        times: dict[str, float | None] = {"start": begin, "stop": None, "reversal": None}
+        if free.converged:
+            times["stop"] = stop.time_constant(0.0) if stop else None
+            times["reversal"] = reversal.time_constant(-free.speed) if reversal else None
+            runs = {"start": free, "stop": stop, "reversal": reversal}
+            missing += [key for key, one in runs.items() if one and times[key] is None]
+        else:
+            missing.append("free speed" if finished else "left")
+        missing += ["no load"] * (unloaded is None) + ["ringing"] * rings
         return Field(
             case=case,
             name=name,
-            crest_speed=crests,
             curve=curve,
             no_load=unloaded,
-            free=run,
-            last=last,
-            speed=speed,
-            spread=spread,
-            converged=run.statistics.finished and motor.comes_to_speed(run, last, crests),
-            stop=motor.stopped(case, run, self.periods) if goes_on and not two_way else None,
-            reversal=motor.reversed_way(case, run, -speed, self.periods) if goes_on else None,
-            amplitude=float(abs(case.field().deflection([case.slider.start_on(case.beam)])[0])),
+            free=free,
+            stop=stop,
+            reversal=reversal,
+            times=times,
+            missing=missing,
         )
 
 
-def _warnings(fields: list[Field]) -> tuple[list[str], bool]:
-    """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
-    from verify.motion.contact import FELT
-    from verify.motion.validity import NONLINEAR
+def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
+    """(whether a neglected effect is so large that the figures are void, warnings of those that are not small)."""
+    from verify.motor.steady_state import surface_motion
 
-    warnings = []
-    for field in fields:
-        loose = [at for at in field.curve if not at.settled()]
-        if loose:
-            most = max(at.periods for at in loose)
-            warnings.append(WARNINGS["means"].format(field.name, len(loose), len(field.curve), most))
-        if not field.converged:
-            warnings.append(WARNINGS["free"].format(field.name, 100 * field.spread))
-    margins, coupling = fields[0].free.motor_margins, fields[0].free.coupling
+    run = fields[0].free.run
+    margins, coupling = run.motor_margins, run.coupling
     assert coupling is not None
-    contact = 0.0 if coupling.two_way else max(coupling.normal_size, coupling.friction_size or 0.0)
-    sag = 0.0 if margins.sag_taken else (margins.sag or 0.0) / fields[0].amplitude
-    axial, epsilon = margins.chain or 0.0, margins.epsilon or 0.0
-    step = max(field.free.motor_margins.step for field in fields) ** 2 / 24.0
-    limits = {"coupling": (contact, FELT), "sag": (sag, LARGE), "axial": (axial, NONLINEAR)}
-    limits |= {"epsilon": (epsilon, LARGE), "step": (step, 1e-3)}
-    warnings += [WARNINGS[key].format(value) for key, (value, limit) in limits.items() if value > limit]
-    converged = all(field.converged and field.curve[0].settled("force") for field in fields)
-    return warnings, converged and max(contact, sag, axial) < LARGE
-
-
-def _times(field: Field) -> list[float | None]:
-    """Time constants of starting, stopping and reversing, s; None where the motor does not reach a speed."""
-    from verify.motor.figures import started_of
-
-    if not field.converged or abs(field.speed) <= field.spread:
-        return [None, None, None]
-    return [started_of(field.free, field.speed), *(one.time if one else None for one in (field.stop, field.reversal))]
+    sizes = {
+        "coupling": 0.0 if coupling.two_way else max(coupling.normal_size, coupling.friction_size or 0.0),
+        "sag": 0.0 if margins.sag_taken else (margins.sag or 0.0) / surface_motion(fields[0].case)[0],
+        "axial": margins.chain or 0.0,
+        "epsilon": margins.epsilon or 0.0,
+        "step": max(field.free.run.motor_margins.step for field in fields) ** 2 / 24.0,
+    }
+    void = max(sizes[key] for key in ("coupling", "sag", "axial")) >= INVALID
+    return void, [text.format(sizes[key]) for key, (limit, text) in VALIDITY.items() if sizes[key] > limit]
 
 
 def _tables(fields: list[Field]) -> "list[Table]":
+    from verify.motor.steady_state import surface_motion
     from verify.report.result import Column, Table
 
-    overview, held, validity = [], [], []
+    overview, rows, validity = [], [], []
     for field in fields:
-        run, last, still = field.free, field.last, field.curve[0]
-        stall = still.force if still.settled("force") else None
-        pushing = [at for at in field.curve if at.settled("force")]
-        power = max((at.power for at in pushing if at.power > 0.0), default=None)
-        efficient = [at.efficiency for at in pushing if at.settled("powers") and at.efficiency]
-        unloaded = field.no_load.speed if field.no_load else None
-        own = (field.crest_speed, unloaded, field.speed if field.converged else None, stall, power)
+        run, last = field.free.run, field.free.last
+        pushing = [at for at in field.curve if at.converged("force")]
+        most = max((at.power for at in pushing if at.power > 0.0), default=None)
+        best = max((at.efficiency for at in pushing if at.converged("powers") and at.efficiency), default=None)
+        stall = field.curve[0].means.force if field.curve[0].converged("force") else None
+        amplitude, crest = surface_motion(field.case)
+        own = (crest, field.no_load, field.free.speed if field.free.converged else None, stall)
         shares = (float(run.contact_share[-last:].mean()), float(run.stuck_share[-last:].mean()))
-        friction = float(run.rubbed[-last:].sum()) / float(run.times[-1] - run.times[-1 - last])
-        dashpots = (run.ledger.damped + run.ledger.impacts) / run.duration
-        best = max(efficient, default=None)
-        overview.append((field.name, *own, best, *shares, *_times(field), friction, dashpots))
+        losses = (run.ledger.rubbed / run.duration, (run.ledger.damped + run.ledger.impacts) / run.duration)
+        overview.append((field.name, *own, most, best, *shares, *field.times.values(), *losses))
         for at in field.curve:
-            power = at.power if at.settled("force") else None
-            efficiency = at.efficiency if at.settled("force", "powers") else None
-            shares = (at.contact_share, at.stuck_share)
-            held.append((field.name, at.speed, at.force, at.spread, power, efficiency, *shares, at.settled()))
+            power = at.power if at.converged("force") else None
+            efficiency = at.efficiency if at.converged("force", "powers") else None
+            force, shares = (at.means.force, at.errors.force), (at.means.contact_share, at.means.stuck_share)
+            rows.append((field.name, at.speed, *force, power, efficiency, *shares, at.converged()))
         margins, coupling = run.motor_margins, run.coupling
         assert coupling is not None
         sag = None if margins.sag is None else round(margins.sag, 12)  # of balanced loads rounding is left
-        sizes = (coupling.normal_size, coupling.friction_size, margins.chain, margins.step, field.spread)
-        validity.append((field.name, margins.epsilon, sag, field.amplitude, *sizes))
+        sizes = (coupling.normal_size, coupling.friction_size, margins.chain, margins.step, field.free.error)
+        validity.append((field.name, margins.epsilon, sag, amplitude, *sizes))
     columns = [Column("model"), si("crest speed", "m/s", ".5g"), si("no-load speed", "m/s", "+.5g")]
     columns += [si("free speed", "m/s", "+.5g"), si("stall force", "N", "+.4g"), si("largest power", "W")]
     columns += [percent("best efficiency", ".3g"), percent("contact", ".3g"), percent("stick", ".3g")]
@@ -262,15 +241,10 @@ def _tables(fields: list[Field]) -> "list[Table]":
     limits = [Column("model"), Column("epsilon", format=".3g"), si("sag", "m", ".3g"), si("amplitude", "m")]
     limits += [Column("normal coupling", format=".1e"), Column("friction coupling", format=".1e")]
     limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), Column("contact phase per step", "rad", ".2g")]
-    limits += [Column("speed spread", "m/s", ".1e")]
-    notes = [
-        "No-load speed: held, without mean friction. Free speed, contact, stick, friction power: last quarter of a "
-        "free run. Start, stop, reversal: time constants (1 - 1/e) from the slider's own speed, with the drive "
-        "switched off, with its phases reversed."
-    ]
+    limits += [si("speed error", "m/s", ".1e")]
     return [
-        Table("The motor on each model", columns, overview, notes),
-        Table("Force over speed, slider held at its place", curve, held),
+        Table("The motor on each model", columns, overview, [NOTE]),
+        Table("Force over speed, slider at a fixed position", curve, rows),
         Table("Validity of these runs", limits, validity),
     ]
 
@@ -278,34 +252,28 @@ def _tables(fields: list[Field]) -> "list[Table]":
 def _figures(fields: list[Field]) -> "list[Figure]":
     import numpy as np
 
+    from verify.motor.curves import phase_portrait
     from verify.report.result import Figure
 
-    force: list[Any] = []
-    power: list[Any] = []
-    speed: list[Any] = []
+    lines: dict[str, list[Any]] = {key: [] for key in CHARTS}
     for field in sorted(fields, key=lambda one: one.case.count or 0):
-        style = model_style(field.case.model)
-        settled = [at for at in field.curve if at.settled("force")]
-        v = np.array([at.speed for at in settled])
-        force.append((field.name, v, np.array([at.force for at in settled]), style))
-        power.append((field.name, v, np.array([at.power for at in settled]), style))
-        runs: dict[str, Any] = {"-": field.free, ":": field.stop and field.stop.run}
-        runs["--"] = field.reversal and field.reversal.run
-        seconds = TIME_CONSTANTS * max(filter(None, _times(field)), default=field.free.duration)
-        for line, run in runs.items():
-            if run is not None:
-                n = max(int(np.searchsorted(run.times - run.times[0], seconds)), 3)
-                label, own = (field.name, style) if line == "-" else ("", style | {"linestyle": line, "linewidth": 1.4})
-                speed.append((label, run.times[:n] - run.times[0], run.speed[:n], own))
-    still, ends = fields[0].curve[0], np.array([0.0, fields[0].curve[-1].speed])
+        name, style = field.name, model_style(field.case.model)
+        states = [at for at in field.curve if at.converged("force")]
+        v = np.array([at.speed for at in states])
+        lines["motor-force"].append((name, v, np.array([at.means.force for at in states]), style))
+        lines["motor-power"].append((name, v, np.array([at.power for at in states]), style))
+        shown = TIME_CONSTANTS * max(filter(None, field.times.values()), default=np.inf)
+        for dash, one in {"-": field.free, ":": field.stop, "--": field.reversal}.items():
+            if one is not None:
+                n = max(int(np.searchsorted(one.times, shown)), 3)
+                own = style if dash == "-" else style | {"linestyle": dash, "linewidth": 1.4}
+                lines["motor-speed"].append((name if dash == "-" else "", one.times[:n], one.speeds[:n], own))
+    portrait = phase_portrait(fields[0].case, fields[0].curve[0].run)
+    lines["motor-portrait"] = [(fields[0].name, *(rows[:, 0] for rows in portrait), model_style(fields[0].case.model))]
+    still, ends = fields[0].curve[0].means, np.array([0.0, fields[0].curve[-1].speed])
     limit = np.copysign(fields[0].case.slider.mu * still.normal_force, still.force)
-    force.append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
-    charts = [
-        ("motor-force", "Force over speed", force, ("speed", "m/s"), ("force", "N")),
-        ("motor-power", "Power over speed", power, ("speed", "m/s"), ("power", "W")),
-        ("motor-speed", "Starting, stopping, reversing", speed, ("time", "s"), ("speed", "m/s")),
-    ]
+    lines["motor-force"].append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
     return [
-        Figure(key, title, CAPTIONS[key], partial(plot_lines, lines=lines, x=x, y=y))
-        for key, title, lines, x, y in charts
+        Figure(key, title, caption, partial(plot_lines, lines=lines[key], x=x, y=y))
+        for key, (title, x, y, caption) in CHARTS.items()
     ]

@@ -1,0 +1,169 @@
+"""Curves of a motor: force over speed, the speed without load, start, stop and reversal, phase portraits.
+
+The no-load speed is that of a heavy slider: its speed is prescribed and does not vary within a period of the drive. A
+light slider, which follows the surface within the period, runs freely at another speed (`transient`).
+Time constants come from means over a sliding period, so that the phase of the drive at the start does not matter.
+"""
+
+from math import e
+
+import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
+
+from verify.arrays import Array
+from verify.errors import InputError
+from verify.motor import records
+from verify.motor.result import MotorRun
+from verify.motor.steady_state import (
+    BATCHES,
+    PERIODS,
+    MotorCase,
+    SteadyState,
+    balanced,
+    batch_error,
+    crest_speed,
+    steady_state,
+)
+
+FINE = 32
+"""Periods at the start of a free run in which every step is sampled, later every period."""
+PORTRAIT = 48
+"""Points of a phase portrait in a period."""
+REASONS = {
+    "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
+    "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
+    "shares": "the shares of contact and stick have not converged, raise periods or slider.contact.damping",
+    "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
+    "efficiency": "no power passes from the surface to the load, choose a speed between zero and no load",
+    "no load": "mean friction has one sign at all speeds up to twice the crest speed, raise slider.preload",
+    "free speed": "the free run has no steady end, raise periods or slider.preload",
+    "start": "the free run does not change its speed by more than its error, choose another slider.speed",
+    "stop": "the speed does not fall to 1/e after the drive is switched off, raise periods",
+    "reversal": "the speed does not change after the phases are reversed, raise periods",
+    "ringing": "a two-way coupled beam rings on after the drive is switched off, choose one-way coupling for stopping",
+    "left": "the slider leaves the beam, lower periods or change slider.position",
+}
+"""Why a figure is not available."""
+
+
+def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
+    """Steady state at the prescribed speed at which the mean friction force vanishes, up to twice the crest speed.
+
+    Raises InputError where the force has one sign up to that, or has not converged at the root.
+    """
+    from scipy.optimize import brentq
+
+    states = {0.0: steady_state(case, 0.0, periods)}
+    end = float(np.copysign(2.0 * crest_speed(case), states[0.0].means.force))
+
+    def force(speed: float) -> float:
+        if speed not in states:
+            states[speed] = steady_state(case, speed, periods, states[0.0].run, relative=0.01)
+        return states[speed].means.force
+
+    if force(0.0) * force(end) > 0.0:
+        raise InputError(f"slider.preload = {case.slider.preload!r} N: {REASONS['no load']}")
+    root = float(brentq(force, 0.0, end, xtol=1e-6 * abs(end)))
+    force(root)
+    if not states[root].converged("force"):
+        raise InputError(f"periods = {periods!r}: {REASONS['force']}")
+    return states[root]
+
+
+class Transient(Struct, frozen=True, eq=False, kw_only=True):
+    """A free run from one speed towards another."""
+
+    run: MotorRun
+    """All of it, or what follows the first 32 periods."""
+    start_speed: float
+    """Before the run, m/s along +x."""
+    times: Array
+    """(n,), middles of the sliding periods, s from the start of the run; the first is half a period."""
+    speeds: Array
+    """(n,), means over these periods, m/s."""
+    speed: float
+    """Mean of `speeds` over the last quarter, m/s."""
+    error: float
+    """Of that mean: `batch_error`, m/s."""
+    last: int
+    """Samples of `run` in the last quarter, a multiple of 16."""
+    converged: bool
+    """Whether the run reaches its end, with an error up to 5 % of the crest speed, a residual acceleration up to 1 % of
+    mu N / mass and a mean normal force within 10 % of the load."""
+
+    def time_constant(self, target: float | None = None) -> float | None:
+        """Time until 1 - 1/e of the change to `target` (m/s, default the final speed) is made, s.
+
+        At least half a period of the drive, the middle of the first mean. None where it is not made, or of no size.
+        """
+        target = self.speed if target is None else target
+        if abs(target - self.start_speed) <= self.error:
+            return None
+        change = (self.speeds - self.start_speed) / (target - self.start_speed)
+        past = np.flatnonzero(change >= 1.0 - 1.0 / e)
+        if not len(past):
+            return None
+        i = max(int(past[0]), 1)
+        return float(np.interp(1.0 - 1.0 / e, change[i - 1 : i + 1], self.times[i - 1 : i + 1]))
+
+
+def transient(case: MotorCase, periods: int, before: Transient | None = None) -> Transient:
+    """The free slider for so many periods, from its own speed or from the end of another run.
+
+    Raises InputError where it leaves the beam before the first period has passed.
+    """
+    fine = periods if periods < 2 * FINE else FINE
+    run = case.run(fine, fine * case.steps_per_period + 1, before.run if before else None)
+    times, slider = run.times - run.times[0], case.slider
+    if times[-1] <= case.period:
+        raise InputError(f"slider.position = {slider.start_on(case.beam):.6g} m: {REASONS['left']}")
+    times = times[times <= (1.0 + 1e-9) * (times[-1] - case.period)]
+    ends = np.interp(times + case.period, run.times - run.times[0], run.travelled)
+    times, speeds = times + 0.5 * case.period, (ends - run.travelled[: len(times)]) / case.period
+    if run.statistics.finished and periods > fine:
+        begin, rest = run.times[0], periods - fine
+        run = replace(case, soft_start_periods=0.0).run(rest, rest + 1, run)
+        times = np.append(times, run.times[1:] - begin - 0.5 * case.period)
+        speeds = np.append(speeds, np.diff(run.travelled) / np.diff(run.times))
+    last = max(len(run.times) // (4 * BATCHES), 1) * BATCHES
+    batches = speeds[-last:].reshape(BATCHES, -1).mean(axis=1)
+    error, load = float(batch_error(batches)), slider.normal_force
+    drift = abs(batches[: BATCHES // 2].mean() - batches[BATCHES // 2 :].mean()) / (run.times[-1] - run.times[-last])
+    steady = error <= 0.05 * crest_speed(case) and 2.0 * slider.mass * drift <= 0.01 * slider.mu * load
+    carries = not balanced(slider) or abs(run.normal_force[-last:].mean() - load) <= 0.1 * load
+    return Transient(
+        run=run,
+        start_speed=before.speed if before else slider.speed,
+        times=times,
+        speeds=speeds,
+        speed=float(batches.mean()),
+        error=error,
+        last=last,
+        converged=bool(run.statistics.finished and steady and carries),
+    )
+
+
+def stop(case: MotorCase, before: Transient, periods: int) -> Transient:
+    """After a run, with the drive switched off: the forced field of a one-way coupled steady beam ends at once."""
+    forces = tuple(replace(one, amplitude=1e-12 * one.amplitude) for one in case.forces)
+    return transient(replace(case, forces=forces), periods, before)
+
+
+def reversal(case: MotorCase, before: Transient, periods: int) -> Transient:
+    """After a run, with the phases of all forces negated at once."""
+    forces = tuple(replace(one, phase_deg=-one.phase_deg) for one in case.forces)
+    return transient(replace(case, forces=forces), periods, before)
+
+
+def phase_portrait(case: MotorCase, before: MotorRun, speed: float = 0.0) -> tuple[Array, Array]:
+    """(heights, m, their rates, m/s) of the feet over the period after a run at a prescribed speed, (49, feet) each.
+
+    The rates are the state of the feet, not differences of heights.
+    """
+    states = [before.state.feet]
+    for _ in range(PORTRAIT):
+        before = case.run(1.0 / PORTRAIT, 2, before, speed)
+        states.append(before.state.feet)
+    rows = np.array(states)
+    return rows[:, :, records.HEIGHT], rows[:, :, records.CLIMB]

@@ -1,0 +1,84 @@
+"""Periodic orbit of a motor by shooting: the state that a period of the drive reproduces, by Newton's method.
+
+A. H. Nayfeh and B. Balachandran, Applied Nonlinear Dynamics, Wiley 1995, sec. 7.1.2 (shooting) and 3.2 (multipliers).
+"""
+
+import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
+
+from verify.arrays import Array, ComplexArray
+from verify.errors import InputError
+from verify.motor.feet import Placed, feet_of
+from verify.motor.result import MotorRun
+from verify.motor.steady_state import MotorCase
+
+ROUNDS = 12
+DIFFERENCE = 1e-4
+"""Step of the difference quotients over the scale of a coordinate."""
+REPEATS = 1e-3
+"""Largest residual over the scale of a coordinate: landings on dashpots jump by steps."""
+
+
+class PeriodicOrbit(Struct, frozen=True, eq=False, kw_only=True):
+    """A motion of the feet with the period of the drive."""
+
+    run: MotorRun
+    """The period."""
+    residual: float
+    """Largest change of a coordinate over the period, relative to its scale."""
+    multipliers: ComplexArray
+    """(n,), eigenvalues of the Jacobian of the period map (Floquet multipliers)."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether small perturbations decay."""
+        return bool(np.abs(self.multipliers).max() < 1.0)
+
+
+def periodic_orbit(
+    case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, settle: int = 100
+) -> PeriodicOrbit:
+    """Periodic orbit of a slider at a prescribed speed, m/s, one-way coupled to a steady beam.
+
+    Newton's method begins after `settle` periods. The scales are the heights' range h, h / foot length for pitches, and
+    these times the drive's omega for their rates. Raises InputError where no orbit is found.
+    """
+    slider = case.slider
+    if slider.coupling != "one-way" or case.start != "steady":
+        raise InputError(f"slider.coupling = {slider.coupling!r}: a periodic orbit is of one-way coupling, choose it")
+    run = case.run(settle, 61 * settle + 1, None, speed)
+    height = float(np.ptp(run.height[-61:]) + np.abs(run.state.feet[:, 0]).max()) + 1e-12
+    arm = float(np.abs(run.point_offsets).max()) or 1.0
+    scale = np.multiply.outer([height, height / arm], [1.0, 2.0 * np.pi * case.frequency_hz]).ravel()
+    moves = feet_of((Placed(slider, 0.0),)).given[:, :2] > 0.0  # inverse mass and inertia
+    free = np.flatnonzero(np.repeat(moves, 2, axis=1).ravel())
+    size = np.tile(scale, len(moves))[free]
+
+    def period(start: MotorRun, by: Array) -> MotorRun:
+        """The period after a start with its free coordinates shifted."""
+        feet = start.state.feet.copy()
+        feet.flat[free] += by * size
+        return case.run(1.0, 2, replace(start, state=replace(start.state, feet=feet)), speed)
+
+    def coordinates(one: MotorRun) -> Array:
+        return np.asarray(one.state.feet.flat[free] / size)
+
+    still, best = np.zeros(len(free)), None
+    for _ in range(ROUNDS):
+        after = period(run, still)
+        shifted = [coordinates(period(run, row)) for row in DIFFERENCE * np.eye(len(free))]
+        jacobian = (np.array(shifted) - coordinates(after)).T / DIFFERENCE
+        change = coordinates(after) - coordinates(run)
+        residual = float(np.abs(change).max())
+        if best is None or residual < best.residual:
+            best = PeriodicOrbit(run=after, residual=residual, multipliers=np.linalg.eigvals(jacobian).astype(complex))
+        if residual <= tolerance:
+            return best
+        step = np.linalg.lstsq(np.eye(len(free)) - jacobian, change, rcond=None)[0]
+        feet = run.state.feet.copy()
+        feet.flat[free] += step * size
+        run = replace(after, state=replace(after.state, feet=feet))
+    if best is None or best.residual > REPEATS:
+        raise InputError(f"speed = {speed!r} m/s: no motion repeats after one period, use means over many periods")
+    return best

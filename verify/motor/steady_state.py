@@ -1,0 +1,219 @@
+"""Steady state of a motor at a prescribed speed: means over whole periods of the drive, with their standard errors.
+
+The slider has the prescribed speed and a fixed position, so that its motion across the beam can be periodic. Windows of
+whole periods follow each other, each as long as all before it, and are cut into 16 batches, whose means give the
+standard error (batch means: G. S. Fishman, Discrete-Event Simulation, Springer 2001, sec. 6.6). The preload less the
+mean normal force is the momentum gained across the beam over the time of the mean: this balance is the error of the
+normal force, as two windows of a slider in flight agree.
+
+A point with tangential stiffness follows the slider elastically until it slips: at a small speed that takes any number
+of periods, in which the mean friction grows too slowly for any comparison of windows. A point that has slipped has
+forgotten its start (play operator: M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with Hysteresis, Springer 1989,
+ch. 2), so that the first window is run at a speed at which all points slip.
+"""
+
+from functools import lru_cache
+from math import copysign
+from typing import Literal, NamedTuple, TypeAlias
+
+import numpy as np
+from msgspec import Struct
+from msgspec.structs import asdict
+
+from verify.arrays import Array
+from verify.errors import InputError
+from verify.linear.surface import section_at
+from verify.motor.result import MotorRun, uninterrupted
+from verify.motor.run import STEPS_PER_PERIOD, run_motor
+from verify.options import Start
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
+
+Figure: TypeAlias = Literal["force", "normal force", "shares", "powers"]
+BATCHES = 16
+FIRST = 48
+"""Periods of the first two windows: batches of 3, then of 6, in which subharmonics of order 2 and 3 repeat."""
+PERIODS = 12_500
+"""Default limit of the periods until the means converge."""
+CHAOTIC = 768
+"""Periods from which on the tolerance is that of a motion that is not periodic: earlier its batches are correlated."""
+TOLERANCES: "dict[Figure, tuple[float, float]]" = {
+    "force": (3e-4, 1e-2),
+    "normal force": (3e-3, 1e-2),
+    "shares": (1e-2, 1e-2),
+    "powers": (1e-2, 1e-2),
+}
+"""Largest error over full scale (mu N, N, 1, mu N times the largest slip speed), before and from `CHAOTIC` on."""
+SLIPS = 8.0
+"""Distance of the first window over mu N / (stiffness of the softest point): all points slip, whatever their share."""
+
+
+class MotorCase(Struct, frozen=True, kw_only=True):
+    """A slider with feet on a driven beam, and the model of the beam; fields as in `simulate`."""
+
+    beam: Beam
+    forces: tuple[PointForce, ...]
+    frequency_hz: float
+    slider: Slider
+    model: str = "segment"
+    count: int | None = 49
+    modes: int | None = None
+    start: Start = "steady"
+    soft_start_periods: float = 0.0
+    modal_damping: float | None = None
+    steps_per_period: int = STEPS_PER_PERIOD
+
+    @property
+    def period(self) -> float:
+        """Of the drive, s."""
+        return 1.0 / self.frequency_hz
+
+    def run(
+        self, periods: float, samples: int, before: MotorRun | None = None, prescribed_speed: float | None = None
+    ) -> MotorRun:
+        """A run of so many periods after another; a prescribed speed, m/s, has a fixed position. Raises InputError."""
+        fixed = prescribed_speed is not None
+        run = run_motor(
+            **asdict(self),
+            duration=periods * self.period,
+            samples=samples,
+            continue_from=before,
+            held_speed=prescribed_speed,
+            frozen=fixed,
+        )
+        return uninterrupted(run)
+
+
+@lru_cache(maxsize=16)
+def surface_motion(case: MotorCase) -> tuple[float, float]:
+    """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) of the beam alone, under the slider."""
+    from verify.motion.slider_run import damped_field
+
+    field = damped_field(case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping)
+    x = case.slider.start_on(case.beam)
+    tangential = section_at(case.beam, x).surface_distance * field.omega
+    return float(abs(field.deflection([x]))[0]), tangential * float(abs(field.slope([x]))[0])
+
+
+def crest_speed(case: MotorCase) -> float:
+    """First-order amplitude of the tangential surface velocity under the slider, m/s."""
+    return surface_motion(case)[1]
+
+
+class Means(NamedTuple):
+    """Means over a window, or their errors; of all points together."""
+
+    force: float
+    """Friction on the slider along +x, N."""
+    normal_force: float
+    """N."""
+    contact_share: float
+    """Share of points and time in contact."""
+    stuck_share: float
+    """Share of points and time that stick."""
+    surface_power: float
+    """Power of the surface's tangential motion on the slider, W."""
+    friction_power: float
+    """Power lost in friction and tangential compliance, W."""
+
+
+class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
+    """A motor at a prescribed speed."""
+
+    speed: float
+    """m/s along +x."""
+    means: Means
+    """Over the last window."""
+    errors: Means
+    """Of the means: twice the standard error of the batch means or the difference of the window's halves, where that
+    is larger; of the normal force that of the momentum balance; of the powers the change from the window before."""
+    periods: int
+    """Of all windows."""
+    not_converged: tuple[Figure, ...]
+    run: MotorRun
+    """The last window, from the end of which another can continue."""
+
+    @property
+    def power(self) -> float:
+        """Mechanical power on the slider, force times speed, W."""
+        return self.means.force * self.speed + 0.0  # never a negative zero
+
+    @property
+    def efficiency(self) -> float | None:
+        """Power over surface power; None where one of the two is negative or the surface power zero."""
+        given = self.means.surface_power
+        return self.power / given if given > 0.0 and self.power >= 0.0 else None
+
+    def converged(self, *figures: Figure) -> bool:
+        """Whether these figures, or all, have converged."""
+        return not set(figures or TOLERANCES) & set(self.not_converged)
+
+
+def steady_state(
+    case: MotorCase, speed: float, periods: int = PERIODS, before: MotorRun | None = None, relative: float = 0.0
+) -> SteadyState:
+    """Means of a motor at a prescribed speed, m/s, after at most so many periods; `before` is a run to continue.
+
+    A force whose error is a smaller share of it than `relative` is enough. Raises InputError where the motion diverges.
+    """
+    first = copysign(max(abs(speed), presliding_speed(case.slider, FIRST * case.period)), speed) if speed else 0.0
+    found = _window(case, first, FIRST, before, None)
+    found = _window(case, speed, FIRST, found.run, found)
+    while found.not_converged and 2 * found.periods <= periods:
+        if found.errors.force < relative * abs(found.means.force):
+            break
+        found = _window(case, speed, found.periods, found.run, found)
+    return found
+
+
+def _window(
+    case: MotorCase, speed: float, periods: int, before: MotorRun | None, last: SteadyState | None
+) -> SteadyState:
+    """The next window, with the errors of its means; the first has none that count. Raises InputError."""
+    run = case.run(periods, BATCHES + 1, before, speed)
+    if not run.statistics.finished:
+        raise InputError(
+            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped} after "
+            f"{run.state.time:.6g} s, give more"
+        )
+    batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
+    powers = np.array([run.ledger.along, run.ledger.rubbed]) / run.duration
+    slider, means = case.slider, Means(*np.append(batches.mean(axis=0), powers).tolist())
+    errors = Means(*6 * [np.inf])
+    if last:
+        errors = Means(*np.append(batch_error(batches), np.abs(powers - last.means[4:])).tolist())
+        if balanced(slider):
+            errors = errors._replace(normal_force=abs(means.normal_force - slider.normal_force))
+    load, total = max(means.normal_force, slider.normal_force), periods + (last.periods if last else 0)
+    fastest = crest_speed(case) + abs(speed)
+    shares: dict[Figure, float] = {
+        "force": errors.force / (slider.mu * load),
+        "normal force": errors.normal_force / load,
+        "shares": max(errors[2:4]),
+        "powers": max(errors[4:]) / max(slider.mu * load * fastest, abs(means.surface_power)),
+    }
+    missing = tuple(name for name, share in shares.items() if share > TOLERANCES[name][total >= CHAOTIC])
+    return SteadyState(speed=speed, means=means, errors=errors, periods=total, not_converged=missing, run=run)
+
+
+def batch_error(batches: Array) -> Array:
+    """Error of the mean of batch means (n, k): twice its standard error, or the difference of halves where larger."""
+    half = len(batches) // 2
+    error = 2.0 * batches.std(axis=0, ddof=1) / np.sqrt(len(batches))
+    return np.asarray(np.maximum(error, np.abs(batches[:half].mean(axis=0) - batches[half:].mean(axis=0))))
+
+
+def balanced(slider: Slider) -> bool:
+    """Whether the mean normal force is the load: no spring preloads a foot, and no second beam."""
+    return not slider.preload_stiffness and not any(foot.mirrored for foot in slider.feet)
+
+
+def presliding_speed(slider: Slider, seconds: float) -> float:
+    """Speed at which all points slip within so many seconds, m/s; 0 of a contact that is rigid along the surface.
+
+    The softest point is displaced by 8 times what the friction limit of the whole slider stretches it by.
+    """
+    contact = slider.contact
+    stiffnesses = [contact.along(foot.length) / foot.points for foot in slider.feet] if contact else []
+    softest = min((one for one in stiffnesses if one), default=np.inf)
+    return SLIPS * slider.mu * slider.normal_force / softest / seconds

@@ -1,0 +1,124 @@
+"""Sliders on a pure travelling wave w = A cos(omega t - k x), integrated in time: the closed forms' own conditions."""
+
+from math import cos, isfinite, pi
+
+import numpy as np
+from msgspec.structs import replace
+
+from verify.arrays import Array
+from verify.errors import InputError
+from verify.exact.closed_forms import check_uniform
+from verify.motion.contact import law_of
+from verify.motion.forcing import CONSTANT
+from verify.motion.records import Rider, V, X
+from verify.motion.stepping import Sliding, fresh_motion
+from verify.motion.stepping import run_stages as run_point
+from verify.motion.surface import ANALYTIC_DEGREE, NO_MODES, Stage, cut
+from verify.motor import records
+from verify.motor.feet import Placed, feet_of, fresh_log
+from verify.motor.steady_state import Means
+from verify.motor.stepping import Riding
+from verify.motor.stepping import run_stages as run_feet
+from verify.problem.beam import Beam
+from verify.problem.slider import Contact, Foot, Slider
+
+STEPS = 1024
+"""Steps of a point in a period."""
+
+
+def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 0.0) -> Stage:
+    """One period of the wave as a slider of mean speed `mean`, m/s, meets it. Raises InputError for a stepped beam."""
+    check_uniform(beam)
+    omega = 2.0 * pi * frequency_hz
+    k = float(np.sqrt(omega / beam.wave_constant))
+
+    def drive(x: Array, derivative: int) -> Array:
+        values = amplitude * (-1j * k) ** derivative * np.exp(-1j * k * x)
+        return np.array([values.real, values.imag])
+
+    return Stage(
+        modal=NO_MODES,
+        forced=None,
+        free_shapes=lambda x, derivative: np.empty((0, len(x))),
+        drive_shapes=drive,
+        from_modes=None,
+        load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
+        edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2),
+        degree=ANALYTIC_DEGREE,
+        omega=omega,
+        origin=0.0,
+        unit_s=1.0,
+        growth=CONSTANT,
+        n_steps=STEPS,
+        every=STEPS,
+        dt=2.0 * pi / (omega - k * mean) / STEPS,
+    )
+
+
+def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: float) -> float:
+    """Mean speed along +x, m/s, of the periodic motion of a slider that never loses contact, tanh friction.
+
+    Root of the change of its speed over a period of the wave as the slider meets it. Raises InputError without one.
+    """
+    from scipy.optimize import brentq
+
+    slider.check_stays()
+    law, start, mean = law_of(slider, beam), slider.start_on(beam), 0.0
+
+    def period(speed: float, stage: Stage) -> tuple[float, float]:
+        """(displacement, change of speed) over a period."""
+        sliding = Sliding.fresh(start, 1, np.empty(0), Rider(fresh_motion(speed), law, None), False)
+        run_point([stage], np.zeros((2, 0)), sliding, (), lambda n: None)
+        if not isfinite(sliding.motion[V]):
+            raise InputError(f"amplitude = {amplitude!r} m: the slider leaves so steep a wave, lower it")
+        return float(sliding.motion[X]), float(sliding.motion[V]) - speed
+
+    for _ in range(3):
+        stage = wave_stage(beam, amplitude, frequency_hz, mean)
+        k = np.sqrt(stage.omega / beam.wave_constant)
+        reach = 2.0 * k * stage.omega * amplitude * (beam.surface_distance + amplitude)
+        if not period(-reach, stage)[1] > 0.0 > period(reach, stage)[1]:
+            raise InputError(f"amplitude = {amplitude!r} m: no periodic motion, raise mu or slope")
+        speed = brentq(lambda v, on=stage: period(v, on)[1], -reach, reach, xtol=1e-15 * reach, rtol=1e-14)
+        mean = period(float(speed), stage)[0] / stage.duration
+    return mean
+
+
+def foot_on_wave(
+    beam: Beam,
+    frequency_hz: float,
+    *,
+    speed_ratio: float,
+    contact_half_angle: float,
+    epsilon: float = 0.0,
+    mu: float = 0.2,
+    points: int = 61,
+    steps_per_period: int = 256,
+    amplitude: float = 1e-9,
+) -> tuple[Means, float]:
+    """(means over the third period, crest speed, m/s) of a rigid foot, one wavelength long, on a layer of springs.
+
+    It moves against the wave at `speed_ratio` times the crest speed, at the height at which a half angle of every crest
+    is in contact. `epsilon` = 2 mu kappa/(kappa_t k h) is its tangential compliance; Coulomb's law. Raises InputError.
+    """
+    wave, periods = wave_stage(beam, amplitude, frequency_hz), 3  # compliance forgets its start within two
+    k = float(np.sqrt(wave.omega / beam.wave_constant))
+    length, thickness = 2.0 * pi / k, 2.0 * beam.surface_distance
+    steps = cut(periods * wave.duration, wave.duration / steps_per_period * (1.0 + 1e-9), periods)
+    edges: Array = np.linspace(-0.01 * length, 1.01 * length, int(np.ceil(2.0 * pi / 0.3)) + 2)
+    stage = replace(wave, edges=edges, n_steps=steps.n, dt=steps.dt, every=steps.every)
+    crest = beam.surface_distance * k * stage.omega * amplitude
+    along = 2.0 * mu / (epsilon * k * thickness) if epsilon else None
+    contact = Contact(layer_stiffness=1.0, layer_tangential_stiffness=along)
+    foot = Foot(length=length, points=points, offset=0.5 * length, pitches=False)
+    slider = Slider(mass=1.0, mu=mu, law="coulomb", contact=contact, foot=(foot,))
+    placed = (Placed(slider, 0.0, -speed_ratio * crest, True),)
+    feet = feet_of(placed)
+    feet.given[:, records.FOOT_INVERSE_MASS] = 0.0
+    feet.state[:, records.HEIGHT] = amplitude * cos(contact_half_angle)
+    riding = Riding.of(feet, placed, beam, fresh_log(periods, feet, np.zeros((0, 2)), 1), np.empty(0), False)
+    run_feet([stage], [stage.table(0, len(edges) - 1)], np.zeros((2, 0)), riding, lambda n: None)
+    last = riding.log.kept[-1, 0]
+    read = records.KEPT_RUB, records.KEPT_PUSH, records.KEPT_TOUCHING, records.KEPT_STICKING
+    works = last[[records.KEPT_ALONG, records.KEPT_RUBBED]] * periods / stage.duration
+    return Means(*map(float, last[list(read)]), *map(float, works)), crest
