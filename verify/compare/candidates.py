@@ -50,14 +50,15 @@ ORDERS = {"half": 2, "welded": 2, "third-order": 3, "full": 1, "rigid": 1, "stif
 
 
 class Candidate(msgspec.Struct, frozen=True, kw_only=True):
-    """One discretisation, N apart."""
+    """One discretisation, N apart: model analytic, segment or fem.
+
+    `mass` of a chain: links, points, joints, rod; of elements: consistent, lumped, lumped-rotary, hrz, linear(-lumped).
+    `wall`: rule of a chain at a clamped end; None without one.
+    """
 
     model: str
-    """analytic, segment or fem."""
     mass: str = ""
-    """Of a chain: links, points, joints, rod; of elements: consistent, lumped, lumped-rotary, hrz, linear(-lumped)."""
     wall: str | None = None
-    """Rule of a chain at a clamped end; None without one."""
     joints: str = "series"
     attachment: str = "reciprocal"
     theory: str = EULER

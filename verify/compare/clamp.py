@@ -7,13 +7,12 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.compare.candidates import EXACT, Candidate, frequencies_hz
+from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointSpring
 
-SOFTEST, STIFFEST = 0.3, 1e4
-"""Range of k_r L/EI: softer is a hinge, stiffer changes nothing that a list shows."""
-SOLVED, INTERPOLATED = 28, 400
-"""Compliances."""
+STIFFNESSES = np.geomspace(0.3, 1e4, 400)
+"""k_r L/EI: softer is a hinge, stiffer changes nothing that a list shows."""
 
 
 def clamped_ends(beam: Beam) -> tuple[tuple[str, ...], ...]:
@@ -38,11 +37,10 @@ def clamp_effect(beam: Beam, ends: tuple[str, ...], n_modes: int) -> tuple[Array
     """(k_r L/EI (k,), log of the exact softened over the exact clamped frequencies (k, n_modes)). Raises InputError."""
     from scipy.interpolate import CubicSpline
 
-    exact = Candidate(model=EXACT)
-    solved, fine = (np.geomspace(SOFTEST, STIFFEST, n) for n in (SOLVED, INTERPOLATED))
+    exact, solved = Candidate(model=EXACT), np.geomspace(STIFFNESSES[0], STIFFNESSES[-1], 28)
     hertz = [frequencies_hz(exact, softened(beam, ends, float(k)), None, n_modes) for k in solved]
     logs = np.log(np.array(hertz) / frequencies_hz(exact, beam, None, n_modes))
-    return fine, np.asarray(CubicSpline(np.log(solved), logs)(np.log(fine)))
+    return STIFFNESSES, np.asarray(CubicSpline(np.log(solved), logs)(np.log(STIFFNESSES)))
 
 
 def fit_clamp(
@@ -56,14 +54,16 @@ def fit_clamp(
 ) -> tuple[float, Array]:
     """(k_r L/EI of least squares, log of a list over the softened candidate, (k,)). Raises InputError.
 
-    `logs` (k,) are of the list, `modes` (k,) its modes from 0, `start` the stiffness about which it is looked for.
+    `logs` (k,) are of the list, `modes` (k,) its modes from 0, `start` a stiffness near the optimum.
     """
-    from scipy.optimize import minimize_scalar
+    from scipy.optimize import least_squares
 
-    def left(log_stiffness: float) -> Array:
-        hertz = frequencies_hz(candidate, softened(beam, ends, float(np.exp(log_stiffness))), count, modes.max() + 1)
-        return np.asarray(logs - np.log(hertz[modes])) if len(hertz) > modes.max() else np.full(len(logs), np.inf)
+    def left(log_stiffness: Array) -> Array:
+        stiffness = float(np.exp(np.clip(log_stiffness, -9.0, 18.0)[0]))
+        hertz = frequencies_hz(candidate, softened(beam, ends, stiffness), count, int(modes.max()) + 1)
+        if len(hertz) <= modes.max():
+            raise InputError(f"count = {count}: so few parts have {len(hertz)} modes, raise count")
+        return np.asarray(logs - np.log(hertz[modes]))
 
-    around = np.log(start) + np.array([-0.5, 0.5])
-    found = minimize_scalar(lambda k: float(np.sum(left(k) ** 2)), bounds=around, options={"xatol": 1e-7})
-    return float(np.exp(found.x)), left(found.x)
+    found = least_squares(left, [np.log(start)], diff_step=1e-4, xtol=1e-9)
+    return float(np.exp(found.x[0])), np.asarray(found.fun)

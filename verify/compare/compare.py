@@ -11,7 +11,7 @@ from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.fit import TOLERANCE, Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
-from verify.compare.report import Entry, result_of, tables_of
+from verify.compare.report import Entry, result_of
 from verify.errors import InputError
 from verify.options import Support
 from verify.problem.beam import Beam
@@ -27,18 +27,17 @@ ERRORS = (1e-2, 1e-3)
 
 
 class Options(msgspec.Struct, frozen=True, kw_only=True):
-    """What is compared, and how."""
+    """What is compared, and how; None is any, or for `mode` the last of the list.
+
+    `count`: N of the model. `kind`: 'segments' or 'elements'. `mode`: for which N is required. `within`: largest
+    relative error against the exact beam. `theory`: of the exact beam.
+    """
 
     count: int | None = None
-    """N of the model; None: any."""
     kind: str | None = None
-    """'segments' or 'elements'; None: any."""
     mode: int | None = None
-    """For which N is required; None: the last of the list."""
     within: float | None = None
-    """Largest relative error against the exact beam; None: any."""
     theory: str = EULER
-    """Of the exact beam."""
 
 
 def compare(
@@ -48,63 +47,16 @@ def compare(
 
     `shapes`, one for each frequency, say which modes they are. `data["passed"]` of the result is the acceptance.
     """
-    beam, options = scene.beam, options or Options()
+    beam, options, hertz = scene.beam, options or Options(), given.hertz
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
             check_whole(field, getattr(options, field), 1)
-    if shapes is not None and len(shapes.values) != len(given.hertz):
-        raise InputError(f"modes = {len(shapes.values)} shapes for {len(given.hertz)} frequencies: give one for each")
-    if shapes is None and (np.diff(given.hertz) < 0.0).any():
+    if shapes is not None and len(shapes.values) != len(hertz):
+        raise InputError(f"modes = {len(shapes.values)} shapes for {len(hertz)} frequencies: give one for each")
+    if shapes is None and (np.diff(hertz) < 0.0).any():
         raise InputError(f"{given.source}: frequencies do not rise: sort them, or give the shapes of the modes")
-    exact = Candidate(model=EXACT, theory=options.theory)
-    n = max(len(given.hertz), *(given.numbers or (0,))) + SPARE
-    exact_hz = frequencies_hz(exact, beam, None, n)
-    rigid = _rigid(given, exact_hz)
-    kept = np.arange(rigid, len(given.hertz))
-    entries, modes, likeness, paired = _paired(beam, given, shapes, kept)
-    data = Data(
-        beam=beam,
-        logs=np.log(given.hertz[kept]),
-        rounding=given.rounding[kept],
-        members=candidates(beam, options.kind),
-        entries=entries,
-        modes=modes,
-        ordered=not paired,
-        count=options.count,
-    )
-    found = identify(data)
-    rows = [
-        Entry(
-            int(kept[e]) + 1,
-            int(m) + 1,
-            float(given.hertz[kept[e]]),
-            float(exact_hz[m]),
-            None if likeness is None else float(likeness[i]),
-        )
-        for i, (e, m) in enumerate(zip(entries, modes, strict=True))
-    ]
-    warnings = []
-    if rigid != beam.rigid_motions and rigid:
-        warnings.append(f"The list starts with {rigid} rigid motions, the beam of the scene has {beam.rigid_motions}.")
-    if (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any():
-        warnings.append("Frequencies are not in the order of the modes: see the column entry.")
-    if likeness is not None and (unlike := len(kept) - int((likeness >= LOW_MAC).sum())):
-        warnings.append(
-            f"{unlike} of the shapes are hardly modes of the beam (MAC below {LOW_MAC}): check beam.supports."
-        )
-    if found.status == "unknown" and (supports := _other_supports(beam, data.logs[entries], modes)):
-        warnings.append(f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.")
-    mode = options.mode or max(row.mode for row in rows)
-    sized = [] if found.status == "unknown" else _worth_sizing(beam, found.best.candidate)
-    required = [(one, mode, _required(beam, one, mode, max(mode, data.n_modes))) for one in sized]
-    tables, passed = tables_of(data, found, rows, required, options.within, len(warnings))
-    about = {"scene": scene.name, "source": given.source, "unit": given.unit, "passed": passed}
-    return result_of(beam, found, rows, tables, warnings, **about)
-
-
-def _rigid(given: FrequencyList, exact_hz: Array) -> int:
-    """How many leading entries are rigid motions. Raises InputError where all are."""
-    hertz, rigid = given.hertz, 0
+    n = max(len(hertz), *(given.numbers or (0,))) + SPARE
+    exact_hz, rigid = frequencies_hz(Candidate(model=EXACT, theory=options.theory), beam, None, n), 0
     for k in range(min(len(hertz), 7) - 1, 0, -1):
         gap = min(4.0 * exact_hz[k - 1] / exact_hz[k], 1.0)
         if hertz[:k].max() == 0.0 or hertz[:k].max() < RIGID * gap * hertz[k]:
@@ -112,23 +64,51 @@ def _rigid(given: FrequencyList, exact_hz: Array) -> int:
             break
     if not hertz[rigid:].all():
         raise InputError(f"{given.source} has no elastic mode among zeros: give their frequencies")
-    return rigid
-
-
-def _paired(
-    beam: Beam, given: FrequencyList, shapes: ModeShapes | None, kept: Indices
-) -> tuple[Indices, Indices, Array | None, bool]:
-    """(entries (k,) of those kept, their modes (k,) from 0, MAC (k,), whether by more than the order)."""
-    order = np.arange(len(kept))
+    entries = modes = np.arange(len(hertz) - rigid)
+    likeness, ordered = None, shapes is None
     if shapes is not None:
-        modes, likeness = pair_shapes(beam, shapes.x, shapes.values[kept])
-        like = likeness >= LEAST_MAC
-        return order[like], modes[like], likeness[like], True
-    if given.numbers is not None:
-        shift = 1 + (len(given.hertz) - len(kept) if given.numbers[0] == 1 else 0)
-        modes = np.array(given.numbers)[kept] - shift
-        return order, modes, None, bool((modes != order).any())
-    return order, order, None, False
+        paired, macs = pair_shapes(beam, shapes.x, shapes.values[rigid:])
+        entries = np.flatnonzero(macs >= LEAST_MAC)
+        modes, likeness = paired[entries], macs[entries]
+    elif given.numbers is not None:
+        modes = np.array(given.numbers)[rigid:] - 1 - (rigid if given.numbers[0] == 1 else 0)
+        ordered = bool((modes == entries).all())
+    data = Data(
+        beam=beam,
+        logs=np.log(hertz[rigid:]),
+        rounding=given.rounding[rigid:],
+        members=candidates(beam, options.kind),
+        entries=entries,
+        modes=modes,
+        ordered=ordered,
+        count=options.count,
+    )
+    found = identify(data)
+    macs = np.full(len(modes), None) if likeness is None else likeness
+    rows = [
+        Entry(int(e) + rigid + 1, int(m) + 1, float(hertz[e + rigid]), float(exact_hz[m]), like)
+        for e, m, like in zip(entries, modes, macs.tolist(), strict=True)
+    ]
+    disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
+    unlike = 0 if likeness is None else len(hertz) - rigid - int((likeness >= LOW_MAC).sum())
+    supports = _other_supports(beam, data.logs[entries], modes) if found.status == "unknown" else ()
+    told = {
+        f"The list starts with {rigid} rigid motions, the beam of the scene has {beam.rigid_motions}.": rigid
+        and rigid != beam.rigid_motions,
+        "Frequencies are not in the order of the modes: see the column entry.": disorder,
+        f"{unlike} of the shapes are hardly modes of the beam (MAC below {LOW_MAC}): check beam.supports.": unlike,
+        f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
+    }
+    warnings = [text for text, holds in told.items() if holds]
+    mode = options.mode or max(row.mode for row in rows)
+    sized: list[Candidate] = []
+    if found.status != "unknown" and (best := found.best.candidate).sized:  # and the most accurate of its kind
+        wall, joints = "gregory" if "clamped" in beam.supports else None, "tensioned" if beam.tension else "series"
+        chain = Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=best.theory)
+        accurate = Candidate(model=ELEMENTS, mass="consistent", theory=best.theory)
+        sized = list(dict.fromkeys([best, chain if best.model == CHAIN else accurate]))
+    required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in sized]
+    return result_of(scene.name, given, data, found, rows, required, warnings, options.within)
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
@@ -166,23 +146,10 @@ def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
     return ()
 
 
-def _worth_sizing(beam: Beam, best: Candidate) -> list[Candidate]:
-    """The best candidate, if it has parts, and the most accurate of its kind."""
-    if not best.sized:
-        return []
-    if best.model == CHAIN:
-        wall = "gregory" if "clamped" in beam.supports else None
-        joints = "tensioned" if beam.tension else "series"
-        accurate = Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=best.theory)
-    else:
-        accurate = Candidate(model=ELEMENTS, mass="consistent", theory=best.theory)
-    return [best, *[accurate] * (accurate != best)]
-
-
 def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tuple[int | None, ...]:
-    """N from which on larger ones keep each of ERRORS at a mode, by interpolation and solves; None beyond LARGEST."""
+    """N from which on a mode is within each of ERRORS, by interpolation and steps of one; None beyond LARGEST."""
     exact = float(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1])
-    sizes, logs = spectrum(beam, candidate, n_modes, (None,))
+    sizes, logs = spectrum(beam, candidate, n_modes)
     counts: list[int | None] = []
     for error in ERRORS:
 
@@ -191,17 +158,13 @@ def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tupl
             return len(hertz) >= mode and abs(float(hertz[mode - 1]) / exact - 1.0) <= error
 
         failing = np.flatnonzero(~(abs(np.expm1(logs[:, mode - 1] - np.log(exact))) <= error))
-        if len(failing) and failing[-1] + 1 == len(sizes):
+        if len(failing) and sizes[failing[-1]] == sizes[-1]:
             counts.append(None)
             continue
-        low, high = (int(sizes[failing[-1]]), int(sizes[failing[-1] + 1])) if len(failing) else (0, int(sizes[0]))
-        step = 1
+        high = int(sizes[failing[-1]]) + 1 if len(failing) else int(sizes[0])
         while not within(high):
-            low, high, step = high, high + step, 2 * step
-        while low > 0 and within(low):
-            high, low, step = low, max(low - step, 0), 2 * step
-        while high - low > 1:
-            middle = (high + low) // 2
-            high, low = (middle, low) if within(middle) else (high, middle)
+            high += 1
+        while high > 1 and within(high - 1):
+            high -= 1
         counts.append(high)
     return tuple(counts)

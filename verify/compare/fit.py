@@ -1,12 +1,11 @@
 """Candidates ranked by the rms difference of log frequencies, and faults of the list tested by the same rms."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import hypot, log, pi
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
 
 from verify.analysis.variants import is_uneven
 from verify.arrays import Array, Indices
@@ -17,69 +16,72 @@ from verify.problem.beam import Beam
 
 FLOOR, TOLERANCE, AMBIGUOUS = 1e-9, 1e-3, 2.0
 """Relative differences that solvers leave, and those up to which a candidate agrees; factor of rms of alternatives."""
-EFFECT, FLAT = 0.02, 0.95
-"""Largest rms over the effect of a fitted fault; ratio of rms above which neighbouring N are not tried further."""
+EFFECT = 0.02
+"""Largest rms over the effect of a fitted fault."""
 SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
 """N where the user does not give it; the last of the interpolated spectra."""
 FEWEST, REFINED = 3, 5
 """Entries for which a fault is fitted; candidates solved around their interpolated N."""
 UNITS = {"rad/s": 2 * pi, "mHz": 1e3, "1/min": 60.0, "divided by 2 pi": 0.5 / pi, "kHz": 1e-3, "1/60 Hz": 1 / 60}
-COST = {"none": 0.0, "unit": 5.0, "count": 5.0, "missing": 6.0, "extra": 6.0, "factor": 9.0, "clamp": 9.0}
-"""Of faults, in natural logarithms of likelihood."""
-FITTED = {"count": 1, "missing": 1, "extra": 2, "factor": 1, "clamp": 1}
-"""Fitted parameters of faults; an extra entry is one less to fit as well."""
+FAULTS = {
+    "none": ("none", 0.0, 0),
+    "unit": ("wrong unit, factor", 5.0, 0),
+    "count": ("another N", 5.0, 1),
+    "missing": ("missing mode", 6.0, 1),
+    "extra": ("extra entry", 6.0, 2),
+    "factor": ("common factor", 9.0, 1),
+    "clamp": ("compliant clamp, k_r L/EI", 9.0, 1),
+}
+"""Title, cost in natural logarithms of likelihood, fitted parameters; an extra entry is one less to fit as well."""
 
 
-class Fault(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A possible fault of a list, or none."""
+class Fault(msgspec.Struct, frozen=True, eq=False):
+    """A possible fault of a list, or none: a key of FAULTS.
+
+    `entries` of the list, (k,) from 0, are `modes`, (k,) from 0. `label`: unit, mode, entry or ends. `factor` is of all
+    frequencies, None if fitted. `ends` are compliant clamps.
+    """
 
     kind: str
-    """A key of COST."""
     entries: Indices
-    """(k,), from 0, of the list, that are modes."""
     modes: Indices
-    """(k,), from 0."""
     label: str = ""
-    """Unit, mode, entry or ends."""
     factor: float | None = 1.0
-    """Of all frequencies; None: fitted."""
     ends: tuple[str, ...] = ()
-    """Compliant clamped ends."""
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A candidate beside a list read with a fault."""
+    """A candidate beside a list read with a fault.
+
+    `parameter`: the factor, or the clamp's k_r L/EI. `differences` (k,), relative, of the list without its fault from
+    the candidate. `effect`: rms of the log frequency that the fault changes. `rms` and `largest` are of the log
+    differences beyond the rounding of the list.
+    """
 
     candidate: Candidate
     count: int | None
     fault: Fault
     parameter: float
-    """The factor, or the clamp's k_r L/EI."""
     differences: Array
-    """(k,), relative, of the list without its fault from the candidate."""
     effect: float
-    """Rms of the log frequency that the fault changes."""
     rms: float
-    """Of the log differences beyond the rounding of the list."""
     largest: float
-    """Of the same."""
 
 
 class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A list and what it is compared with."""
+    """A list and what it is compared with.
+
+    `logs` (n,) of frequencies in Hz, `rounding` (n,) relative; `entries` (k,) from 0 are those of known `modes` (k,),
+    `ordered` if by the order alone. `count` None: any N.
+    """
 
     beam: Beam
     logs: Array
-    """(n,), of frequencies in Hz."""
     rounding: Array
-    """(n,), relative."""
     members: tuple[Candidate, ...]
     entries: Indices
-    """(k,), from 0: those of known mode."""
     modes: Indices
-    """(k,), from 0."""
     ordered: bool
-    """Whether the order alone says which mode an entry is."""
     count: int | None
 
     @property
@@ -94,11 +96,11 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def fitted(self, fit: Fit) -> int:
         """Number of fitted parameters."""
-        return FITTED.get(fit.fault.kind, 0) + (fit.candidate.sized and self.count is None)
+        return FAULTS[fit.fault.kind][2] + (fit.candidate.sized and self.count is None)
 
     def score(self, fit: Fit) -> float:
         """Minus log likelihood with noise of unknown size, and the cost of the fault."""
-        return len(self.logs) * log(hypot(fit.rms, self.floor)) + COST[fit.fault.kind]
+        return len(self.logs) * log(hypot(fit.rms, self.floor)) + FAULTS[fit.fault.kind][1]
 
     def accepts(self, fit: Fit) -> bool:
         """Whether a fit is evidence: small differences, more entries than parameters, a fault that explains."""
@@ -111,31 +113,20 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether a fit is within the factor of ambiguity of the best."""
         return hypot(fit.rms, self.floor) <= AMBIGUOUS * hypot(best.rms, self.floor)
 
-    def fit(
-        self, candidate: Candidate, count: int | None, fault: Fault, parameter: float, left: Array, removed: Array
-    ) -> Fit:
-        """A fit by the log differences `left` (k,) beside `removed` (k,) by the fault."""
-        beyond = np.maximum(abs(left) - self.rounding[fault.entries], 0.0)
-        effect, rms = (float(np.sqrt(np.mean(values**2))) for values in (removed, beyond))
-        return Fit(
-            candidate=candidate, count=count, fault=fault, parameter=parameter, differences=np.expm1(left),
-            effect=effect, rms=rms, largest=float(beyond.max()),
-        )  # fmt: skip
-
 
 class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """What a list is."""
+    """What a list is: identified, ambiguous, exact (no division visible), few (frequencies) or unknown.
+
+    `ranking`: candidates with the likeliest fault, the best first; those `equivalent` to the best have its frequencies,
+    `alternatives`, of other faults as well, are within a factor of two of its rms. `tested`: the best fit of every kind
+    of fault, the likeliest first.
+    """
 
     status: str
-    """identified, ambiguous, exact (no division visible), few (frequencies) or unknown."""
     ranking: tuple[Fit, ...]
-    """Candidates with the likeliest fault, the best first."""
     equivalent: tuple[Fit, ...]
-    """Of these, those with the same frequencies as the best."""
     alternatives: tuple[Fit, ...]
-    """Of these, and of other faults, those within a factor of two of its rms."""
     tested: tuple[Fit, ...]
-    """The best fit of every kind of fault that was tested, the likeliest first."""
 
     @property
     def best(self) -> Fit:
@@ -145,7 +136,7 @@ class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def identify(data: Data) -> Identification:
     """Rank all candidates by the likeliest fault of the list. Raises InputError where none has so many modes."""
-    tested = {"none": _best(data, [Fault(kind="none", entries=data.entries, modes=data.modes)])}
+    tested = {"none": _best(data, [Fault("none", data.entries, data.modes)])}
     if tested["none"][0].rms > data.floor:
         faults = list(_faults(data))
         tested |= {kind: _best(data, [one for one in faults if one.kind == kind]) for kind in {f.kind for f in faults}}
@@ -179,39 +170,42 @@ def identify(data: Data) -> Identification:
 def _faults(data: Data) -> Iterator[Fault]:
     """All that are tested."""
     entries, modes, n = data.entries, data.modes, len(data.logs)
-    for label, factor in UNITS.items():
-        yield Fault(kind="unit", entries=entries, modes=modes, label=label, factor=factor)
+    yield from (Fault("unit", entries, modes, label, factor) for label, factor in UNITS.items())
     if data.count is not None:
-        yield Fault(kind="count", entries=entries, modes=modes)
+        yield Fault("count", entries, modes)
     if len(entries) < FEWEST:
         return
-    yield Fault(kind="factor", entries=entries, modes=modes, factor=None)
+    yield Fault("factor", entries, modes, factor=None)
     for ends in clamped_ends(data.beam):
-        yield Fault(kind="clamp", entries=entries, modes=modes, label=" and ".join(ends), ends=ends)
+        yield Fault("clamp", entries, modes, " and ".join(ends), ends=ends)
     for i in range(n if data.ordered else 0):
-        yield Fault(kind="missing", entries=entries, modes=np.delete(np.arange(n + 1), i), label=f"mode {i + 1}")
-        yield Fault(kind="extra", entries=np.delete(entries, i), modes=modes[:-1], label=f"entry {i + 1}")
+        yield Fault("missing", entries, np.delete(np.arange(n + 1), i), f"mode {i + 1}")
+        yield Fault("extra", np.delete(entries, i), modes[:-1], f"entry {i + 1}")
 
 
 def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[Fit]:
     """The best fits of all candidates and faults, the best first: those refined, or `every` candidate's."""
     order = {candidate: i for i, candidate in enumerate(data.members)}
 
-    def rank(fits: list[Fit]) -> list[Fit]:
-        return sorted(fits, key=lambda one: (max(one.rms, FLOOR), order[one.candidate]))
+    def rank(fits: Iterable[Fit | None]) -> list[Fit]:
+        there = (one for one in fits if one is not None)
+        return sorted(there, key=lambda one: (max(one.rms, FLOOR), order[one.candidate]))
 
-    scanned = rank([fit for one in data.members for fault in faults if (fit := _scanned(data, one, fault)) is not None])
+    scanned = rank(_scanned(data, one, fault) for one in data.members for fault in faults)
     near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
     if faults[0].ends:  # scanned with the effect on the exact beam, which is not that on the candidate
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER]
-    refined = [fit for one in near if (fit := _refined(data, one)) is not None]
+    refined = rank(_refined(data, one) for one in near)
+    if faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
+        refined = rank(_refined(data, one, SEARCHED) for one in near)
     if every:
         solved = {one.candidate for one in refined}
-        refined += [fit for one in scanned if one.candidate not in solved and (fit := _solved(data, one)) is not None]
-    ranked = rank(refined)
-    first = [one for one in ranked if _same(one, ranked[0])]  # of equal frequencies the one with least fitted
-    first.sort(key=lambda one: (data.fitted(one), order[one.candidate]))
-    return [*first, *[one for one in ranked if one not in first]]
+        refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
+
+    def equal_first(one: Fit) -> tuple[int, int]:  # of equal frequencies the one with least fitted
+        return (data.fitted(one), order[one.candidate]) if _same(one, refined[0]) else (9, 0)
+
+    return sorted(refined, key=equal_first)
 
 
 def _same(one: Fit, other: Fit) -> bool:
@@ -219,15 +213,20 @@ def _same(one: Fit, other: Fit) -> bool:
     return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
 
 
-def _scanned(data: Data, candidate: Candidate, fault: Fault) -> Fit | None:
-    """The fit at the best N of its spectrum; None without so many modes, or where the fault does not apply."""
-    counts: list[int | None] = [data.count]
-    if fault.kind == "count" and data.count is not None:
+def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[int | None] = ()) -> Fit | None:
+    """The fit at the best of these N, by default of the interpolated ones; None where the fault does not apply."""
+    if fault.ends and not candidate.springs:
+        return None
+    if not candidate.sized:
+        counts = (None,)
+    elif not counts and data.count is not None:
         near = {2 * data.count, data.count // 2, *range(data.count - 2, data.count + 3)} - {data.count}
-        counts = [size for size in sorted(near) if size >= SMALLEST and candidate.sized]
-    sizes, table = spectrum(data.beam, candidate, data.n_modes, tuple(counts) if candidate.sized else (None,))
-    if data.count is None:
-        sizes, table = sizes[sizes <= SEARCHED], table[sizes <= SEARCHED]
+        counts = sorted(near - set(range(SMALLEST))) if fault.kind == "count" else (data.count,)
+    if counts:
+        table = np.array([_logs(data.beam, candidate, size, data.n_modes) for size in counts])
+    else:
+        sizes, table = spectrum(data.beam, candidate, data.n_modes)
+        counts, table = sizes[sizes <= SEARCHED].tolist(), table[sizes <= SEARCHED]
     raw = data.logs[fault.entries] - table[:, fault.modes]
     parameters = np.full(len(raw), fault.factor or 1.0)
     if fault.ends:
@@ -236,92 +235,86 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault) -> Fit | None:
         except InputError:
             return None
         effect = effect[:, fault.modes]
-        at = np.clip(np.argmin(np.sum((raw[:, None, :] - effect) ** 2, axis=2), axis=1), 1, len(effect) - 2)
-        slope = 0.5 * (effect[at + 1] - effect[at - 1])
-        step = np.clip(np.sum(slope * (raw - effect[at]), axis=1) / np.sum(slope**2, axis=1), -1.0, 1.0)
-        parameters = stiffnesses[at] * (stiffnesses[1] / stiffnesses[0]) ** step
-        removed = effect[at] + step[:, None] * slope
+        at = np.argmin(np.sum((raw[:, None, :] - effect) ** 2, axis=2), axis=1)
+        parameters, removed = stiffnesses[at], effect[at]
     else:
         factors = np.median(raw, axis=1) if fault.factor is None else np.log(parameters)
         parameters, removed = np.exp(factors), np.repeat(factors[:, None], raw.shape[1], axis=1)
     squares = np.mean((raw - removed) ** 2, axis=1)
-    if not np.isfinite(squares).any() or (fault.ends and not candidate.springs):
+    if not np.isfinite(squares).any():
         return None
     i = int(np.nanargmin(squares))
-    size = int(sizes[i]) if candidate.sized else None
-    return data.fit(candidate, size, fault, float(parameters[i]), raw[i] - removed[i], removed[i])
+    return _fit(data, candidate, counts[i], fault, float(parameters[i]), raw[i] - removed[i], removed[i])
 
 
-def _refined(data: Data, fit: Fit) -> Fit | None:
-    """The fit at the best N near the interpolated one; at the best of all where errors do not fall smoothly."""
-    best = _solved(data, fit)
-    if best is None or best.count is None or data.count is not None:
+def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: float, left: Array, removed: Array) -> Fit:
+    """A fit by the log differences `left` (k,) beside `removed` (k,) by the fault."""
+    beyond = np.maximum(abs(left) - data.rounding[fault.entries], 0.0)
+    effect, rms = (float(np.sqrt(np.mean(values**2))) for values in (removed, beyond))
+    sizes = {"effect": effect, "rms": rms, "largest": float(beyond.max())}
+    return Fit(candidate=one, count=n, fault=fault, parameter=parameter, differences=np.expm1(left), **sizes)
+
+
+def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
+    """The fit at the best N near the interpolated one: within 30 % where errors do not fall smoothly with N.
+
+    `around`: least distance to search.
+    """
+    best = _solved(data, fit, fit.count)
+    if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
         return best
-    if is_uneven(data.beam):
-        whole = fit.fault.kind == "none"
-        sizes = range(SMALLEST, SEARCHED + 1) if whole else range(int(best.count / 1.2), int(1.2 * best.count) + 2)
-        for size in sizes:
-            other = _solved(data, replace(fit, count=size))
-            best = other if other is not None and other.rms < best.rms else best
-            if best.rms <= data.floor:
-                break
-        return best
-    for step in (1, -1):
-        while best.count is not None and SMALLEST < best.count < SEARCHED:
-            other = _solved(data, replace(best, count=best.count + step))
-            if other is None or other.rms > FLAT * best.rms:
-                break
-            best = other
+    wide = is_uneven(data.beam) and not fit.fault.ends
+    around = max(around, 2 + best.count * (0.3 if wide else 0.03))
+    sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)
+    for size in sorted(sizes, key=lambda size: abs(size - (fit.count or 0))):
+        if best.rms <= data.floor:
+            break
+        other = _solved(data, fit, size)
+        best = other if other is not None and other.rms < best.rms else best
     return best
 
 
-def _solved(data: Data, fit: Fit) -> Fit | None:
-    """A fit with the candidate's own frequencies at its N; None where there is no such model."""
+def _solved(data: Data, fit: Fit, count: int | None) -> Fit | None:
+    """A fit with the candidate's own frequencies at N; None where there is no such model."""
     fault, candidate = fit.fault, fit.candidate
     if not fault.ends:
-        known = data.count is not None or fit.count is None
-        return fit if known else _scanned(replace(data, count=fit.count), candidate, fault)
+        return fit if data.count is not None else _scanned(data, candidate, fault, (count,))
     try:
         logs = data.logs[fault.entries]
-        found, left = fit_clamp(data.beam, fault.ends, fit.parameter, candidate, fit.count, logs, fault.modes)
+        found, left = fit_clamp(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
     except InputError:
         return None
-    return data.fit(candidate, fit.count, fault, found, left, np.full(len(logs), fit.effect))
+    return _fit(data, candidate, count, fault, found, left, np.full(len(logs), fit.effect))
 
 
-@lru_cache(maxsize=5000)
-def spectrum(beam: Beam, candidate: Candidate, n_modes: int, counts: tuple[int | None, ...]) -> tuple[Indices, Array]:
-    """(N (r,), log of the frequencies (r, n_modes), NaN for modes that it has not); counts = (None,): of all N.
+def _logs(beam: Beam, candidate: Candidate, count: int | None, n_modes: int) -> Array:
+    """Log of the candidate's frequencies, (n_modes,), NaN for modes that it has not."""
+    try:
+        found = frequencies_hz(candidate, beam, count, n_modes)
+    except InputError:
+        found = np.empty(0)
+    return np.append(np.log(found), np.full(n_modes - len(found), np.nan))
 
-    All N are interpolated in 1/N between some that are solved and the exact beam of the same theory; where a step or an
-    attachment inside a part lets errors fall unevenly, those that are solved stand alone.
+
+@lru_cache(maxsize=500)
+def spectrum(beam: Beam, candidate: Candidate, n_modes: int) -> tuple[Indices, Array]:
+    """(N (r,), log of the frequencies (r, n_modes), NaN for modes that it has not) of all N of a candidate with parts.
+
+    Interpolated in 1/N between some N that are solved and the exact beam of the same theory.
     """
-
-    def solve(size: int | None) -> Array:
-        try:
-            found = frequencies_hz(candidate, beam, size, n_modes)
-        except InputError:
-            found = np.empty(0)
-        return np.append(np.log(found), np.full(n_modes - len(found), np.nan))
-
-    if not candidate.sized or counts != (None,):
-        rows = [solve(count) for count in counts]
-        return np.array([count or 0 for count in counts]), np.array(rows).reshape(len(rows), n_modes)
-    uneven, table, size = is_uneven(beam), {}, max(SMALLEST, n_modes // 2)
-    while size < (SEARCHED if uneven else 8 * n_modes):
-        table[size] = solve(size)
-        size = max(size + 1, round((1.3 if size < 3 * n_modes else 1.5) * size))
-    knots, solved = np.array(list(table)), np.array(list(table.values()))
-    if uneven or np.isnan(solved).all():
-        return knots, solved
     from scipy.interpolate import CubicSpline
 
-    limit = np.log(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, n_modes))
-    sizes = np.arange(SMALLEST, LARGEST + 1)
+    knots, sizes = [max(SMALLEST, n_modes // 2)], np.arange(SMALLEST, LARGEST + 1)
+    while knots[-1] < 6 * n_modes:
+        knots.append(max(knots[-1] + 1, round((1.3 if knots[-1] < 3 * n_modes else 1.5) * knots[-1])))
+    solved = np.array([_logs(beam, candidate, size, n_modes) for size in knots])
     logs = np.full((len(sizes), n_modes), np.nan)
+    if np.isnan(solved).all():
+        return sizes, logs
+    limit = np.log(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, n_modes))
     for mode in np.flatnonzero(np.isfinite(solved).sum(axis=0) > 2):
         known = np.isfinite(solved[:, mode])
-        x, y = np.append(0.0, 1.0 / knots[known][::-1]), np.append(limit[mode], solved[known, mode][::-1])
-        inside = sizes >= knots[known][0]
-        logs[inside, mode] = CubicSpline(x, y)(1.0 / sizes[inside])
+        x = np.append(0.0, 1.0 / np.array(knots)[known][::-1])
+        inside = sizes >= np.array(knots)[known][0]
+        logs[inside, mode] = CubicSpline(x, np.append(limit[mode], solved[known, mode][::-1]))(1.0 / sizes[inside])
     return sizes, logs

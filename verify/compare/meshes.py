@@ -24,16 +24,14 @@ _RADIANS = re.compile(r"rad|omega", re.IGNORECASE)
 _FREQUENCY = re.compile(r"hz|hertz|freq|rad|omega", re.IGNORECASE)
 
 
-class MeshShapes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Shapes along a beam from a mesh."""
+class MeshShapes(msgspec.Struct, frozen=True, eq=False):
+    """Shapes along a beam from a mesh, a frequency for each if it has them, and notes on arrays left out."""
 
     source: str
     shapes: ModeShapes
     names: tuple[str, ...]
     frequencies: FrequencyList | None
-    """One for each shape, if the mesh has them."""
     notes: tuple[str, ...]
-    """Arrays left out, and the mesh."""
 
 
 def read_mesh(path: Path, length: float) -> MeshShapes:
@@ -60,9 +58,8 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
         raise InputError(f"{source} is {sizes[along]:.4g} long and {sizes[wide]:.4g} wide: give the mesh of a beam")
     unit = next((u for u, factor in UNITS.items() if abs(sizes[along] / (factor * length) - 1.0) < LENGTH), None)
     if unit is None:
-        raise InputError(
-            f"{source} is {sizes[along]:.6g} long, the beam {length!r} m: set beam.length to that of the mesh"
-        )
+        lengths = f"{sizes[along]:.6g} long, the beam {length!r} m"
+        raise InputError(f"{source} is {lengths}: set beam.length to that of the mesh")
     x = points[:, along] - points[:, along].min()
     order = np.argsort(x, kind="stable")
     station = np.empty(len(x), dtype=int)
@@ -70,32 +67,22 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     counts = np.bincount(station)
     places = np.bincount(station, weights=x) / counts
     places[[0, -1]] = 0.0, x.max()
-    names, values, notes = (
-        [],
-        [],
-        [f"{len(points)} points in {unit}, {len(places)} cross-sections along {'xyz'[along]}."],
-    )
+    bent: dict[str, Array] = {}
+    notes = [f"{len(points)} points in {unit}, {len(places)} cross-sections along {'xyz'[along]}."]
     for name, vector in vectors.items():
         means = np.array([np.bincount(station, weights=part) / counts for part in vector.T])
         column = min(across, len(means) - 1)
         squares = (means[:, station] ** 2).sum(axis=1)
         if squares[column] > ACROSS * (vector**2).sum():
-            names.append(name)
-            values.append(means[column])
+            bent[name] = means[column]
         else:
             notes.append(f"{name} does not bend the beam across its thickness: left out.")
-    if not names:
+    if not bent:
         raise InputError(f"{source} has no shape that bends the beam across its thickness: write bending modes")
-    shapes = ModeShapes(x=places * (length / places[-1]), values=np.array(values))
-    chosen = [list(vectors).index(name) for name in names]
+    shapes = ModeShapes(x=places * (length / places[-1]), values=np.array(list(bent.values())))
+    chosen = [list(vectors).index(name) for name in bent]
     frequencies = _frequencies(field, len(vectors), chosen, source)
-    return MeshShapes(
-        source=source,
-        shapes=checked_shapes(shapes, length, source),
-        names=tuple(names),
-        frequencies=frequencies,
-        notes=tuple(notes),
-    )
+    return MeshShapes(source, checked_shapes(shapes, length, source), tuple(bent), frequencies, tuple(notes))
 
 
 def _thickness(sizes: Array, along: int, vectors: list[Array]) -> tuple[int, int]:

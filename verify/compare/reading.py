@@ -28,25 +28,20 @@ _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][+-]?\d+)?|[+-]?(nan|i
 
 
 class FrequencyList(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Natural frequencies as given."""
+    """Natural frequencies as given, (n,), with half a unit of the last digit, relative, and mode numbers from 1."""
 
     source: str
     hertz: Array
-    """(n,)."""
     rounding: Array
-    """(n,): half a unit of the last digit, relative."""
     numbers: tuple[int, ...] | None = None
-    """Mode numbers from 1, where the list has them."""
     unit: str = "Hz"
 
 
 class ModeShapes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Mode shapes as given."""
+    """Mode shapes as given, (n_modes, n_points), at x (n_points,), metres, ascending."""
 
     x: Array
-    """(n_points,), metres, ascending."""
     values: Array
-    """(n_modes, n_points)."""
 
 
 def listed(source: str, values: Sequence[float], cells: Sequence[str] = (), **more: Any) -> FrequencyList:
@@ -91,9 +86,8 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
 def read_shapes(path: Path, length: float) -> ModeShapes:
     """Mode shapes in a text file: x in metres, then one column for each mode. Raises InputError."""
     source = f"modes file {str(path)!r}"
-    table = np.array(
-        [[_float(cell, source, i) for cell in row] for i, row in enumerate(_rows(path, source)[1], start=1)]
-    )
+    rows = _rows(path, source)[1]
+    table = np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
     return checked_shapes(ModeShapes(x=table[:, 0], values=table[:, 1:].T), length, source)
 
 
@@ -127,9 +121,8 @@ def solve_model(name: str, beam: Beam, count: int | None, n_modes: int | None) -
     except InputError:
         raise
     except (Exception, SystemExit) as error:  # a stranger's code fails in any way
-        raise InputError(
-            f"model = {name!r} fails with {type(error).__name__}: {error}: correct model or name"
-        ) from None
+        why = f"{type(error).__name__}: {error}"
+        raise InputError(f"model = {name!r} fails with {why}: correct model or name") from None
     finally:
         sys.path.remove(str(Path.cwd()))
     return listed(f"model {name}", values.ravel().tolist())

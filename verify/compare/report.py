@@ -7,7 +7,8 @@ import numpy as np
 
 from verify.analysis.variants import is_uneven
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
-from verify.compare.fit import TOLERANCE, Data, Fit, Identification
+from verify.compare.fit import FAULTS, TOLERANCE, Data, Fit, Identification
+from verify.compare.reading import FrequencyList
 from verify.problem.beam import Beam
 from verify.report.result import Column, Figure, Result, Table
 
@@ -23,15 +24,6 @@ STATUS = {
     "few": "Too few frequencies to identify a model. Nearest",
     "unknown": "No known candidate agrees within 0.1 %. Nearest",
 }
-FAULTS = {
-    "none": "none",
-    "unit": "wrong unit, factor",
-    "count": "another N",
-    "factor": "common factor",
-    "missing": "missing mode",
-    "extra": "extra entry",
-    "clamp": "compliant clamp, k_r L/EI",
-}
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """What alone changes all frequencies by a factor, and in which power of it."""
 TIP_MASS = "A clamp of k_r = c EI/L on a cantilever has the frequencies of a mass rho A L / c at the other end."
@@ -42,12 +34,10 @@ RMS = (Column("rms", format=".3g", percent=True), Column("largest", format=".3g"
 
 
 class Entry(msgspec.Struct, frozen=True):
-    """A frequency of the list."""
+    """A frequency of the list: its entry from 1, its mode from 1 by place, number or shape."""
 
     entry: int
-    """From 1."""
     mode: int
-    """From 1, by its place, number or shape."""
     given_hz: float
     exact_hz: float
     mac: float | None
@@ -58,55 +48,94 @@ class Entry(msgspec.Struct, frozen=True):
         return self.given_hz / self.exact_hz - 1.0
 
 
-def tables_of(
+def result_of(
+    scene: str,
+    given: FrequencyList,
     data: Data,
     found: Identification,
     rows: list[Entry],
-    required: list[tuple[Candidate, int, tuple[int | None, ...]]],
+    required: list[tuple[Candidate | int | None, ...]],
+    warnings: list[str],
     within: float | None,
-    disorders: int,
-) -> tuple[list[Table], bool]:
-    """(all tables, whether the list is accepted).
+) -> Result:
+    """The result of a comparison, `data["passed"]` its acceptance. A warning is a fault of the list.
 
-    `required` are candidates, modes, and N for 1 % and 0.1 %; `disorders` the faults of the list beside the one tested.
+    `required` are candidates, modes, and N for 1 % and 0.1 %.
     """
     best, beam = found.best, data.beam
-    faulty, known = best.fault.kind != "none", found.status not in ("few", "unknown")
-    checks = [("faults of the list", float(faulty + disorders), 0.0, not (faulty or disorders))]
-    checks.append(("largest difference from the best candidate", best.largest, TOLERANCE, known))
+    faults = (best.fault.kind != "none") + len(warnings)
+    checks = [("faults of the list", float(faults), 0.0, not faults)]
+    checks.append(
+        ("largest difference from the best candidate", best.largest, TOLERANCE, found.status not in ("few", "unknown"))
+    )
     if within is not None:
         worst = max(abs(row.error) for row in rows)
         checks.append(("largest error against the exact beam", worst, within, worst <= within))
-    tables = [_modes(best, rows)]
     words = {id(one): "equivalent" for one in found.equivalent} | {id(one): "alternative" for one in found.alternatives}
     words[id(best)] = "best"
-    shown = [
+    lines: list[Any] = [
         (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
         for one in found.ranking[:SHOWN]
     ]
-    columns = [Column("candidate"), Column("N"), Column("order"), *RMS, Column("status")]
     notes = [
         "rms: of the log frequency differences. Equivalent: same frequencies. Alternative: rms below twice the best."
     ]
-    tables.append(Table("Candidates", columns, shown, notes))
+    columns = [Column("candidate"), Column("N"), Column("order"), *RMS, Column("status")]
+    tables = [_modes(best, rows), Table("Candidates", columns, lines, notes)]
     if len(found.tested) > 1:
         columns = [Column("fault"), Column("value"), Column("candidate"), Column("N"), *RMS]
-        tested = [(FAULTS[f.fault.kind], value(f), f.candidate.label, f.count, f.rms, f.largest) for f in found.tested]
-        tables.append(Table("Faults tested, the likeliest first", columns, tested))
+        lines = [
+            (FAULTS[f.fault.kind][0], value(f), f.candidate.label, f.count, f.rms, f.largest) for f in found.tested
+        ]
+        tables.append(Table("Faults tested, the likeliest first", columns, lines))
     if best.fault.kind == "factor":
         held, bare = bool(beam.spring or beam.foundation or beam.tension), best.candidate.theory == EULER
-        bare &= not (held or beam.mass)
         kept = {"E": not held, "rho": not beam.mass}
-        alone = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if kept.get(name, bare)]
+        bare &= not (held or beam.mass)
+        lines = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if kept.get(name, bare)]
         columns = [Column("parameter"), Column("change", format="+.3g", percent=True)]
-        tables.append(Table("Parameters that alone explain the factor", columns, alone))
+        tables.append(Table("Parameters that alone explain the factor", columns, lines))
     if required:
         columns = [Column("model"), Column("mode"), Column("N for 1 %"), Column("N for 0.1 %")]
-        lines = [(one.label, mode, *counts) for one, mode, counts in required]
+        lines = [(one.label, *counts) for one, *counts in required]  # type: ignore[union-attr]
         tables.append(Table("Required N", columns, lines, [UNEVEN] * is_uneven(beam)))
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables.append(Table("Acceptance", columns, [(*check[:3], "yes" if check[3] else "no") for check in checks]))
-    return tables, all(check[3] for check in checks)
+    size = f", N = {best.count}" if best.count else ""
+    summary = f"{STATUS[found.status]}: {best.candidate.label}{size}, rms difference {best.rms:.2g}."
+    if best.fault.kind != "none":
+        summary += f" Fault of the list: {FAULTS[best.fault.kind][0]} {value(best)}."
+    if set(beam.supports) == {"clamped", "free"} and beam.uniform:
+        clamp = any(one.fault.kind == "clamp" for one in (best, *found.alternatives))
+        lumped = best.candidate.mass == "joints" and best.candidate.wall in ("full", "rigid")
+        warnings = [*warnings, *[TIP_MASS] * clamp, *[TIP_LINK] * lumped]
+    about: dict[str, Any] = {"scene": scene, "source": given.source, "unit": given.unit}
+    about |= {"passed": all(check[3] for check in checks), "status": found.status, "best": _plain(best, beam)}
+    groups = {"equivalent": found.equivalent, "alternatives": found.alternatives, "candidates": found.ranking}
+    about |= {name: [_plain(one, beam) for one in fits] for name, fits in groups.items()}
+    figure = _figure(beam, found, rows)
+    return Result(summary, tables, [figure], warnings=warnings, data=about)
+
+
+def _figure(beam: Beam, found: Identification, rows: list[Entry]) -> Figure:
+    """Errors of the list, of the best candidate and of the next."""
+    best = found.best
+    following = next((one for one in found.ranking[1:] if one not in found.equivalent), None)
+    n = max(row.mode for row in rows)
+
+    def draw(ax: "Axes") -> None:
+        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
+        ax.plot([row.mode for row in rows], [100.0 * row.error for row in rows], "o", label="list")
+        for fit, style in ((best, "-"), (following, "--")):
+            if fit is not None:
+                hertz = frequencies_hz(fit.candidate, beam, fit.count, n)
+                errors = 100.0 * (hertz / exact[: len(hertz)] - 1.0)
+                ax.plot(np.arange(1, len(hertz) + 1), errors, style, label=fit.candidate.label)
+        ax.set(xlabel="mode", ylabel="frequency error, %")
+        ax.legend()
+
+    caption = "Points: the list as given, against the exact beam (Euler-Bernoulli). Lines: the best and next candidate."
+    return Figure("compare", "Frequencies beside the best candidates", caption, draw)
 
 
 def _modes(best: Fit, rows: list[Entry]) -> Table:
@@ -125,41 +154,6 @@ def _modes(best: Fit, rows: list[Entry]) -> Table:
         line += [None if at is None else int(fault.modes[at]) + 1, corrected] * faulty
         lines.append([*line, None if off is None else corrected / (1.0 + off), off, *[row.mac] * shaped])
     return Table("Modes", columns, sorted(lines, key=lambda line: line[1]))
-
-
-def result_of(
-    beam: Beam, found: Identification, rows: list[Entry], tables: list[Table], warnings: list[str], **data: Any
-) -> Result:
-    """The result of a comparison with summary, figure and data."""
-    best = found.best
-    size = f", N = {best.count}" if best.count else ""
-    summary = f"{STATUS[found.status]}: {best.candidate.label}{size}, rms difference {best.rms:.2g}."
-    if best.fault.kind != "none":
-        summary += f" Fault of the list: {FAULTS[best.fault.kind]} {value(best)}."
-    if set(beam.supports) == {"clamped", "free"} and beam.uniform:
-        clamp = any(one.fault.kind == "clamp" for one in (best, *found.alternatives))
-        lumped = best.candidate.mass == "joints" and best.candidate.wall in ("full", "rigid")
-        warnings = [*warnings, *[TIP_MASS] * clamp, *[TIP_LINK] * lumped]
-    data |= {"status": found.status, "best": _plain(best, beam)}
-    groups = {"equivalent": found.equivalent, "alternatives": found.alternatives, "candidates": found.ranking}
-    data |= {name: [_plain(one, beam) for one in fits] for name, fits in groups.items()}
-    following = next((one for one in found.ranking[1:] if one not in found.equivalent), None)
-    n = max(row.mode for row in rows)
-
-    def draw(ax: "Axes") -> None:
-        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
-        ax.plot([row.mode for row in rows], [100.0 * row.error for row in rows], "o", label="list")
-        for fit, style in ((best, "-"), (following, "--")):
-            if fit is not None:
-                hertz = frequencies_hz(fit.candidate, beam, fit.count, n)
-                errors = 100.0 * (hertz / exact[: len(hertz)] - 1.0)
-                ax.plot(np.arange(1, len(hertz) + 1), errors, style, label=fit.candidate.label)
-        ax.set(xlabel="mode", ylabel="frequency error, %")
-        ax.legend()
-
-    caption = "Points: the list as given, against the exact beam (Euler-Bernoulli). Lines: the best and next candidate."
-    figure = Figure("compare", "Frequencies beside the best candidates", caption, draw)
-    return Result(summary, tables, [figure], warnings=warnings, data=data)
 
 
 def value(fit: Fit) -> str:

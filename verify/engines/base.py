@@ -21,20 +21,19 @@ SAMPLES = 200
 
 @dataclass(frozen=True)
 class Chain:
-    """n equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest. SI units."""
+    """n equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest. SI units.
+
+    `link`, `mass`, `inertia`: length of a link, its mass, and its inertia about its middle. `spring`: rotational, at
+    each inner joint. `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0.
+    """
 
     n: int
     link: float
-    """Length of a link."""
     mass: float
-    """Of a link."""
     inertia: float
-    """Of a link about its middle."""
     spring: float
-    """Rotational, at each inner joint."""
     frequency_hz: float
     forces: tuple[PointForce, ...]
-    """Transverse, amplitude cos(omega t + phase), switched on at t = 0."""
 
     @property
     def length(self) -> float:
@@ -70,16 +69,16 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
 
 @dataclass(frozen=True)
 class Rider:
-    """A point mass on the surface, moved by tanh friction and without effect on the chain. SI units."""
+    """A point mass on the surface, moved by tanh friction and without effect on the chain. SI units.
+
+    `friction`: mu N. `half_thickness`: from the neutral line to the surface. `start`: position from the left end.
+    """
 
     mass: float
     friction: float
-    """Mu N."""
     slope: float
     half_thickness: float
-    """From the neutral line to the surface."""
     start: float
-    """Position from the left end."""
     speed: float = 0.0
 
     def force(self, relative_speed: float) -> float:
@@ -116,20 +115,18 @@ def rider_of(beam: Beam, slider: Slider) -> Rider:
 
 @dataclass(frozen=True)
 class Run:
-    """What an engine returned, up to where it failed."""
+    """What an engine returned, up to where it failed; arrays (m,) in s, m and m/s.
+
+    `deflection` of mid-span, `distance` and `speed` of the slider, zeros without one. `steps` are those completed,
+    `failure` is what the engine did where it failed, and when.
+    """
 
     times: Array
-    """(m,), s."""
     deflection: Array
-    """(m,), of mid-span, m."""
     distance: Array
-    """(m,), of the slider from its start, m; zeros without one."""
     speed: Array
-    """(m,), m/s."""
     steps: int
-    """Completed."""
     failure: str = ""
-    """What the engine did where it failed, and when."""
 
 
 class Adapter(Protocol):
@@ -144,16 +141,16 @@ class Adapter(Protocol):
 
 @dataclass(frozen=True)
 class Engine:
-    """An engine and where its adapter is."""
+    """An engine and where its adapter is.
+
+    `package` is pip's name, `home` the 'module:class' of the adapter; steps of `implicit` ones have no stability limit.
+    """
 
     name: str
     package: str
-    """As pip names it."""
     module: str
     home: str
-    """'module:class' of the adapter."""
     implicit: bool = False
-    """Whether its steps have no stability limit."""
 
     def adapter(self) -> Adapter:
         """The adapter, which imports the engine. Raises InputError where it is not installed."""

@@ -104,11 +104,8 @@ def _add_slider(chain: Chain, rider: Rider, system: Any, nodes: list[int]) -> in
     import exudyn as exu
     from exudyn import utilities as items
 
-    place, rate, spin = (
-        exu.OutputVariableType.Coordinates,
-        exu.OutputVariableType.Coordinates_t,
-        exu.OutputVariableType.AngularVelocity,
-    )
+    kinds = exu.OutputVariableType
+    place, rate, spin = kinds.Coordinates, kinds.Coordinates_t, kinds.AngularVelocity
     start = {"initialCoordinates": [0.0], "initialVelocities": [rider.speed]}
     node = system.AddNode(items.Node1D(referenceCoordinates=[0.0], **start))
     system.AddObject(items.Mass1D(mass=rider.mass, nodeNumber=node))
@@ -136,18 +133,7 @@ def _settings(steps: int, end: float, with_rider: bool) -> Any:
     newton.useModifiedNewton = True
     newton.relativeTolerance, newton.absoluteTolerance = WITH_RIDER if with_rider else TOLERANCE, 1e-12
     newton.numericalDifferentiation.minimumCoordinateSize = 1
-    values = (
-        (False, "solution.file.write", "solutionSettings.writeSolutionToFile"),
-        (end / min(SAMPLES, steps), "solution.sensors.writePeriod", "solutionSettings.sensorsWritePeriod"),
-        (exu.LinearSolverType.EigenSparse, "linearSolver.solverType", "linearSolverType"),
-    )
-    for value, *paths in values:  # the newer name first
-        for path in paths:
-            *owners, name = path.split(".")
-            owner: Any = settings
-            for one in owners:
-                owner = getattr(owner, one, None)
-            if hasattr(owner, name):
-                setattr(owner, name, value)
-                break
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = end / min(SAMPLES, steps)
     return settings

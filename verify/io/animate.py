@@ -23,6 +23,7 @@ FRAMES, FPS = 36, 20
 """Frames of one period of a mode, and per second."""
 MAX_FRAMES = 300
 """Of a motion; more steps are thinned out."""
+MARKERS = {"pinned": "^", "clamped": "s", "guided": "D", "free": "none"}
 HEIGHT = 0.08
 """Largest drawn deflection over the length."""
 
@@ -36,7 +37,11 @@ def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -
     if kind == "png":
         largest = int(np.argmax(abs(frames["deflection"]).max(axis=1)))
         frames = {name: values[largest : largest + 1] for name, values in frames.items()}
-    pictures = _solid(data, frames) if request.solid else _flat(scene, data, frames)
+    if request.solid:
+        pictures = _solid(data, frames)
+    else:
+        drawn = movie_frames(movie(scene, data, frames), 110.0, INK, "white")[0]
+        pictures = [image.convert("RGB") for image in drawn]
     with whole(path, "to") as part:
         if kind == "png":
             pictures[0].save(part, format="png")
@@ -69,10 +74,6 @@ def _scale(deflection: "Array", length: float) -> float:
     return HEIGHT * length / largest
 
 
-def _flat(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> list[Any]:
-    return [image.convert("RGB") for image in movie_frames(movie(scene, data, frames), 110.0, INK, "white")[0]]
-
-
 def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
     """The frames as a movie: the beam at its supports, forces as arrows, the slider on the surface."""
 
@@ -85,10 +86,8 @@ def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
         color = MODEL_COLORS["segment" if data.links else "fem"]
         ax.plot([0.0, length], [0.0, 0.0], color="#b0b6be", linewidth=0.8)
         for x, support in zip((0.0, length), scene.beam.supports, strict=True):
-            marker, y = {"pinned": ("^", -0.3), "clamped": ("s", 0.0), "guided": ("D", 0.0), "free": ("none", 0.0)}[
-                support
-            ]
-            ax.plot([x], [y * HEIGHT * length], marker=marker, color=INK, markersize=9, clip_on=False)
+            y = -0.3 * HEIGHT * length if support == "pinned" else 0.0
+            ax.plot([x], [y], marker=MARKERS[support], color=INK, markersize=9, clip_on=False)
         for force in scene.forces if data.what != "modes" else ():
             tip = (force.position, 1.2 * HEIGHT * length)
             ax.annotate("", tip, (force.position, 2.1 * HEIGHT * length), arrowprops={"color": "#cc3f76", "width": 1.0})

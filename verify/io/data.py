@@ -39,24 +39,23 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True)
 class Dataset:
-    """Values at points along a beam, and deflections over steps. SI units."""
+    """Values at n points along a beam, and deflections over k steps. SI units.
+
+    `links`: whether the beam is straight between its points `x` (n,), ascending. `points`: (n,) each. `steps` (k,):
+    time, or the frequencies of modes. `deflection` (k, n); of modes mass-normalised, 1/sqrt(kg). `histories`: (k,)
+    each, of the slider.
+    """
 
     what: str
     title: str
     beam: "Beam"
     links: bool
-    """Whether the beam is straight between its points."""
     x: Array
-    """(n,), m, ascending."""
     points: dict[str, Array]
-    """(n,) each."""
     steps: Array
-    """(k,): time, s, or the frequencies of modes, Hz."""
     step_name: str
     deflection: Array
-    """(k, n), m; of modes mass-normalised, 1/sqrt(kg)."""
     histories: dict[str, Array] = field(default_factory=dict)
-    """(k,) each, of the slider."""
 
     @property
     def cells(self) -> dict[str, Array]:

@@ -37,7 +37,8 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
     kind = path.suffix.lower().removeprefix(".")
     if kind not in TYPES:
         raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give one of .{', .'.join(TYPES)}")
-    what = request.what or _default(scene, kind)
+    there = [*["motion"] * (scene.motion is not None), *["wave"] * bool(scene.forces), "modes", "tables"]
+    what = request.what or next(what for what in there if what in TYPES[kind])
     if what not in (*DATA, "tables"):
         raise InputError(f"what = {what!r} is not known: {near_name(what, (*DATA, 'tables'))}")
     if what not in TYPES[kind]:
@@ -45,9 +46,11 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
         raise InputError(f"what = {what!r}: a .{kind} file does not hold it, give one of {holding}")
     writable_folder(path.parent, "to")
     if what == "tables":
+        from verify.report.summary import gates_table
         from verify.scene.run import run_scene
 
-        tables = tables_of(run_scene(scene, progress))
+        run = run_scene(scene, progress)
+        tables = [gates_table(run), *(table for result in run.results.values() for table in result.tables)]
         data = [{"title": table.title, "rows": table.records()} for table in tables]
         write_whole(path, latex(tables) if kind == "tex" else to_json(data), "to")
         return f"{len(tables)} tables"
@@ -61,18 +64,6 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
         writers = {"vtu": _vtu, "pvd": _pvd, "xdmf": _xdmf, "csv": _csv, "json": _json, "npz": _npz}
         writers[kind](data_, path)
     return data_.title
-
-
-def _default(scene: "Scene", kind: str) -> str:
-    there = [*(["motion"] if scene.motion is not None else []), *(["wave"] if scene.forces else []), "modes", "tables"]
-    return next(what for what in there if what in TYPES[kind])
-
-
-def tables_of(run: Any) -> list[Table]:
-    """The gates of a run and the tables of its studies."""
-    from verify.report.summary import gates_table
-
-    return [gates_table(run), *(table for result in run.results.values() for table in result.tables)]
 
 
 def _vectors(values: "Array", axis: int = 1) -> "Array":
@@ -90,17 +81,20 @@ def _mesh(data: Dataset, points: "dict[str, Array]") -> Any:
     return meshio.Mesh(_vectors(data.x, 0), [("line", lines)], point_data=points, cell_data=cells)
 
 
-def _at_points(data: Dataset) -> "dict[str, Array]":
-    """Values at points; deflections as vectors, so that programs can warp the beam by them."""
-    scalars = ("amplitude", "phase_deg", "slope_real", "slope_imaginary")
-    return {name: values if name in scalars else _vectors(values) for name, values in data.points.items()}
-
-
 def _vtu(data: Dataset, path: Path) -> None:
+    """Deflections as vectors, so that programs can warp the beam by them."""
     import meshio
 
+    scalars = ("amplitude", "phase_deg", "slope_real", "slope_imaginary")
+    points = {name: values if name in scalars else _vectors(values) for name, values in data.points.items()}
     with whole(path, "to") as part:
-        meshio.write(part, _mesh(data, _at_points(data)), file_format="vtu")
+        meshio.write(part, _mesh(data, points), file_format="vtu")
+
+
+def _step(data: Dataset, i: int) -> "dict[str, Array]":
+    """Values at the points at a step."""
+    slider = {name: np.full(len(data.x), values[i]) for name, values in data.histories.items()}
+    return {"deflection": _vectors(data.deflection[i]), **slider}
 
 
 def _pvd(data: Dataset, path: Path) -> None:
@@ -112,17 +106,13 @@ def _pvd(data: Dataset, path: Path) -> None:
         f'<DataSet timestep="{float(step)!r}" part="0" file="{folder.name}/{name}"/>\n'
         for step, name in zip(data.steps, names, strict=True)
     )
-    collection = (
-        f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n{rows}</Collection>\n'
-    )
+    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n'
     writable_folder(folder, "to")
     with whole(path, "to") as index:
-        index.write_text(f"{collection}</VTKFile>\n", "utf-8")
+        index.write_text(f"{head}{rows}</Collection>\n</VTKFile>\n", "utf-8")
         for i, name in enumerate(names):
-            mesh = _mesh(data, {"deflection": _vectors(data.deflection[i])})
-            mesh.point_data |= {key: np.full(len(data.x), values[i]) for key, values in data.histories.items()}
             with whole(folder / name, "to") as part:
-                meshio.write(part, mesh, file_format="vtu")
+                meshio.write(part, _mesh(data, _step(data, i)), file_format="vtu")
 
 
 def _xdmf(data: Dataset, path: Path) -> None:
@@ -133,9 +123,7 @@ def _xdmf(data: Dataset, path: Path) -> None:
         mesh = _mesh(data, {})
         writer.write_points_cells(mesh.points, mesh.cells)
         for i, step in enumerate(data.steps):
-            points = {"deflection": _vectors(data.deflection[i])}
-            points |= {name: np.full(len(data.x), values[i]) for name, values in data.histories.items()}
-            writer.write_data(float(step), point_data=points)
+            writer.write_data(float(step), point_data=_step(data, i))
 
 
 def _csv(data: Dataset, path: Path) -> None:
@@ -183,13 +171,7 @@ def latex(tables: Sequence[Table]) -> str:
         words = [any(isinstance(line[i], str) for line in table.rows) for i in range(len(table.columns))]
         sides = "".join("l" if word else "r" for word in words)
         lines = [rf"\par\medskip\noindent {row([table.title])[:-3]}\par\smallskip", rf"\begin{{tabular}}{{{sides}}}"]
-        lines += [
-            r"\hline",
-            row(table.headings()),
-            r"\hline",
-            *map(row, table.text_rows()),
-            r"\hline",
-            r"\end{tabular}",
-        ]
+        lines += [r"\hline", row(table.headings()), r"\hline", *map(row, table.text_rows()), r"\hline"]
+        lines.append(r"\end{tabular}")
         parts.append("\n".join([*lines, *(rf"\par {row([note])[:-3]}" for note in table.notes)]) + "\n")
     return "\n".join(parts)
