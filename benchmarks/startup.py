@@ -15,8 +15,17 @@ COMMANDS = {
     "verify --help": ["-m", "verify", "--help"],
     "verify quantities": ["-m", "verify", "quantities"],
     **{
-        f"verify measure, {model}": ["-m", "verify", "measure", "mode.frequency", f"model={model}", "mode=22", *count]
-        for model, count in (("analytic", []), ("segment", ["count=49"]), ("fem", ["count=49"]))
+        f"verify measure, {model}": [
+            "-m",
+            "verify",
+            "measure",
+            "paper",
+            "mode.frequency",
+            f"model={model}",
+            "mode=22",
+            *count,
+        ]
+        for model, count in (("analytic", ""), ("segment", "count=49"), ("fem", "count=49"))
     },
     "verify run paper": ["-m", "verify", "run", "paper", "--no-report"],
     "verify run paper-wave": ["-m", "verify", "run", "paper-wave", "--no-report"],

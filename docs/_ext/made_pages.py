@@ -30,7 +30,7 @@ def table(head, rows):
 
 def scenes():
     """Every section of a scene with its keys."""
-    from verify.commands.schema import _type
+    from verify.commands.schema import type_text
     from verify.scene.schema import scene_schema, sections
 
     yield SCENES
@@ -38,7 +38,9 @@ def scenes():
         schema = scene_schema(name)
         defaults = {key: one.get("default", "") for key, one in schema["properties"].items()}
         defaults |= dict.fromkeys(schema.get("required", ()), "required")
-        rows = [(f"`{k}`", _type(v), defaults[k], v.get("description", "")) for k, v in schema["properties"].items()]
+        rows = [
+            (f"`{k}`", type_text(v), defaults[k], v.get("description", "")) for k, v in schema["properties"].items()
+        ]
         yield f"## `{name}`\n\n{schema['description']}\n"
         yield table(("key", "type", "default", "meaning"), rows)
 

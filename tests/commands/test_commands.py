@@ -102,6 +102,7 @@ REFUSED = [
     ("run bare.toml --set spectrum.modes=x", "spectrum.modes"),
     ("sweep bare.toml", "sweep"),
     ("sweep bare.toml count=4,8", "QUANTITY is missing"),
+    ("sweep bare.toml mode.frequency model=fem mode=1 count=4:12:4", "write a range of whole numbers as 4-12:4"),
     ("sweep bare.toml mode.frequency model=fem mode=1 cuont=4,8", "did you mean 'count'"),
 ]
 
@@ -189,6 +190,7 @@ def test_table_of_another_study(data, bare):
 def test_charts_are_written(call, bare):
     assert call("table bare.toml --study spectrum --charts charts")[0] == 0
     assert any(one.read_text().startswith("<svg") for one in Path("charts").glob("*.svg"))
+    assert len(list(Path("charts").glob("*.png"))) == len(list(Path("charts").glob("*.csv"))) > 0
 
 
 def test_choose_is_sufficient(data, bare):

@@ -145,7 +145,9 @@ def test_a_motor_starts_by_the_layers_force_over_its_mass():
     found = transient(case, 300)
     assert found.time_constant(-speed * CRESTS) == pytest.approx(wanted.t_events[0][0], rel=5e-3)
     psi, left = acos(speed), speed + found.speeds / CRESTS
-    constant = mass * CRESTS * sin(psi) * 2.0 * layer.normal_integral(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    constant = (
+        mass * CRESTS * sin(psi) * 2.0 * layer.normal_integral(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    )
     last = (left > 0.005) & (left < 0.02)
     assert -1.0 / np.polyfit(found.times[last], np.log(left[last]), 1)[0] == pytest.approx(constant, rel=0.08)
 

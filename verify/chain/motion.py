@@ -158,8 +158,8 @@ def highest_frequency(system: ChainSystem) -> tuple[float, float]:
     from scipy.sparse.linalg import eigsh
 
     chain = straight_chain(system)
-    differences, scale, angles = plain_factors(chain)
-    bends, mass = angles @ scale @ differences, link_mass(Motions(chain))
+    differences, angles = plain_factors(chain)
+    bends, mass = angles @ differences, link_mass(Motions(chain))
 
     def largest(coefficients: Array) -> float:
         if not coefficients.any():

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import format_options, progress, show
+from verify.commands.shared import charts_option, format_options, progress, save_charts, show
 
 
 @click.command()
@@ -14,7 +14,7 @@ from verify.commands.shared import format_options, progress, show
 @click.option("--sizes", metavar="LIST", help="Segments and elements. Default: 24,49,98,196,392.")
 @click.option("--seconds", type=float, default=5.0, show_default=True, help="Time limit of a method and of the rounds.")
 @click.option("--against", type=click.Path(path_type=Path, dir_okay=False), help="JSON of an earlier run to compare.")
-@click.option("--charts", metavar="FOLDER", help="Write the charts there as SVG.")
+@charts_option
 @format_options
 def bench(
     sets: tuple[str, ...],
@@ -24,9 +24,7 @@ def bench(
     seconds: float,
     against: Path | None,
     charts: str | None,
-    as_json: bool,
-    as_csv: bool,
-    as_markdown: bool,
+    **formats: bool,
 ) -> None:
     """Measure run time over error of all methods: modes, field, transient, slider, ride, chain, engines.
 
@@ -57,7 +55,7 @@ def bench(
         except (OSError, ValueError, KeyError, TypeError):
             raise InputError(f"--against = {shown(str(against))}: give a file by `verify bench --json`") from None
     measured = []
-    with progress(quiet=as_json or as_csv or as_markdown) as step:
+    with progress(quiet=any(formats.values())) as step:
         for name in sets or SETS:
             step(name)
             try:
@@ -67,11 +65,5 @@ def bench(
                     raise
                 click.echo(f"verify: {error}", err=True)  # one of all sets, which this beam or machine does not have
     found = result(measured, earlier)
-    show(found, as_json=as_json, as_csv=as_csv, as_markdown=as_markdown)
-    if charts:
-        from verify.files import writable_folder, write_whole
-        from verify.report.plotting import figure_svg
-
-        folder = writable_folder(Path(charts), "--charts")
-        for figure in found.figures:
-            write_whole(folder / f"{figure.id}.svg", figure_svg(figure))
+    show(found, **formats)
+    save_charts(found, charts)

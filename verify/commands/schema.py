@@ -38,7 +38,7 @@ def schema(section: str | None, as_json: bool, path: str | None) -> None:
         keys = [
             (
                 key,
-                _type(one),
+                type_text(one),
                 "required" if key in required else str(one.get("default", "")),
                 one.get("description", ""),
             )
@@ -48,16 +48,17 @@ def schema(section: str | None, as_json: bool, path: str | None) -> None:
         Table(section, columns, keys).print(console())
 
 
-def _type(one: dict[str, object]) -> str:
+def type_text(one: dict[str, object]) -> str:
+    """Type and limits of a property of a JSON Schema: 'number > 0', 'list of table'."""
     for arms in ("anyOf", "allOf"):
         if isinstance(one.get(arms), list):
-            return " | ".join(_type(arm) for arm in one[arms])  # type: ignore[attr-defined]
+            return " | ".join(type_text(arm) for arm in one[arms])  # type: ignore[attr-defined]
     if "enum" in one:
         return " | ".join(map(str, one["enum"]))  # type: ignore[call-overload]
     if "$ref" in one:
         return "table"
     if one.get("type") == "array":
         items = one.get("items")
-        return f"list of {_type(items)}" if isinstance(items, dict) else "list"
+        return f"list of {type_text(items)}" if isinstance(items, dict) else "list"
     limits = "".join(f" {sign} {one[key]:g}" for key, sign in _LIMITS if key in one)
     return f"{one.get('type', 'any')}{limits}"

@@ -28,9 +28,7 @@ overrides_option = click.option(
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
 csv_option = click.option("--csv", "as_csv", is_flag=True, help="Print the first table as CSV, in SI units.")
 markdown_option = click.option("--markdown", "as_markdown", is_flag=True, help="Print the first table as Markdown.")
-
-
-charts_option = click.option("--charts", metavar="FOLDER", help="Write the charts to FOLDER as SVG.")
+charts_option = click.option("--charts", metavar="FOLDER", help="Write the charts to FOLDER as SVG, PNG and CSV.")
 
 
 def format_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -58,17 +56,21 @@ def show(result: "Result", *, as_json: bool = False, as_csv: bool = False, as_ma
         result.print(console())
 
 
-def save_charts(result: "Result", folder: str | None) -> None:
-    """Write every chart of a result as FOLDER/ID.svg; nothing where no folder is given. Raises InputError."""
-    if folder is None:
+def save_charts(result: "Result", charts: str | None) -> None:
+    """Write every chart of a result as ID.svg, .png and .csv; nothing where no folder is given. Raises InputError."""
+    if charts is None:
         return
     from pathlib import Path
 
-    from verify.files import writable_folder, write_whole
-    from verify.report.plotting import figure_svg
+    from verify.files import whole, writable_folder, write_whole
+    from verify.report.plotting import figure_files, figure_png
 
+    folder = writable_folder(Path(charts), "--charts")
     for figure in result.figures:
-        write_whole(writable_folder(Path(folder), "--charts") / f"{figure.id}.svg", figure_svg(figure), "--charts")
+        for suffix, text in zip(("svg", "csv"), figure_files(figure), strict=True):
+            write_whole(folder / f"{figure.id}.{suffix}", text, "--charts")
+        with whole(folder / f"{figure.id}.png", "--charts") as part:
+            part.write_bytes(figure_png(figure))
 
 
 def print_json(value: Any) -> None:

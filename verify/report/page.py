@@ -141,8 +141,8 @@ def data_uri(kind: str, content: str | bytes) -> str:
 
 
 def _figure(figure: Figure, page: str) -> dict[str, Any]:
-    svg, csv, png = figure_files(figure)
-    links = {"CSV": data_uri("text/csv", csv), "SVG": data_uri("image/svg+xml", svg), "PNG": data_uri("image/png", png)}
+    svg, csv = figure_files(figure)
+    links = {"CSV": data_uri("text/csv", csv), "SVG": data_uri("image/svg+xml", svg)}
     return {"figure": figure, "svg": svg, "file": f"{page}-{figure.id}", "links": links}
 
 

@@ -82,17 +82,20 @@ def drawn(figure: "Figure") -> "MatplotlibFigure":
 
 
 def figure_svg(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> str:
-    """An SVG element for a page or a file.
+    """The chart as an SVG element without scripts.
 
-    Text and axes follow `currentColor`, the grid `--grid`, legends `--card`. Its ids begin with the figure's id, so
+    Colours of text and axes follow the page: they are CSS variables. Ids are prefixed with the figure's id, so
     that several stand on one page. Its role is img, its accessible name the title and caption. `canvas` is the chart
     where it is `drawn` already.
     """
     from html import escape
 
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     out = io.StringIO()
-    with style(salt=figure.id):
-        (canvas or drawn(figure)).savefig(out, format="svg", metadata=NO_METADATA)
+    with style(salt=figure.id):  # not by savefig, which draws twice: the layout engine runs in either draw
+        vector: Any = FigureCanvasSVG(canvas or drawn(figure))
+        vector.print_svg(out, metadata=NO_METADATA)
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, count=1, flags=re.DOTALL)
@@ -105,11 +108,11 @@ def figure_svg(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> st
     return svg.replace("<svg ", f'<svg role="img" aria-label="{name}" stroke-linejoin="round" ', 1)
 
 
-def figure_png(figure: "Figure", dpi: float = 160.0, canvas: "MatplotlibFigure | None" = None) -> bytes:
+def figure_png(figure: "Figure", dpi: float = 160.0) -> bytes:
     """The chart in black on white."""
     out = io.BytesIO()
     with style():
-        (canvas or drawn(figure)).savefig(out, format="png", dpi=dpi, facecolor="white", metadata={"Software": None})
+        drawn(figure).savefig(out, format="png", dpi=dpi, facecolor="white", metadata={"Software": None})
     return out.getvalue()
 
 
@@ -122,20 +125,18 @@ def figure_csv(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> st
     writer = csv.writer(out, lineterminator="\n")
     with style():
         axes = (canvas or drawn(figure)).axes
-        writer.writerow(["series", axes[0].get_xlabel() or "x", axes[0].get_ylabel() or "y", "value"])
-        for ax in axes:
-            if ax.get_label() != "<colorbar>":
-                writer.writerows(_points(ax))
+    writer.writerow(["series", axes[0].get_xlabel() or "x", axes[0].get_ylabel() or "y", "value"])
+    for ax in axes:
+        if ax.get_label() != "<colorbar>":
+            writer.writerows(_points(ax))
     return out.getvalue()
 
 
-def figure_files(figure: "Figure") -> tuple[str, str, bytes]:
-    """(SVG, CSV, PNG) of a chart that is drawn once."""
+def figure_files(figure: "Figure") -> tuple[str, str]:
+    """(SVG, CSV) of a chart that is drawn once."""
     with style():
         canvas = drawn(figure)
-    svg = figure_svg(figure, canvas)
-    canvas.set_layout_engine("none")  # the positions are fixed now
-    return svg, figure_csv(figure, canvas), figure_png(figure, 110.0, canvas)
+    return figure_svg(figure, canvas), figure_csv(figure, canvas)
 
 
 def _points(ax: Any) -> Iterator[Sequence[Any]]:
@@ -172,21 +173,38 @@ def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str 
 
     frames: list[Any] = []
 
+    agg: Any = FigureCanvasAgg
+
+    class Canvas(agg):  # type: ignore[misc]
+        """After the first frame draws only what is `animated`, over a copy of everything else."""
+
+        still: Any = None
+
+        def draw_idle(self, *args: Any, **kwargs: Any) -> None:
+            moving = self.figure.findobj(lambda artist: artist.get_animated())
+            if self.still is None or not moving:
+                for artist in moving:
+                    artist.set_visible(False)
+                self.draw()
+                self.figure.set_layout_engine("none")  # the layout of the first frame serves all
+                self.still = self.copy_from_bbox(self.figure.bbox)
+            self.restore_region(self.still)
+            for artist in moving:
+                artist.set_visible(True)
+                self.figure.draw_artist(artist)
+
     class Collector(AbstractMovieWriter):
         def setup(self, fig: Any, outfile: Any, dpi: Any = None) -> None:
             super().setup(fig, "frames", dpi)
 
         def grab_frame(self, **settings: Any) -> None:
-            canvas.figure.set_layout_engine("none")  # the layout of the first frame serves all
             frames.append(Image.fromarray(asarray(canvas.buffer_rgba()).copy()))
 
         def finish(self) -> None:
             pass
 
     with style(ink):
-        canvas: Any = FigureCanvasAgg(
-            MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper)
-        )
+        canvas: Any = Canvas(MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper))
         animation: Any = movie.animate(canvas.figure)
         interval = float(animation.event_source.interval)
         animation.save("frames", writer=Collector(), savefig_kwargs={"facecolor": paper})

@@ -116,7 +116,8 @@ def _planned(scene: Scene | str | Path, overrides: Sequence[str]) -> tuple[Scene
     rows = [PlanRow(gate.id, "gate", gate.id not in skip, skip.get(gate.id, gate.quantity)) for gate in loaded.gate]
     running = [name for name, _ in studies_of(loaded)]
     rows += [PlanRow(name, "study", True) for name in running]
-    rows += [PlanRow(name, "study", False, f"no [{name}] in the scene") for name in STUDIES if name not in running]
+    absent = {name: "[[claim]]" if name == "claims" else f"[{name}]" for name in STUDIES if name not in running}
+    rows += [PlanRow(name, "study", False, f"no {section} in the scene") for name, section in absent.items()]
     return loaded, rows
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from decimal import localcontext
 from functools import partial
 from importlib import import_module
-from math import exp, inf, isfinite, log
+from math import inf, isfinite, sqrt
 from time import perf_counter
 from typing import Any, TypeAlias
 
@@ -19,6 +19,25 @@ DIGITS = 60
 HALVINGS = 8
 Error: TypeAlias = Callable[..., float]
 Points: TypeAlias = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Measured values of one check."""
+
+    id: str
+    worst: float
+    """Largest error over the guaranteed range, or the exponent of a cost."""
+    passed: bool
+    points: Points
+    """(value, error or cost)."""
+    breaks_at: float | None
+    """Value from which the tolerance is exceeded or the input refused; None where neither was reached."""
+    breaks_by: str
+    """'error', 'refused', or empty."""
+    baseline: Points
+    """(value, error) of the standard method, infinite where it fails."""
+    seconds: float
 
 
 @dataclass(frozen=True)
@@ -42,26 +61,22 @@ class Check:
     """From 1 on `error` is a cost, the least of so many rounds, and `tolerance` bounds its exponent."""
     slow: bool = False
 
-    def run(self) -> "Outcome":
-        """Measure the check. Raises nothing for what is measured."""
-        start = perf_counter()
-        baseline: Points = ()
+    def run(self) -> Outcome:
+        """Measure the check."""
+        start, baseline = perf_counter(), list[tuple[float, float]]()
         with localcontext() as context, warnings.catch_warnings():
             context.prec = DIGITS
-            points = self._costs() if self.rounds else tuple((v, _error(self.error, v)[0]) for v in self.values)
+            # the sizes of a cost take turns, so that a busy machine slows none of them in all rounds
+            table = [[_error(self.error, value)[0] for value in self.values] for _ in range(max(self.rounds, 1))]
+            points = tuple(zip(self.values, map(min, zip(*table, strict=True)), strict=True))
             worst = exponent(points) if self.rounds else max(error for _, error in points)
             breaks_at, how = self._limit() if worst <= self.tolerance else (None, "")
             warnings.simplefilter("ignore")
             if self.baseline:
                 _, error, *values = self.baseline
-                baseline = tuple((v, _error(error, v)[0]) for v in (values[0] if values else self.values))
+                baseline = [(value, _error(error, value)[0]) for value in (values[0] if values else self.values)]
         passed = worst <= self.tolerance and (how == "refused" or not self.refused)
-        return Outcome(self.id, worst, passed, points, breaks_at, how, baseline, perf_counter() - start)
-
-    def _costs(self) -> Points:
-        """Least cost of each size over rounds in which the sizes take turns."""
-        table = [[_error(self.error, size)[0] for size in self.values] for _ in range(self.rounds)]
-        return tuple((size, min(column)) for size, column in zip(self.values, zip(*table, strict=True), strict=True))
+        return Outcome(self.id, worst, passed, points, breaks_at, how, tuple(baseline), perf_counter() - start)
 
     def _limit(self) -> tuple[float | None, str]:
         """(the first value beyond that exceeds the tolerance, how), by bisection in the logarithm."""
@@ -74,29 +89,10 @@ class Check:
         else:
             return None, ""
         for _ in range(HALVINGS):
-            middle = exp(0.5 * (log(good) + log(bad)))
+            middle = sqrt(good) * sqrt(bad)
             error, why = _error(self.error, middle)
             good, bad, how = (good, middle, why) if error > self.tolerance else (middle, bad, how)
         return bad, how
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a check measured."""
-
-    id: str
-    worst: float
-    """Largest error over the guaranteed range, or the exponent of a cost."""
-    passed: bool
-    points: Points
-    """(value, error or cost)."""
-    breaks_at: float | None
-    """Value from which the tolerance is exceeded or the input refused; None where neither was reached."""
-    breaks_by: str
-    """'error', 'refused', or empty."""
-    baseline: Points
-    """(value, error) of the standard method, infinite where it fails."""
-    seconds: float
 
 
 CHECKS: dict[str, Check] = {}
@@ -107,7 +103,6 @@ def check(
     parameter: str,
     values: Sequence[float],
     tolerance: float,
-    *,
     models: Mapping[str, str] | None = None,
     **more: Any,
 ) -> Callable[[Error], Error]:
@@ -117,14 +112,13 @@ def check(
     """
 
     def register(error: Error) -> Error:
-        title = more.pop("title", (error.__doc__ or "").partition("\n")[0].rstrip("."))
+        fields = {"title": (error.__doc__ or "").partition("\n")[0].rstrip(".")} | more
         for model, word in (models or {"": ""}).items():
-            name, of, own = f"{id}-{word}".rstrip("-"), error, dict(more)
-            if model:
-                of = partial(error, model)
-                if "baseline" in more:
-                    own["baseline"] = (more["baseline"][0], partial(more["baseline"][1], model), *more["baseline"][2:])
-            CHECKS[name] = Check(name, title, parameter, tuple(values), tolerance, of, **own)
+            name, own, bound = f"{id}-{word}".rstrip("-"), dict(fields), partial(error, model) if model else error
+            if model and "baseline" in more:
+                standard, baseline, *others = more["baseline"]
+                own["baseline"] = (standard, partial(baseline, model), *others)
+            CHECKS[name] = Check(name, parameter=parameter, values=values, tolerance=tolerance, error=bound, **own)
         return error
 
     return register

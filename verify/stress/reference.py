@@ -3,24 +3,24 @@
 No model and no solver of the package takes part. `Check.run` sets the digits.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
-from itertools import combinations_with_replacement
 from typing import Any, TypeAlias
 
+import numpy as np
 from msgspec.structs import replace
 
 from verify.problem.beam import Beam
 
 D = Decimal
 PI = D("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803")
-Bands: TypeAlias = list[list[D]]
-"""Row j holds the entries (j, j), (j, j + 1), ... up to the half bandwidth."""
-_BENDING = ((12, 6, -12, 6), (6, 4, -6, 2), (-12, -6, 12, -6), (6, 2, -6, 4))
-_MASS = ((156, 22, 54, -13), (22, 4, 13, -3), (54, 13, 156, -22), (-13, -3, -22, 4))
-_TENSION = ((36, 3, -36, 3), (3, 4, -3, -1), (-36, -3, 36, -3), (3, -1, -3, 4))
-_FIXED: dict[str, tuple[int, ...]] = {"pinned": (0,), "clamped": (0, 1), "free": ()}
+BLOCKED = D("1e99")
+"""Diagonal entry of K at an unknown that a support blocks."""
+Bands: TypeAlias = Any
+"""Array of Decimal; row j holds the entries (j, j), (j, j + 1), ... up to the half bandwidth."""
+_BENDING = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], object)
+_MASS = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]], object)
+_TENSION = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]], object)
 _GREGORY = (D(3) / 8, D(7) / 6, D(23) / 24)
 """Compliance of the first joints from a wall over that of equal links in series."""
 
@@ -28,104 +28,84 @@ STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, d
 """A titanium strip between pins."""
 CANTILEVER = replace(STRIP, supports=("clamped", "free"))
 FREE = replace(STRIP, supports=("free", "free"))
+DISCRETE = {"segment": "segments", "fem": "elements"}
+ALL = ("analytic", *DISCRETE)
 
 
-@dataclass(frozen=True)
-class Parts:
-    """A beam in parts, SI units; point masses and springs by node."""
-
-    supports: tuple[str, str]
-    lengths: Sequence[D]
-    ei: Sequence[D]
-    ra: Sequence[D]
-    masses: Mapping[int, float] = field(default_factory=dict)
-    springs: Mapping[int, float] = field(default_factory=dict)
-    foundation: D | int = 0
-    tension: D | int = 0
+def equal(beam: Beam, n: int) -> list[D]:
+    """Lengths of n equal parts, m."""
+    return [D(beam.length) / n] * n
 
 
-def equal(beam: Beam, n: int, **attached: Any) -> Parts:
-    """N equal parts of a uniform beam with its foundation and tension; `attached` are `masses` and `springs`."""
-    one = D(beam.length) / n, D(beam.bending_stiffness), D(beam.mass_per_length)
-    lengths, ei, ra = ([value] * n for value in one)
-    more = {"foundation": D(beam.foundation), "tension": D(beam.tension), **attached}
-    return Parts(beam.supports, lengths, ei, ra, **more)
+def _parts(beam: Beam, lengths: Sequence[D]) -> Iterator[tuple[D, D, D]]:
+    """(length, EI, rho A) of each part."""
+    sizes = np.array(lengths, float)
+    owners = np.searchsorted(np.cumsum([piece.length for piece in beam.pieces]), np.cumsum(sizes) - 0.5 * sizes)
+    for h, i in zip(lengths, owners, strict=True):
+        yield h, D(beam.pieces[i].bending_stiffness), D(beam.pieces[i].mass_per_length)
 
 
-def hermite(parts: Parts) -> tuple[Bands, Bands]:
-    """K and M of cubic elements with consistent mass over the free nodal values, deflection before slope."""
-    n = len(parts.lengths)
-    fixed = {*_FIXED[parts.supports[0]], *(2 * n + j for j in _FIXED[parts.supports[1]])}
-    number = {u: k for k, u in enumerate(u for u in range(2 * n + 2) if u not in fixed)}
-    k, m = ([[D(0)] * 4 for _ in number] for _ in range(2))
-    for e, (h, ei, ra) in enumerate(zip(parts.lengths, parts.ei, parts.ra, strict=True)):
-        scale = (1, h, 1, h)
-        for i, j in combinations_with_replacement(range(4), 2):
-            p, q = number.get(2 * e + i), number.get(2 * e + j)
-            if p is not None and q is not None:
-                both, carried = scale[i] * scale[j], h * _MASS[i][j] / 420
-                bending = ei * _BENDING[i][j] / h**3 + parts.tension * _TENSION[i][j] / (30 * h)
-                k[p][q - p] += both * (bending + parts.foundation * carried)
-                m[p][q - p] += both * ra * carried
-    _attach(parts, k, m, lambda node: number[2 * node])
+def _add(bands: Bands, first: int, block: Any) -> None:
+    for i, row in enumerate(block):
+        bands[first + i, : len(row) - i] += row[i:]
+
+
+def _attach(beam: Beam, lengths: Sequence[D], k: Bands, m: Bands, per_node: int) -> tuple[Bands, Bands]:
+    """Add masses and springs at the nodes, and block what the supports block."""
+    nodes = np.cumsum([0.0, *map(float, lengths)])
+    attached: tuple[Any, ...] = (*beam.mass, *beam.spring)
+    for one in attached:
+        row = per_node * int(np.argmin(abs(nodes - one.position)))
+        m[row, 0] += D(getattr(one, "mass", 0))
+        k[row, 0] += D(getattr(one, "stiffness", 0))
+    for first, support in zip((0, per_node * len(lengths)), beam.supports, strict=True):
+        k[first : first + {"free": 0, "pinned": 1, "clamped": per_node}[support], 0] = BLOCKED
     return k, m
 
 
-def links(parts: Parts) -> tuple[Bands, Bands]:
-    """K and M of rigid links over the free joint deflections, joint springs in series, a wall at the left at most."""
-    n, (left, right) = len(parts.lengths), parts.supports
-    k, m = ([[D(0)] * 3 for _ in range(n + 1)] for _ in range(2))
-
-    def add(bands: Bands, first: int, row: tuple[D, ...], weight: D) -> None:
-        for i, a in enumerate(row):
-            for j, b in enumerate(row[i:]):
-                bands[first + i][j] += weight * a * b
-
-    for e, (h, ra) in enumerate(zip(parts.lengths, parts.ra, strict=True)):
-        middle, tilt = (D("0.5"), D("0.5")), (-1 / h, 1 / h)
-        for bands, line in ((m, ra), (k, parts.foundation)):
-            add(bands, e, middle, h * line)
-            add(bands, e, tilt, h**3 / 12 * line)
-        add(k, e, tilt, h * parts.tension)
-    for j in range(n):
-        a, b = parts.lengths[j - 1], parts.lengths[j]
-        compliance = a / (2 * parts.ei[j - 1]) + b / (2 * parts.ei[j])
-        if left == "clamped" and j < len(_GREGORY):
-            compliance *= _GREGORY[j]
-        if j:
-            add(k, j - 1, (1 / a, -1 / a - 1 / b, 1 / b), 1 / compliance)
-        elif left == "clamped":
-            add(k, 0, (-1 / b, 1 / b), 1 / compliance)
-    _attach(parts, k, m, lambda node: node)
-    kept = slice(left != "free", n if right != "free" else n + 1)
-    return k[kept], m[kept]
+def hermite(beam: Beam, lengths: Sequence[D]) -> tuple[Bands, Bands]:
+    """K and M of cubic elements with consistent mass over the nodal values, deflection before slope."""
+    k, m = np.full((2, 2 * len(lengths) + 2, 4), D(0))
+    for e, (h, ei, ra) in enumerate(_parts(beam, lengths)):
+        both = np.outer([1, h, 1, h], [1, h, 1, h])
+        carried = both * _MASS * (h / 420)
+        bending = both * (ei / h**3 * _BENDING + D(beam.tension) / (30 * h) * _TENSION)
+        _add(k, 2 * e, bending + D(beam.foundation) * carried)
+        _add(m, 2 * e, ra * carried)
+    return _attach(beam, lengths, k, m, 2)
 
 
-def _attach(parts: Parts, k: Bands, m: Bands, row: Callable[[int], int]) -> None:
-    for bands, values in ((m, parts.masses), (k, parts.springs)):
-        for node, value in values.items():
-            bands[row(node)][0] += D(value)
+def links(beam: Beam, lengths: Sequence[D]) -> tuple[Bands, Bands]:
+    """K and M of rigid links over the joint deflections, joint springs in series, a wall at the left at most."""
+    k, m = np.full((2, len(lengths) + 1, 3), D(0))
+    parts = list(_parts(beam, lengths))
+    for e, (h, _, ra) in enumerate(parts):
+        tilt = np.outer([-1 / h, 1 / h], [-1 / h, 1 / h])
+        inertia = h / 4 + h**3 / 12 * tilt
+        _add(m, e, ra * inertia)
+        _add(k, e, D(beam.foundation) * inertia + D(beam.tension) * h * tilt)
+    wall = beam.supports[0] == "clamped"
+    for j, ((a, ei, _), (b, next_ei, _)) in enumerate(zip([parts[-1], *parts[:-1]], parts, strict=True)):
+        compliance = (a / ei + b / next_ei) / 2 * (_GREGORY[j] if wall and j < len(_GREGORY) else 1)
+        bend = np.array([1 / a, -1 / a - 1 / b, 1 / b] if j else [-1 / b, 1 / b])
+        if j or wall:
+            _add(k, max(j - 1, 0), np.outer(bend, bend) / compliance)
+    return _attach(beam, lengths, k, m, 1)
 
 
-MATRICES = {"segment": links, "fem": hermite}
+MATRICES: dict[str, Callable[[Beam, Sequence[D]], tuple[Bands, Bands]]] = {"segment": links, "fem": hermite}
 
 
-def _shifted(k: Bands, m: Bands, omega2: D) -> Bands:
-    return [[a - omega2 * b for a, b in zip(*pair, strict=True)] for pair in zip(k, m, strict=True)]
-
-
-def _eliminate(rows: Bands, right: list[D] | None = None) -> int:
-    """Eliminate in place without pivoting; the number of negative pivots."""
-    negative = 0
+def _eliminate(k: Bands, m: Bands, omega2: D, right: list[D] | None = None) -> Bands:
+    """K - omega^2 M eliminated without pivoting."""
+    rows = k - omega2 * m
     for j, row in enumerate(rows):
-        negative += row[0] < 0
         for i in range(1, min(len(row), len(rows) - j)):
             factor = row[i] / row[0]
+            rows[j + i, : len(row) - i] -= factor * row[i:]
             if right is not None:
                 right[j + i] -= factor * right[j]
-            for c in range(i, len(row)):
-                rows[j + i][c - i] -= factor * row[c]
-    return negative
+    return rows
 
 
 def relative_error(k: Bands, m: Bands, mode: int, omega: D | float) -> float:
@@ -133,10 +113,9 @@ def relative_error(k: Bands, m: Bands, mode: int, omega: D | float) -> float:
 
     Bisection between eigenvalue counts, the negative pivots of K - omega^2 M (Sylvester's law of inertia).
     """
-    omega = D(omega)
 
     def below(part: D) -> bool:
-        return _eliminate(_shifted(k, m, (omega * (1 + part)) ** 2)) < mode
+        return bool((_eliminate(k, m, (D(omega) * (1 + part)) ** 2)[:, 0] < 0).sum() < mode)
 
     side = 1 if below(D(0)) else -1
     low = high = D("1e-18")
@@ -152,28 +131,30 @@ def relative_error(k: Bands, m: Bands, mode: int, omega: D | float) -> float:
 
 def response(k: Bands, m: Bands, omega: D, at: int) -> list[D]:
     """V with (K - omega^2 M) v = 1 at one unknown."""
-    rows, v = _shifted(k, m, omega**2), [D(int(j == at)) for j in range(len(k))]
-    _eliminate(rows, v)
-    for j in range(len(rows) - 1, -1, -1):
-        known = sum((a * v[j + i] for i, a in enumerate(rows[j]) if i and j + i < len(rows)), D(0))
-        v[j] = (v[j] - known) / rows[j][0]
+    v = [D(int(j == at)) for j in range(len(k))]
+    rows = _eliminate(k, m, omega**2, v)
+    for j in reversed(range(len(rows))):
+        v[j] = (v[j] - sum(a * b for a, b in zip(rows[j][1:], v[j + 1 :], strict=False))) / rows[j][0]
     return v
 
 
-def sparse(bands: Bands) -> Any:
-    """The symmetric matrix in double precision, scipy.sparse."""
+def sparse(k: Bands, m: Bands) -> list[Any]:
+    """K and M of the free unknowns in double precision, scipy.sparse."""
     from scipy.sparse import diags_array
 
-    upper = [[float(row[c]) for row in bands[: len(bands) - c]] for c in range(len(bands[0]))]
-    offsets = range(len(upper))
-    return diags_array([*upper, *upper[1:]], offsets=[*offsets, *(-c for c in offsets[1:])]).tocsc()
+    moves, matrices = k[:, 0] < BLOCKED, []
+    for bands in (k, m):
+        upper = [bands[: len(bands) - c, c].astype(float) for c in range(bands.shape[1])]
+        both = diags_array([*upper, *upper[1:]], offsets=[*range(len(upper)), *range(-1, -len(upper), -1)])
+        matrices.append(both.tocsc()[moves][:, moves])
+    return matrices
 
 
 def sin(x: D | float) -> D:
     """Of radians."""
     turns = (D(x) / PI).to_integral_value()
-    rest = D(x) - turns * PI
-    term, total, k = rest, rest, 1
+    rest = term = total = D(x) - turns * PI
+    k = 1
     while abs(term) > D("1e-60"):
         term *= -rest * rest / ((k + 1) * (k + 2))
         total, k = total + term, k + 2
@@ -198,3 +179,10 @@ def cantilever_root(mode: int) -> D:
         rest = cos(y) * (1 + fall * fall) + 2 * fall
         y -= rest / (cos(y) * (1 - fall * fall) - sin(y) * (1 + fall * fall))
     return y
+
+
+def pinned_hertz(beam: Beam, mode: int) -> D:
+    """((EI beta^2 + T) beta^2 + k) / (rho A) = omega^2, beta = n pi / L."""
+    square = (mode * PI / D(beam.length)) ** 2
+    stiffness = (D(beam.bending_stiffness) * square + D(beam.tension)) * square + D(beam.foundation)
+    return (stiffness / D(beam.mass_per_length)).sqrt() / (2 * PI)

@@ -9,15 +9,8 @@ from verify.stress.engine import Outcome, registry
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLUMNS = (
-    Column("check"),
-    Column("parameter"),
-    Column("range"),
-    Column("tolerance", format=".3g"),
-    Column("worst", format=".2g"),
-    Column("breaks at"),
-    Column("standard", format=".1g"),
-)
+COLUMNS = [Column("check"), Column("parameter"), Column("range"), Column("tolerance", format=".3g")]
+COLUMNS += [Column("worst", format=".2g"), Column("breaks at"), Column("standard", format=".1g")]
 NOTE = "worst: largest error over the range, or exponent of a cost; standard: that of the standard method."
 RATIOS = ("tip-mass", "tip-mass-mode-2", "tip-spring", "foundation", "tension", "material-scale")
 """Checks over a dimensionless ratio, which share a chart."""
@@ -25,36 +18,26 @@ RATIOS = ("tip-mass", "tip-mass-mode-2", "tip-spring", "foundation", "tension", 
 
 def record(outcome: Outcome) -> dict[str, Any]:
     """An outcome as data; `worst` of a cost is its exponent."""
-    check = registry()[outcome.id]
+    check, names = registry()[outcome.id], ("worst", "passed", "breaks_at", "breaks_by", "seconds", "points")
     return {
-        "id": check.id,
-        "title": check.title,
-        "parameter": check.parameter,
-        "from": check.values[0],
-        "to": check.values[-1],
-        "tolerance": check.tolerance,
-        "worst": outcome.worst,
-        "passed": outcome.passed,
-        "breaks_at": outcome.breaks_at,
-        "breaks_by": outcome.breaks_by,
+        **{name: getattr(check, name) for name in ("id", "title", "parameter", "tolerance")},
+        **{"from": check.values[0], "to": check.values[-1]},
+        **{name: getattr(outcome, name) for name in names},
         "baseline": max((error for _, error in outcome.baseline), default=None),
         "baseline_name": check.baseline[0] if check.baseline else "",
-        "seconds": outcome.seconds,
-        "points": outcome.points,
     }
-
-
-def row(one: dict[str, Any]) -> list[Any]:
-    """Cells of `COLUMNS`."""
-    span = f"{one['from']:.3g} .. {one['to']:.3g}"
-    breaks = None if one["breaks_at"] is None else f"{one['breaks_at']:.3g} {one['breaks_by']}"
-    return [one["id"], one["parameter"], span, one["tolerance"], one["worst"], breaks, one["baseline"]]
 
 
 def result(outcomes: Sequence[Outcome]) -> Result:
     """Table, charts and data of what was measured."""
     records = [record(one) for one in outcomes]
     failed = [one["id"] for one in records if not one["passed"]]
+    rows = [
+        [one["id"], one["parameter"], f"{one['from']:.3g} .. {one['to']:.3g}", one["tolerance"], one["worst"]]
+        for one in records
+    ]
+    for row, one in zip(rows, records, strict=True):
+        row += [f"{one['breaks_at']:.3g} {one['breaks_by']}" if one["breaks_by"] else None, one["baseline"]]
     caption = "Largest error over the guaranteed range, or the exponent of a cost, over its tolerance."
     title, size = "Worst error as a fraction of the tolerance", (6.4, 0.6 + 0.17 * len(records))
     figures = [Figure("stress-fraction", title, caption, lambda ax: _fractions(ax, records), size)]
@@ -63,7 +46,7 @@ def result(outcomes: Sequence[Outcome]) -> Result:
         figures.append(Figure("stress-ratio", "Error over a ratio", caption, lambda ax: _ratios(ax, ratios)))
     return Result(
         summary=f"{len(records) - len(failed)} of {len(records)} checks are within their tolerance.",
-        tables=[Table("Stress checks", COLUMNS, [row(one) for one in records], [NOTE])],
+        tables=[Table("Stress checks", COLUMNS, rows, [NOTE])],
         figures=figures,
         warnings=[f"{name} fails" for name in failed],
         data={"checks": records},
@@ -71,8 +54,7 @@ def result(outcomes: Sequence[Outcome]) -> Result:
 
 
 def _fractions(ax: "Axes", records: Sequence[dict[str, Any]]) -> None:
-    fractions = [max(one["worst"] / one["tolerance"], 1e-6) for one in records]
-    ax.barh([one["id"] for one in records], fractions)
+    ax.barh([one["id"] for one in records], [max(one["worst"] / one["tolerance"], 1e-6) for one in records])
     ax.axvline(1.0, linestyle="--", gid="guide")
     ax.set(xscale="log", xlabel="worst / tolerance", xlim=(1e-6, 10.0))
     ax.invert_yaxis()
@@ -81,9 +63,8 @@ def _fractions(ax: "Axes", records: Sequence[dict[str, Any]]) -> None:
 
 def _ratios(ax: "Axes", outcomes: Sequence[Outcome]) -> None:
     for one in outcomes:
-        (line,) = ax.loglog([x for x, _ in one.points], [y for _, y in one.points], "o-", label=one.id)
+        (line,) = ax.loglog(*zip(*one.points, strict=True), "o-", label=one.id)
         if one.baseline:
-            values, errors = [x for x, _ in one.baseline], [y for _, y in one.baseline]
-            ax.loglog(values, errors, "--", color=line.get_color(), label=f"{one.id}, LAPACK")
+            ax.loglog(*zip(*one.baseline, strict=True), "--", color=line.get_color(), label=f"{one.id}, LAPACK")
     ax.set(xlabel="ratio", ylabel="relative error")
     ax.legend()

@@ -82,6 +82,8 @@ def movie(key: str, title: str, caption: str, set_up: "Callable[[Axes], Any]") -
         from matplotlib.animation import FuncAnimation
 
         update, frames = set_up(figure.subplots())
+        for artist in update(0):
+            artist.set_animated(True)  # `report.plotting.movie_frames` draws nothing else again
         return FuncAnimation(figure, update, frames=frames, interval=60)
 
     return Movie(key, title, caption, animate)
