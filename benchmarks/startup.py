@@ -25,7 +25,7 @@ COMMANDS = {
             "mode=22",
             *count,
         ]
-        for model, count in (("analytic", ""), ("segment", "count=49"), ("fem", "count=49"))
+        for model, count in (("analytic", []), ("segment", ["count=49"]), ("fem", ["count=49"]))
     },
     "verify run paper": ["-m", "verify", "run", "paper", "--no-report"],
     "verify run paper-wave": ["-m", "verify", "run", "paper-wave", "--no-report"],

@@ -51,15 +51,17 @@ __all__ = [
 ]  # fmt: skip
 __version__ = "0.1.0"
 
-_HOMES = """
-    analytic_modes.ExactModel fem_beam.HermiteModel segment_model.SegmentModel linear.field.HarmonicField
-    linear.modes.Modes travelling_wave.WaveMeasures problem.beam.Beam problem.beam.PointForce problem.device.Device
-    problem.cross_section.Section problem.point_attachments.PointMass problem.point_attachments.PointSpring
-    problem.slider.Contact problem.slider.Foot problem.slider.Slider errors.InputError dynamics.simulate.simulate
-    dynamics.result.Motion dynamics.free_vibration.free_vibration dynamics.free_vibration.FreeVibration
-    chain.statics.Bent chain.statics.bend scene.load.load_scene scene.run.run_scene
-"""
-_HOME = {home.rpartition(".")[2]: f"verify.{home.rpartition('.')[0]}" for home in _HOMES.split()}
+_HOME = {
+    "Beam": "problem.beam", "PointForce": "problem.beam", "Device": "problem.device",
+    "Section": "problem.cross_section",
+    "PointMass": "problem.point_attachments", "PointSpring": "problem.point_attachments", "Contact": "problem.slider",
+    "Foot": "problem.slider", "Slider": "problem.slider", "ExactModel": "analytic_modes", "HermiteModel": "fem_beam",
+    "SegmentModel": "segment_model", "HarmonicField": "linear.field", "Modes": "linear.modes",
+    "WaveMeasures": "travelling_wave", "simulate": "dynamics.simulate", "Motion": "dynamics.result",
+    "free_vibration": "dynamics.free_vibration", "FreeVibration": "dynamics.free_vibration",
+    "bend": "chain.statics", "Bent": "chain.statics",
+    "load_scene": "scene.load", "run_scene": "scene.run", "InputError": "errors",
+}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
@@ -68,7 +70,7 @@ def __getattr__(name: str) -> Any:
         return import_module("verify.travelling_wave")
     if name not in _HOME:
         raise AttributeError(f"module 'verify' has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    return getattr(import_module(f"verify.{_HOME[name]}"), name)
 
 
 def __dir__() -> list[str]:

@@ -187,7 +187,9 @@ class ExactModel(BeamModel):
         """The field under forces (N), with devices, under imposed displacements (`drives`, m)."""
         beam, frequencies, one = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
         if (devices or drives) and not one:
-            raise InputError("frequency_hz has several values: with devices give one at a time")
+            raise InputError(
+                "frequency_hz has several values: with devices or imposed displacements give one at a time"
+            )
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
         self._check_resonance(frequencies, drives, devices)

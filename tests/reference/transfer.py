@@ -17,15 +17,6 @@ _FREE = {"clamped": (2, 3), "pinned": (1, 3), "guided": (0, 2), "free": (0, 1)}
 DIGITS = 30
 
 
-def frequency_near(beam: Beam, theory: str, hertz: float) -> float:
-    """The natural frequency nearest to a guess, Hz."""
-    with mp.workdps(DIGITS):
-        guesses = (mp.mpf(hertz), mp.mpf(hertz) * (1 + mp.mpf(10) ** -7))
-        return float(
-            mp.findroot(lambda f: _determinant(beam, theory, f), guesses, solver="secant", tol=1e-30, verify=False)
-        )
-
-
 def has_frequency_within(beam: Beam, theory: str, hertz: float, rel: float, digits: int = 40) -> bool:
     """Whether the frequency determinant changes sign within a relative distance of a frequency in Hz."""
     with mp.workdps(digits):

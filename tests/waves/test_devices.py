@@ -124,7 +124,7 @@ def test_a_device_without_parameters_or_with_negative_ones_is_an_input_error():
             Device(position=0.2, **{name: -0.1})
     with pytest.raises(InputError, match=r"position = 0\.2 does nothing: give it one of stiffness, mass"):
         Device(position=0.2)
-    with pytest.raises(InputError, match="forces is empty and no device has an amplitude"):
+    with pytest.raises(InputError, match="no forces or displacements and no device with an amplitude"):
         ExactModel(STRIP).harmonic([], 700.0, devices=SPRING_AND_DASHPOT)
     with pytest.raises(InputError, match="gives energy"):
         of_impedance(0.3, -1.0 + 2.0j, 700.0)

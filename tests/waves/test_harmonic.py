@@ -78,10 +78,10 @@ def test_forces_of_devices_act_with_imposed_displacements(name):
     drives = [PointForce(position=0.17, amplitude=2e-6, phase_deg=13.0)]
     model = ExactModel(beam) if name == "exact" else MODELS[name](beam, {"segment": 400, "fem": 60}[name])
     field, exact = (one.imposed(drives, HERTZ, devices=device) for one in (model, ExactModel(beam)))
-    without = model.imposed(drives, HERTZ, devices=DEVICE).deflection(X[1])
+    without = model.imposed(drives, HERTZ, devices=DEVICE).deflection(PLACES[1])
     assert field.deflection(0.17) == pytest.approx(2e-6 * np.exp(1j * np.deg2rad(13.0)), rel=1e-9)
-    assert field.deflection(X[1]) == pytest.approx(exact.deflection(X[1]), rel=3e-3)
-    assert abs(field.deflection(X[1]) / without - 1.0) > 0.1
+    assert field.deflection(PLACES[1]) == pytest.approx(exact.deflection(PLACES[1]), rel=3e-3)
+    assert abs(field.deflection(PLACES[1]) / without - 1.0) > 0.1
     assert [one.position for one in field.forces] == [0.17, 0.21, 0.21]
     assert field.forces[1].amplitude == 0.13
 

@@ -179,7 +179,7 @@ def test_the_standing_wave_ratio_follows_its_law_undamped(frequency):
 
 
 def test_the_signed_area_is_the_energy_flux():
-    """S3 = -(h k_0...) far from forces: flux = -omega EI k^2 / h * S3 for any two waves."""
+    """Flux = -omega EI k^2 S3 / h for any two waves without near fields."""
     found = measure(driven(phase=37.0), WINDOW, driven().wavenumber)
     k = found.waves.wavenumber.real
     flux = -2 * np.pi * 4276 * BEAM.bending_stiffness * k**2 / BEAM.thickness * found.ellipses[2].mean()
@@ -309,7 +309,7 @@ def test_sections_of_all_models_rotate_as_by_transfer_matrices(supports):
 
 
 def test_a_pure_wave_has_the_rotation_ratio_of_its_waveguide_with_losses_too():
-    """Far from the force on a long bar with an end that swallows nothing in time: e^{-ikx} times what is left of it."""
+    """Far from the force on a long lossy bar the reflected wave has decayed: a pure wave e^{-ikx}."""
     beam = replace(BAR, length=3.0, loss_factor=0.08, supports=("pinned", "pinned"))
     field = solve("analytic", beam, (PointForce(position=0.1),), 30000.0)
     ratio = Waveguide(beam, "timoshenko").rotation_ratio(field.omega)

@@ -80,13 +80,21 @@ def sufficient_size(
     smallest = max(len(beam.pieces), cls.fewest)
     largest = largest if model in LAWS else min(largest, LARGEST_WITHOUT_LAW)
 
+    def check_allowed(count: int) -> None:
+        if count > largest:
+            raise InputError(
+                f"error = {error!r}: the {model} model does not reach it up to count = {largest}, give a larger error"
+            )
+
     def within(count: int) -> bool:
+        check_allowed(count)
         try:
             return all(abs(cache.frequency_error(model, count, one, settings)) <= error for one in reversed(modes))
         except InputError:  # too few parts
             return False
 
     def lawful(count: int) -> bool:
+        check_allowed(count)
         return all(abs(expected_error(model, beam, one, count)) <= error for one in modes)
 
     guess, dip = 0, None
@@ -94,13 +102,11 @@ def sufficient_size(
     if has_guess:
         # beyond 300 parts at each clamped end, and beyond the elements' hump at mu = 2.98, errors only fall
         first = smallest_count(beam, modes[-1])
-        guess, dip, _ = _scan(lawful, first, max(4 * first, 300 * beam.supports.count("clamped")), largest)
+        guess, dip, _ = _scan(lawful, first, max(4 * first, 300 * beam.supports.count("clamped")))
     if has_guess and (sine_fits(beam.supports) or guess >= LAW_FROM) and has_law(beam, modes[-1], guess):
         # next to the guess: one that is right costs two solves
         low, high, step = guess - 1, guess, 1
         while not within(high):
-            if high > largest:
-                raise InputError(f"error = {error!r}: the {model} model does not reach it up to count = {largest}")
             low, high, step = high, high + step, 2 * step
         step = 1
         while low >= smallest and within(low):
@@ -108,7 +114,7 @@ def sufficient_size(
         count = _between(within, low, high)
         known_by = PROVEN if sine_fits(beam.supports) else BY_LAW
     else:
-        count, dip, last = _scan(within, smallest, max(guess, smallest + 4), largest)
+        count, dip, last = _scan(within, smallest, max(guess, smallest + 4))
         known_by = f"sizes up to {last} were solved, from {EVERY} on 5 % apart"
     errors = {one: cache.error_or_reason(model, count - 1, one, settings)[0] for one in modes} if count > 1 else {}
     worst = max(modes, key=lambda one: (abs(off) if (off := errors.get(one)) is not None else float("inf"), one))
@@ -116,15 +122,13 @@ def sufficient_size(
     return Sufficient(count=count, mode=worst, smaller=smaller, known_by=known_by)
 
 
-def _scan(within: Within, first: int, up_to: int, largest: int) -> tuple[int, int | None, int]:
+def _scan(within: Within, first: int, up_to: int) -> tuple[int, int | None, int]:
     """(size from which on the error is within the limit, the smallest size within if smaller, the largest size tried).
 
     Sizes up to `up_to`, or twice the last size beyond the limit.
     """
     sizes, last, size = dict[int, bool](), first - 1, first
     while size <= max(2 * last, up_to):
-        if size > largest:
-            raise InputError(f"error: the model does not reach it up to count = {largest}, give a larger one")
         sizes[size] = within(size)
         last = last if sizes[size] else size
         size = size + 1 if size < EVERY else ceil((FINE if size < LARGEST_WITHOUT_LAW else COARSE) * size)

@@ -29,7 +29,7 @@ class Bracket(msgspec.Struct, frozen=True):
 
     @property
     def mean(self) -> float:
-        """The middle: the leading errors of both sides cancel while the lower is at most three times the upper."""
+        """The middle, where leading errors cancel: nearer than a bound unless an error is three times the other."""
         return 0.5 * (self.lower + self.upper)
 
     @property
@@ -44,7 +44,7 @@ def theory_of(settings: Settings) -> str:
 
 
 def unproven(beam: Beam, settings: Settings = ()) -> str:
-    """Why segments below and elements above the exact frequencies is not proven for a beam; empty where it is."""
+    """Why it is not proven that segments lie below and elements above the exact frequencies; empty where it is."""
     if added := (*beam.added, *("section",) * bool(beam.section)):
         return f"neither side is proven on a beam with beam.{added[0]}, leave it out"
     chosen = {"theory": EULER, "grading": 1.0, "wall": "gregory"} | dict(settings)

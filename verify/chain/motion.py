@@ -176,23 +176,30 @@ def highest_frequency(system: ChainSystem) -> tuple[float, float]:
 def step_limit(system: ChainSystem) -> float:
     """The longest stable step of RK4 about the straight chain at rest, s; infinite without springs.
 
-    2 sqrt(2) over the highest circular frequency; with dashpots 2.785 over the fastest root, the least radius of the
-    stability region.
+    2 sqrt(2) over the highest circular frequency; with dashpots 2.6156 over the fastest root.
     """
-    omega, damping = highest_frequency(system)
+    return _stable_step(*highest_frequency(system))
+
+
+def _stable_step(omega: float, damping: float) -> float:
+    """The stable step of RK4 for roots of lambda^2 + damping lambda + omega^2 = 0, s.
+
+    2 sqrt(2) on the imaginary axis; the least radius of the stability region over the left half plane is 2.6156, at
+    122.6 degrees.
+    """
     fastest = max(omega, 0.5 * damping + np.sqrt(max(0.25 * damping**2 - omega**2, 0.0)))
-    return float((2.785 if damping else 2.0 * np.sqrt(2.0)) / fastest) if fastest else float("inf")
+    return float((2.6156 if damping else 2.0 * np.sqrt(2.0)) / fastest) if fastest else float("inf")
 
 
 def elastic_step_limit(system: ChainSystem, axial_stiffness: float | Array) -> float:
-    """A stable step of RK4 of stretching links, s: 2 sqrt(2) over a bound on the highest circular frequency.
+    """A stable step of RK4 of stretching links, s: `step_limit` with bounds on the highest frequency and damping.
 
-    No frequency of the chain exceeds the highest of any link by itself (B. M. Irons and G. Treharne): sqrt(EA l / J)
-    in stretching, sqrt(2 (k_i + k_j) / J) in bending.
+    Neither exceeds the highest of any link by itself (B. M. Irons and G. Treharne): sqrt(EA l / J) in stretching,
+    sqrt(2 (k_i + k_j) / J) in bending, the rate 2 (c_i + c_j) / J of the dashpots.
     """
-    springs = system.stiffness + np.append(system.stiffness[1:], 0.0)
-    fastest = np.maximum(axial_stiffness * system.lengths, 2.0 * springs) / system.inertias
-    return float(2.0 * np.sqrt(2.0 / fastest.max()))
+    springs, dashpots = (rate + np.append(rate[1:], 0.0) for rate in (system.stiffness, system.dashpots))
+    squares = np.maximum(axial_stiffness * system.lengths, 2.0 * springs) / system.inertias
+    return _stable_step(float(np.sqrt(squares.max())), float((2.0 * dashpots / system.inertias).max()))
 
 
 def simulate(
@@ -363,8 +370,8 @@ def from_rest(
     motion = run(None)
     check_moved(motion)
     if motion.statistics.furthest > FAR:
-        coarser = 0.1 * tolerance if tolerance > 1e-3 else 10.0 * tolerance
-        name, other = ("step", 0.5 * motion.statistics.step_s) if links == "stretching" else ("tolerance", coarser)
+        stretching = links == "stretching"
+        name, other = ("step", 0.5 * motion.statistics.step_s) if stretching else ("tolerance", 10.0 * tolerance)
         second: Any = run(other)
         heights, others = motion.heights(), second.heights()
         largest = np.maximum.accumulate(abs(heights).max(axis=1))[: len(others)]

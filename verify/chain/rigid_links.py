@@ -144,7 +144,7 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
         turning = omega[i] - rate
         after = -links[i, SPRING] * (theta[i] - angle) - links[i, DASHPOT] * turning
         lost += links[i, DASHPOT] * turning * turning
-        w[i - 1, TORQUE] = moment - after
+        w[i - 1, TORQUE] = moment - after  # of i = 0 into the last row, which is set below
         angle, rate, moment = theta[i], omega[i], after
         # velocity of the near joint, and forces of inertia by the accelerations that belong to the rates
         swing = links[i, HALF] * rate

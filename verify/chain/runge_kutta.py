@@ -155,7 +155,8 @@ def march(
     """
     last, new, trial, end = c.size, k[c.size + 1], k[c.size + 2], samples[samples.size - 1]
     if counts[KEPT] == 0 and samples[0] <= clock[TIME]:
-        interpolate(n, 0.0, 1.0, y, y, y, y, kept[0])
+        for i in range(2 * n):
+            kept[0, i] = y[i]
         counts[KEPT] = 1
     accelerate(clock[TIME], y, k[0], links, loads, numbers, scratch)
     for i in range(n):

@@ -103,10 +103,10 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
 
 
 def solve_static(system: ChainSystem, start: ChainState | None = None) -> ChainState:
-    """Equilibrium under the constant loads and gravity, from a start (straight unless given), in O(N).
+    """Equilibrium under the constant loads and gravity, from `start`, by default the straight chain.
 
-    Newton's method on angles and reaction; where it fails the load is raised in smaller parts. Raises InputError where
-    no part converges: an instability, or a mechanism.
+    Newton's method on angles and reaction, in O(N) without axial spring and rotation; where it fails the load is
+    raised in smaller parts. Raises InputError where no part converges: an instability, or a mechanism.
     """
     angles = np.zeros(system.n_links) if start is None else np.array(start.angles, dtype=float)
     angles, share = _raise_load(system, angles, 1.0, 1e-3)

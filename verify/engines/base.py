@@ -37,11 +37,11 @@ class Chain:
 
     @property
     def length(self) -> float:
-        """Of the chain."""
+        """Length of the chain, m."""
         return self.n * self.link
 
     def force_values(self, t: float) -> list[float]:
-        """Of all forces at a time, N."""
+        """Values of all forces at t, s, in N."""
         omega = 2.0 * pi * self.frequency_hz
         return [force.amplitude * cos(omega * t + radians(force.phase_deg)) for force in self.forces]
 
@@ -86,9 +86,10 @@ class Rider:
         return -self.friction * tanh(self.slope * relative_speed)
 
     def surface_speed(self, chain: Chain, spins: Sequence[float] | Array, x: float, first: int = 0) -> float:
-        """Of the surface at x, from the angular velocities of links `first` on, two on either side of x at least.
+        """Tangential speed of the surface at x, m, in m/s, from the angular velocities of links `first` on.
 
-        Means of two links at the joints, a cubic through four joints between (Catmull and Rom, 1974).
+        At least two on either side of x. Means of two links at the joints, a cubic through four joints between (Catmull
+        and Rom, 1974).
         """
         i = near(chain, x)
         s, k = x / chain.link - i, i - first
@@ -206,7 +207,7 @@ class Recorder:
     samples: list[tuple[float, float, float, float]] = field(default_factory=list)
 
     def keep(self, k: int, q: Array, v: Array) -> None:
-        """State after k steps, of every so manieth."""
+        """Store the state after k steps, about `SAMPLES` times in a run."""
         if k % max(self.steps // SAMPLES, 1):
             return
         n = self.chain.n
@@ -217,6 +218,6 @@ class Recorder:
         self.samples.append((k * self.step, height, *slid))
 
     def run(self, steps: int, failure: str) -> Run:
-        """All of it."""
+        """The run from its samples."""
         times, deflection, distance, speed = np.array(self.samples).reshape(-1, 4).T
         return Run(times, deflection, distance, speed, steps, failure)

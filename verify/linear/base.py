@@ -175,7 +175,9 @@ class BeamModel(ABC):
         for device in stationed:
             device.check_on(self.beam)
         if not acting and not any(device.amplitude for device in stationed):
-            raise InputError("forces is empty and no device has an amplitude: give a PointForce, or a device a force")
+            raise InputError(
+                "no forces or displacements and no device with an amplitude: give a PointForce, or a device a force"
+            )
         return acting, stationed
 
     def _has_no(self, verb: str) -> InputError:

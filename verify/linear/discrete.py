@@ -246,6 +246,8 @@ class DiscreteModel(BeamModel):
         drives, stationed = self.check_stationed(displacements, devices)
         if (cut := self._cut_at(stationed)) is not None:
             return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
+        if np.ndim(frequency_hz):
+            raise InputError("frequency_hz has several values: with imposed displacements give one at a time")
         omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
         own = tuple(device.own_force for device in stationed if device.amplitude)
         places, p = np.array([drive.position for drive in drives]), len(drives)

@@ -8,6 +8,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError, shown
 from verify.problem.beam import Beam, PointForce, check_frequency
+from verify.validation import check_position, several
 
 Numbers: TypeAlias = float | Sequence[float] | Array
 """One, a list or an array."""
@@ -58,17 +59,11 @@ def reshape_like(values: Values, x: Numbers) -> Values:
 
 
 def forces_on(beam: Beam, forces: Forces) -> tuple[PointForce, ...]:
-    """The forces as a tuple, one force alone too. Raises InputError for none, and for one off the beam."""
-    given = (forces,) if isinstance(forces, PointForce) else tuple(forces)
-    for force in given:
-        if not isinstance(force, PointForce):
-            raise InputError(f"forces has {shown(force)}: give a PointForce, or a list of them")
-        if force.position > beam.length:
-            raise InputError(
-                f"force.position = {force.position!r} lies off the beam: give a position between 0 and "
-                f"{beam.length!r} m"
-            )
-    return given
+    """A force, or several, as a tuple. Raises InputError for a position off the beam and for anything else."""
+    acting = several("forces", forces, PointForce)
+    for force in acting:
+        check_position("force.position", force.position, beam.length)
+    return acting
 
 
 def frequencies_on(beam: Beam, frequency_hz: Numbers) -> Array:

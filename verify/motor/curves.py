@@ -5,7 +5,7 @@ light slider, which follows the surface within the period, runs freely at anothe
 Time constants come from means over a sliding period, so that the phase of the drive at the start does not matter.
 """
 
-from math import e
+from math import ceil, e
 
 import numpy as np
 from msgspec import Struct
@@ -113,7 +113,8 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
 
     Raises InputError where it leaves the beam before the first period has passed.
     """
-    fine = periods if periods < 2 * FINE else FINE
+    fine = max(FINE, ceil(case.soft_start_periods))
+    fine = periods if periods < 2 * fine else fine
     run = case.run(fine, fine * case.steps_per_period + 1, before.run if before else None)
     times, slider = run.times - run.times[0], case.slider
     if times[-1] <= case.period:

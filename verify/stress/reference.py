@@ -85,7 +85,7 @@ def links(beam: Beam, lengths: Sequence[D]) -> tuple[Bands, Bands]:
         _add(m, e, ra * inertia)
         _add(k, e, D(beam.foundation) * inertia + D(beam.tension) * h * tilt)
     wall = beam.supports[0] == "clamped"
-    for j, ((a, ei, _), (b, next_ei, _)) in enumerate(zip([parts[-1], *parts[:-1]], parts, strict=True)):
+    for j, ((a, ei, _), (b, next_ei, _)) in enumerate(zip([parts[0], *parts[:-1]], parts, strict=True)):
         compliance = (a / ei + b / next_ei) / 2 * (_GREGORY[j] if wall and j < len(_GREGORY) else 1)
         bend = np.array([1 / a, -1 / a - 1 / b, 1 / b] if j else [-1 / b, 1 / b])
         if j or wall:

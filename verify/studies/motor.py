@@ -1,6 +1,5 @@
 """The motor of a scene: force over speed, no load, start, stop and reversal, phase portrait, on every model."""
 
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from math import copysign
@@ -151,8 +150,10 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         curve = [still, *(steady_state(case, speed, PERIODS, still.run) for speed in speeds[1:])]
         missing: list[str] = list(dict.fromkeys(one for at in curve for one in at.not_converged))
         unloaded = None
-        with suppress(InputError):
+        try:
             unloaded = cached(cache, curves.no_load, case, PERIODS).speed
+        except InputError as error:
+            missing.append("force" if curves.REASONS["force"] in str(error) else "no load")
         progress(f"free run, {name}")
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
         free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
@@ -172,7 +173,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             missing += [key for key, one in runs.items() if one and times[key] is None]
         else:
             missing.append("free speed" if finished else "left")
-        missing += ["no load"] * (unloaded is None) + ["ringing"] * rings
+        missing += ["ringing"] * rings
         return Field(
             case=case,
             name=name,

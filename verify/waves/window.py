@@ -107,6 +107,6 @@ def check_wavenumber(name: str, value: object, span: Window) -> complex:
     halves = (span[1] - span[0]) * k.real / float(np.pi)
     if not 1.0 - 1e-9 <= halves <= MOST_HALVES:
         raise InputError(
-            f"{name} = {shown(value)} 1/m: {as_written(span)} m hold {halves:.3g} half waves, give 1 to 10000"
+            f"{name} = {shown(value)} 1/m: {as_written(span)} m hold {halves:.3g} half waves, give 1 to {MOST_HALVES}"
         )
     return complex(k)
