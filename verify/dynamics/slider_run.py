@@ -199,21 +199,15 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         began, request, contacts = perf_counter(), self.request, self._contacts()
         z = self._initial(contacts)
         kinetic, elastic = _kinetic(request.sliders, contacts), _elastic(contacts)
-        beam = _beam_energy(self.basis, stages[0], z, 0.0)
         first = (
-            stages[0].deflection(z, np.zeros(1), request.points),
             contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(),
             (contacts.points[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[None],
         )
-        n_steps, accounts = sum(stage.steps.n for stage in stages), request.start == "rest"
-        recorded = run_stages(
-            stages, z, contacts, request.points, accounts=accounts, progress=lambda n: progress(n / n_steps)
-        )
+        recorded, deflection, beam, accounts = self._marched(stages, z, contacts, progress)
         gains = (
             _kinetic(request.sliders, contacts) - kinetic,
             float(recorded.sums[:, lay.STORED].sum()) - elastic,
-            *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam).tolist(),
-            float(beam.sum()),
+            *beam,
         )
         statistics = Statistics(
             steps=recorded.n_steps,
@@ -226,8 +220,25 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             stopped=recorded.stopped,
         )
         return self._motion(
-            stages, contacts, recorded, first, statistics, _balance(recorded, gains, contacts, accounts)
+            stages, contacts, recorded, (deflection, *first), statistics, _balance(recorded, gains, contacts, accounts)
         )
+
+    def _marched(
+        self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
+    ) -> tuple[Recorded, Array, tuple[float, float, float], bool]:
+        """Beam and sliders to the end.
+
+        Also the deflection at the start, (1, p), m; what the beam gains, kinetic and elastic, and its energy at the
+        start, J; whether work of the drive and loss in the beam are known.
+        """
+        n_steps, accounts = sum(stage.steps.n for stage in stages), self.request.start == "rest"
+        first, points = _beam_energy(self.basis, stages[0], z, 0.0), self.request.points
+        deflection = stages[0].deflection(z, np.zeros(1), points)
+        recorded = run_stages(
+            stages, z, contacts, points, accounts=accounts, progress=lambda n: progress(n / n_steps)
+        )
+        kinetic, elastic = (_beam_energy(self.basis, stages[-1], recorded.z, None) - first).tolist()
+        return recorded, deflection, (kinetic, elastic, float(first.sum())), accounts
 
     def _motion(
         self,

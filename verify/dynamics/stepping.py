@@ -112,7 +112,7 @@ def run_stages(
     progress : callable
         Called with the number of steps done.
     """
-    run = _Run(stages, contacts, places, accounts)
+    run = Run(stages, contacts, places, accounts)
     stopped = "end"
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.free(z)
@@ -120,28 +120,10 @@ def run_stages(
         z = stage.whole(run.z, run.time(stage))
         if stopped != "end":
             break
-    run.store(stages[-1].steps.dt)
-    n = int(run.tally[lay.SAMPLES])
-    n_events = int(run.tally[lay.EVENTS])
-    return Recorded(
-        samples=run.samples[:n],
-        heights=run.heights[:n],
-        pressures=run.pressures[:n],
-        deflections=run.deflections[:n],
-        events=run.events[: min(n_events, EVENTS)],
-        n_events=n_events,
-        sums=run.sums,
-        balance=run.balance,
-        n_steps=run.n_steps,
-        loop_s=run.loop_s,
-        set_up_s=run.set_up_s,
-        stopped=stopped,
-        z=z,
-        first=run.first,
-    )
+    return run.recorded(z, stages[-1].steps.dt, stopped)
 
 
-class _Run:
+class Run:
     """State and records of a run."""
 
     def __init__(self, stages: Sequence[Stage], contacts: Contacts, places: Array, accounts: bool) -> None:
@@ -161,6 +143,27 @@ class _Run:
             self.feet_of[contacts.indices[:, lay.OF_FOOT]] = contacts.indices[:, lay.OF_SLIDER]
         self.accounts, self.n_steps, self.loop_s, self.set_up_s = accounts, 0, 0.0, 0.0
         self.z: ComplexArray = np.empty(0, dtype=complex)
+
+    def recorded(self, z: ComplexArray, dt: float, stopped: str) -> Recorded:
+        """Samples, events and sums of a run that ended with all of the motion z, in steps of dt."""
+        self.store(dt)
+        n, n_events = int(self.tally[lay.SAMPLES]), int(self.tally[lay.EVENTS])
+        return Recorded(
+            samples=self.samples[:n],
+            heights=self.heights[:n],
+            pressures=self.pressures[:n],
+            deflections=self.deflections[:n],
+            events=self.events[: min(n_events, EVENTS)],
+            n_events=n_events,
+            sums=self.sums,
+            balance=self.balance,
+            n_steps=self.n_steps,
+            loop_s=self.loop_s,
+            set_up_s=self.set_up_s,
+            stopped=stopped,
+            z=z,
+            first=self.first,
+        )
 
     def time(self, stage: Stage) -> float:
         """Seconds of the stage so far."""
@@ -197,7 +200,7 @@ class _Run:
                 table = stage.table(*first)
                 local = np.zeros((len(table), 2, stage.degree + 1))
                 stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
-                contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self._positions())
+                contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self.positions())
                 self.set_up_s += thread_time() - began
                 arrays = (
                     contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
@@ -209,7 +212,7 @@ class _Run:
                 rigid = contacts.restitution is not None
                 if self.n_steps == 0 and not rigid:
                     advance(0, 1, stage.steps.dt, *arrays)
-                    self._sample_first()
+                    self.sample_first()
                 while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
                     began = thread_time()
                     n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
@@ -234,7 +237,7 @@ class _Run:
             if contacts.moving_load:
                 self._go_on(stage)
             else:
-                x = contacts.start + self._positions()
+                x = contacts.start + self.positions()
                 why = stage.beyond(float(x.min()), float(x.max()))
         return why
 
@@ -256,7 +259,7 @@ class _Run:
             )
         )  # fmt: skip
 
-    def _sample_first(self) -> None:
+    def sample_first(self) -> None:
         """The state before the first step; a slider in contact with feet has friction from the first step on."""
         sliders, contacts = self.contacts.sliders, self.contacts.contacts
         self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
@@ -286,7 +289,7 @@ class _Run:
                 self.sums[:, lay.STORED], self.contacts.indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2
             )
 
-    def _positions(self) -> Array:
+    def positions(self) -> Array:
         """Points from the start of the first slider, (points,), m, half a step on for feet."""
         contacts = self.contacts
         x, owner = contacts.sliders[:, lay.X], contacts.indices[:, lay.OF_SLIDER]
@@ -294,7 +297,7 @@ class _Run:
 
     def _around(self, stage: Stage) -> tuple[int, int] | None:
         """The pieces around all points, first and end, or None where a point is off the beam."""
-        edges, x = stage.edges - self.contacts.start, self._positions()
+        edges, x = stage.edges - self.contacts.start, self.positions()
         if x.min() < edges[0] or x.max() > edges[-1]:
             return None
         pieces = len(edges) - 1
