@@ -6,12 +6,11 @@ same virtual power as at the surface, until forces and motion agree. The respons
 marches.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.chain import rigid_links
+from verify.chain import elastic_links, rigid_links
+from verify.chain.runge_kutta import DONE as MARCHED
 from verify.chain.runge_kutta import KEPT, STEP, TIME, march
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_solver import TRANSVERSE, product, respond, solve
@@ -128,9 +127,9 @@ def load_joints(forces: Array, points: Array, shapes: Array, loads: Array) -> No
 @jit
 def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.advance`
     n_steps: int, every: int, dt: float, gravity: float, unit: float, limits: Array,
-    accelerate: Callable[..., None], links: Array, loads: Array, numbers: Array, scratch: Array, a: Array, c: Array,
-    n: int, substep: float, weights: Array, k: Array, clock: Array, control: Array, counts: Indices, y: Array,
-    ends: Array, states: Array, probe: Array,
+    links: Array, loads: Array, numbers: Array, scratch: Array, a: Array, c: Array, n: int, substep: float,
+    weights: Array, k: Array, clock: Array, control: Array, counts: Indices, y: Array, ends: Array, states: Array,
+    probe: Array,
     codes: Indices, table: Array, edges: Array, sliders: Array, feet: Array, points: Array, contacts: Array,
     indices: Indices, feet_of: Indices, factors: Array, local: Array, stamp: Indices, shapes: Array, response: Array,
     couplings: Array, spans: Array, block: Array, saved_sliders: Array, saved_feet: Array, saved: Array, forces: Array,
@@ -170,8 +169,14 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                     y[j] = states[0, j]
                 ends[0], ends[1] = (step + 0.5) * dt, (step + 1.0) * dt
                 clock[TIME], clock[STEP], counts[KEPT] = step * dt, substep, 0
-                if march(accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock, ends,
-                         states[1:3] if trial < 0 else probe, control, counts, BUDGET) != 1:  # fmt: skip
+                kept = states[1:3] if trial < 0 else probe
+                if n == factors.shape[2] // 2:
+                    why = march(rigid_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock,
+                                ends, kept, control, counts, BUDGET)  # fmt: skip
+                else:
+                    why = march(elastic_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock,
+                                ends, kept, control, counts, BUDGET)  # fmt: skip
+                if why != MARCHED:
                     return lay.NOT_FINITE
                 if trial >= 0:
                     read_links(HALF, n, y, links, factors)

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.chain.kinematics import at_rest, energies
-from verify.chain.motion import ElasticMotion, from_rest, highest_frequency, step_limit
+from verify.chain.motion import ElasticMotion, elastic_step_limit, from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, axial_stiffness, build_system, straight_chain
 from verify.dynamics import layout as lay
@@ -179,7 +179,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
     ) -> tuple[Recorded, Array, tuple[float, float, float], bool]:
         from verify.chain import elastic_links, rigid_links
-        from verify.chain.runge_kutta import DORMAND_PRINCE, STEP
+        from verify.chain.runge_kutta import DORMAND_PRINCE
         from verify.chain.slider_kernels import STALE, advance
 
         (stage,), system, began = stages, self.system, thread_time()
@@ -192,9 +192,13 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         spare[:, 0], spare[:, 6] = 0.5 * system.lengths[: len(spare)] if rigid else 1.0, np.arange(len(spare))
         data[1] = np.concatenate([data[1], spare])
         if two_way:
-            states = np.zeros((3, 2 * n + 2))
-            states[0] = rigid_links.begin(system, still, data[2])
-            substep = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system), 0.5 * steps.dt)
+            states = np.zeros((3, 2 * n + (2 if rigid else 0)))
+            if rigid:
+                states[0] = rigid_links.begin(system, still, data[2])
+                limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
+            else:
+                limit = elastic_step_limit(system, axial) / 4.0
+            substep = 0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit)
         else:
             times, substep = np.linspace(0.0, steps.duration, 2 * steps.n + 1), steps.dt
             moved = from_rest(system, self.links, axial, times, tolerance=self.tolerance, progress=progress)
@@ -206,7 +210,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         points, columns, width = len(contacts.points), 2 * count, states.shape[1]
         clock, counts, tableau = np.array([0.0, substep]), np.zeros(4, dtype=np.int64), DORMAND_PRINCE
         chain = (
-            model.accelerate, *data, tableau.a, tableau.c, n, substep, np.zeros(0), np.zeros((len(tableau.c) + 3, width)),
+            *data, tableau.a, tableau.c, n, substep, np.zeros(0), np.zeros((len(tableau.c) + 3, width)),
             clock, np.array([0.0, 0.0, 0.0, np.pi, 0.0, 0.0, 0.0]), counts, np.zeros(width), np.zeros(2), states,
             np.zeros((2, width)),
         )  # fmt: skip
