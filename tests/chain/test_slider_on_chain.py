@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from reference.multibody import ridden, rigid_motion, stretching_motion
+from verify.chain.ride import half_steps, ride, ride_from_rest
 
 from verify import simulate
 from verify.chain.motion import elastic_step_limit, simulate_elastic
-from verify.chain.ride import half_steps, ride, ride_from_rest
 from verify.chain.system import axial_stiffness, build_system
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce

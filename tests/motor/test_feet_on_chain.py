@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from driven_strip import STRIP
+from verify.motor.on_chain import run_on_chain
 
 from verify import Contact, Foot, InputError, PointForce, Slider, simulate
-from verify.motor.on_chain import run_on_chain
 
 WIDE = (Foot(length=0.02, points=3),)
 

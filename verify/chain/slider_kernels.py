@@ -15,18 +15,7 @@ from verify.chain.runge_kutta import KEPT, STEP, TIME, march
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_solver import TRANSVERSE, product, respond, solve
 from verify.dynamics.integrator import add_sums, move, sample, write_events
-from verify.dynamics.kinematics import (
-    END,
-    HALF,
-    MIDDLE,
-    RATE,
-    START,
-    VALUE,
-    find_pieces,
-    look,
-    set_mean_rates,
-    shift_factors,
-)
+from verify.dynamics.kinematics import END, HALF, MIDDLE, RATE, START, VALUE, find_pieces, look, set_mean_rates
 from verify.jit import inline, jit
 
 CORRECTIONS = 20
@@ -64,12 +53,15 @@ def read_links(when: int, n: int, y: Array, links: Array, factors: Array) -> Non
 
 
 @inline
-def add_axial(
-    when: int, spring: bool, edges: Array, sliders: Array, points: Array, contacts: Array, indices: Indices,
-    factors: Array,
+def see(
+    when: int, mark: int, dt: float, gravity: float, codes: Indices, table: Array, edges: Array, factors: Array,
+    local: Array, stamp: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
 ) -> None:  # fmt: skip
-    """Add the speed along x of the material under every point to that of the surface, after `look`."""
-    m = factors.shape[2] // 2
+    """`look` at the surface under every point, and add the speed of its material along x."""
+    for j in range(stamp.size):
+        stamp[j] = -1
+    look(when, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+    m, spring = factors.shape[2] // 2, codes[lay.LAW] == lay.SPRING
     for i in range(points.shape[0]):
         piece, share = indices[i, lay.PIECE], contacts[i, lay.ABOVE_END if when == END else lay.ABOVE]
         if when == START:
@@ -126,24 +118,22 @@ def load_joints(forces: Array, points: Array, shapes: Array, loads: Array) -> No
 
 @jit
 def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.advance`
-    n_steps: int, every: int, dt: float, gravity: float, unit: float, limits: Array,
-    links: Array, loads: Array, numbers: Array, scratch: Array, a: Array, c: Array, n: int, substep: float,
-    weights: Array, k: Array, clock: Array, control: Array, counts: Indices, y: Array, ends: Array, states: Array,
-    probe: Array,
-    codes: Indices, table: Array, edges: Array, sliders: Array, feet: Array, points: Array, contacts: Array,
-    indices: Indices, feet_of: Indices, factors: Array, local: Array, stamp: Indices, shapes: Array, response: Array,
-    couplings: Array, spans: Array, block: Array, saved_sliders: Array, saved_feet: Array, saved: Array, forces: Array,
-    marches: Indices, places: Array, samples: Array, heights: Array, pressures: Array, deflections: Array,
-    events: Array, tally: Indices, sums: Array, before: Array, balance: Array,
+    n_steps: int, every: int, dt: float, gravity: float, unit: float, limits: Array, links: Array, loads: Array,
+    numbers: Array, scratch: Array, a: Array, c: Array, n: int, substep: float, weights: Array, k: Array, clock: Array,
+    control: Array, counts: Indices, y: Array, ends: Array, states: Array, probe: Array, codes: Indices, table: Array,
+    edges: Array, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices, feet_of: Indices,
+    factors: Array, local: Array, stamp: Indices, shapes: Array, response: Array, couplings: Array, spans: Array,
+    block: Array, saved_sliders: Array, saved_feet: Array, saved: Array, forces: Array, marches: Indices, places: Array,
+    samples: Array, heights: Array, pressures: Array, deflections: Array, events: Array, tally: Indices, sums: Array,
+    before: Array, balance: Array,
 ) -> int:  # fmt: skip
     """Advance by up to n_steps from step tally[STEP]; why it returns.
 
     `states` are those of half steps, (2 steps + 1, y.size), or two-way of this step alone, (3, y.size). `unit` is the
-    load, N, `limits` the ends of the surface.
+    load, N, `limits` the ends of the surface; `forces` (points, 2) act on sliders and feet, tangential and normal.
     """
-    two_way, spring, m = codes[lay.TWO_WAY] > 0, codes[lay.LAW] == lay.SPRING, points.shape[0]
+    two_way, spring, m, last = codes[lay.TWO_WAY] > 0, codes[lay.LAW] == lay.SPRING, points.shape[0], factors.shape[0]
     directions = 2 if codes[lay.PRESSES] > 0 else 1
-    read_links(START, n, states[0 if two_way else 2 * tally[lay.STEP]], links, factors)
     for _ in range(n_steps):
         step, count = tally[lay.STEP], 0
         row = 0 if two_way else 2 * step
@@ -158,26 +148,25 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
         copy(contacts, saved)
         probing, changed = two_way and marches[0] > STALE, 0.0
         while True:
-            for trial in range(-1 if two_way else 0, directions * m if probing else 0):
-                i, s = trial % m, trial // m
-                if trial >= 0:
-                    forces[i, s] -= unit
-                load_joints(forces, points, shapes, loads)
-                if trial >= 0:
-                    forces[i, s] += unit
-                for j in range(y.size):
-                    y[j] = states[0, j]
-                ends[0], ends[1] = (step + 0.5) * dt, (step + 1.0) * dt
-                clock[TIME], clock[STEP], counts[KEPT] = step * dt, substep, 0
-                kept = states[1:3] if trial < 0 else probe
-                if n == factors.shape[2] // 2:
-                    why = march(rigid_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock,
-                                ends, kept, control, counts, BUDGET)  # fmt: skip
-                else:
-                    why = march(elastic_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock,
-                                ends, kept, control, counts, BUDGET)  # fmt: skip
-                if why != MARCHED:
-                    return lay.NOT_FINITE
+            for trial in range(-1, directions * m if probing else 0):  # then with a unit of every force in addition
+                i, s, more = trial % m, trial // m, unit if trial >= 0 else 0.0
+                if two_way:
+                    forces[i, s] -= more
+                    load_joints(forces, points, shapes, loads)
+                    forces[i, s] += more
+                    for j in range(y.size):
+                        y[j] = states[0, j]
+                    ends[0], ends[1] = (step + 0.5) * dt, (step + 1.0) * dt
+                    clock[TIME], clock[STEP], counts[KEPT] = step * dt, substep, 0
+                    kept = states[1:3] if trial < 0 else probe
+                    if n == factors.shape[2] // 2:
+                        why = march(rigid_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k,
+                                    clock, ends, kept, control, counts, BUDGET)  # fmt: skip
+                    else:
+                        why = march(elastic_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k,
+                                    clock, ends, kept, control, counts, BUDGET)  # fmt: skip
+                    if why != MARCHED:
+                        return lay.NOT_FINITE
                 if trial >= 0:
                     read_links(HALF, n, y, links, factors)
                     for j in range(factors.shape[2]):
@@ -187,12 +176,21 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                 copy(saved_sliders, sliders)
                 copy(saved_feet, feet)
                 copy(saved, contacts)
-                see(dt, spring, step, n, row, gravity, states, links, codes, table, edges, factors, local, stamp,
-                    sliders, feet, points, contacts, indices)  # fmt: skip
-                set_shapes(table, edges, points, contacts, indices, shapes)
-            if not two_way:
-                see(dt, spring, step, n, row, gravity, states, links, codes, table, edges, factors, local, stamp,
-                    sliders, feet, points, contacts, indices)  # fmt: skip
+                for when in range(last):
+                    if when != MIDDLE:
+                        read_links(when, n, states[row + (when + 1) // 2], links, factors)
+                set_mean_rates(dt, spring, factors)
+                for b in range(sliders.shape[0] if spring else 0):
+                    sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
+                for f in range(feet.shape[0]):
+                    feet[f, lay.HEIGHT] += 0.5 * dt * feet[f, lay.CLIMB]
+                    feet[f, lay.PITCH] += 0.5 * dt * feet[f, lay.TURN]
+                for when in range(last):
+                    if when != HALF and (when == MIDDLE or not spring):
+                        see(when, 4 * step + when, dt, gravity, codes, table, edges, factors, local, stamp, sliders,
+                            feet, points, contacts, indices)  # fmt: skip
+                if two_way:
+                    set_shapes(table, edges, points, contacts, indices, shapes)
             probing = False
             for j in range(response.size):
                 response[j] = 0.0
@@ -212,11 +210,9 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                   balance)  # fmt: skip
             changed = 0.0
             for i in range(m if two_way else 0):
-                changed = max(changed, abs(forces[i, 0] - contacts[i, lay.FRICTION]))
-                forces[i, 0] = contacts[i, lay.FRICTION]
-                if directions > 1:
-                    changed = max(changed, abs(forces[i, 1] - contacts[i, lay.NORMAL]))
-                    forces[i, 1] = contacts[i, lay.NORMAL]
+                for s in range(directions):
+                    force = contacts[i, lay.FRICTION if s == 0 else lay.NORMAL]
+                    changed, forces[i, s] = max(changed, abs(force - forces[i, s])), force
             if changed <= AGREED * unit or count >= CORRECTIONS:
                 break
         if two_way:
@@ -228,48 +224,19 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                     for j in range(factors.shape[2]):  # work of the contact on the chain, a part of that of its loads
                         moved = shapes[s, i, j] * (factors[END, VALUE, j] - factors[START, VALUE, j])
                         balance[lay.DRIVEN] += points[i, lay.WEIGHT] * forces[i, s] * moved
-            for j in range(y.size):
-                states[0, j] = states[2, j]
+            copy(states[2:], states)
         add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, sums, balance)
         move(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(step * dt, dt, codes, sliders, points, contacts, indices, spans, events, tally)
-        shift_factors(factors)
         tally[lay.STEP] += 1
-        if not np.isfinite(sliders[0, lay.V] + factors[START, VALUE, 0]):
+        if not np.isfinite(sliders[0, lay.V] + factors[END, VALUE, 0]):
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
-            for j in range(stamp.size):
-                stamp[j] = -1
-            for when in range(0 if spring or not find_pieces(0.0, edges, sliders, points, indices) else 1):
-                look(when, 4 * step + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet,
-                     points, contacts, indices)  # fmt: skip
-                add_axial(when, spring, edges, sliders, points, contacts, indices, factors)
+            for when in range(1):  # START
+                read_links(when, n, states[0 if two_way else row + 2], links, factors)
+                if not spring and find_pieces(0.0, edges, sliders, points, indices):
+                    see(when, 4 * step + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet,
+                        points, contacts, indices)  # fmt: skip
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
     return lay.DONE
-
-
-@inline
-def see(
-    dt: float, spring: bool, step: int, n: int, row: int, gravity: float, states: Array, links: Array, codes: Indices,
-    table: Array, edges: Array, factors: Array, local: Array, stamp: Indices, sliders: Array, feet: Array,
-    points: Array, contacts: Array, indices: Indices,
-) -> None:  # fmt: skip
-    """The surface under all points at the instants of a step whose states are known; feet are moved to its middle."""
-    for j in range(stamp.size):
-        stamp[j] = -1
-    for when in range(HALF, factors.shape[0]):
-        if when != MIDDLE:
-            read_links(when, n, states[row + (1 if when == HALF else 2)], links, factors)
-    set_mean_rates(dt, spring, factors)
-    for b in range(sliders.shape[0] if spring else 0):
-        sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
-    for k in range(feet.shape[0]):
-        feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
-        feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
-    for when in range(factors.shape[0]):
-        if when == HALF or (spring and when != MIDDLE):
-            continue
-        look(when, 4 * step + when, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points,
-             contacts, indices)  # fmt: skip
-        add_axial(when, spring, edges, sliders, points, contacts, indices, factors)

@@ -17,10 +17,10 @@ from verify.arrays import Array, ComplexArray
 from verify.chain.kinematics import at_rest, energies
 from verify.chain.motion import ElasticMotion, elastic_step_limit, from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
-from verify.chain.system import ChainState, ChainSystem, LinkLoad, axial_stiffness, build_system, straight_chain
+from verify.chain.system import ChainState, LinkLoad, axial_stiffness, build_system, straight_chain
 from verify.dynamics import layout as lay
 from verify.dynamics.initial_state import PASSES, set_down
-from verify.dynamics.linear_system import Stage, basis_of, stages_from_rest
+from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
 from verify.dynamics.request import request_of
 from verify.dynamics.result import END, INTERRUPTED, Motion
 from verify.dynamics.slider_run import Progress, SliderRun
@@ -73,44 +73,28 @@ def slide_on_chain(
     check_whole("count", count, 2)
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
     request = request_of(
-        beam,
-        forces,
-        frequency_hz,
-        duration,
-        model="segment",
-        count=count,
-        modes=None,
-        start="rest",
-        soft_start_periods=0.0,
-        envelope=(),
-        modal_damping=None,
-        slider=slider,
-        prescribed_speed=prescribed_speed,
-        fixed_position=fixed_position,
-        at=at,
-        samples=samples,
-        step=step,
-        steps_per_period=steps_per_period,
+        beam, forces, frequency_hz, duration, model="segment", count=count, modes=None, start="rest",
+        soft_start_periods=0.0, envelope=(), modal_damping=None, slider=slider, prescribed_speed=prescribed_speed,
+        fixed_position=fixed_position, at=at, samples=samples, step=step, steps_per_period=steps_per_period,
         continue_from=None,
-    )
+    )  # fmt: skip
     for one in request.sliders:
         if one.contact is not None and one.contact.hard:
-            raise InputError("slider.contact is hard: a nonlinear chain carries feet on springs, give contact.stiffness")
+            raise InputError("slider.contact is hard: on a nonlinear chain feet have springs, give contact.stiffness")
         if one.line != "spline":
             raise InputError(f"slider.line = {one.line!r}: contact with a nonlinear chain is along its spline")
         if request.two_way and one.contact is None and one.normal == "held":
             raise InputError("slider.normal = 'held': a nonlinear chain responds to friction alone, give 'massless'")
-    if not request.sliders:
-        raise InputError("slider is missing: give one, or use verify.chain.motion")
-    system = build_system(
-        beam, count, request.forces, frequency_hz, load="reciprocal", joint_dashpot=joint_dashpot
-    )
+        if request.two_way and one.contact is not None and links == "stretching":
+            raise InputError("slider.coupling = 'two-way': stretching links carry feet one-way, give links = 'rigid'")
+    system = build_system(beam, count, request.forces, frequency_hz, load="reciprocal", joint_dashpot=joint_dashpot)
     basis = basis_of(beam, "segment", count, None, "spline")
     stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
     notes = (f"the nonlinear chain of {links} links from rest; coupling and margins are those of the linear one",)
     run = ChainRun.of(request, basis, stages, notes, sequence=not isinstance(slider, Slider))
-    run = replace(run, system=system, links=links, tolerance=tolerance)
-    motion = run.converged(progress)
+    up = np.triu(np.ones((count, count + 1)), 1)  # joints beyond a unit step across rise with it
+    line = contact_line(straight_chain(system), up)
+    motion = replace(run, system=system, line=line, links=links, tolerance=tolerance).converged(progress)
     statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
     return replace(motion, model="chain", statistics=statistics, end=replace(motion.end, model="chain"))
 
@@ -118,62 +102,76 @@ def slide_on_chain(
 class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     """Sliders on the nonlinear chain before the first step; basis and stage are those of the linear chain."""
 
-    system: ChainSystem | None = None
+    system: Any = None
+    """ChainSystem."""
+    line: Any = None
+    """Contact line by unit steps across from joint to joint, (x, derivative) -> (N, len(x))."""
     links: Links = "rigid"
     tolerance: float = 1e-9
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
         z = super()._initial(contacts, loaded)
         if loaded and contacts.presses:
-            still = self._static(contacts)
+            rises = self._rises(self._static(contacts))
             ground: Any = SimpleNamespace(
                 edges=self.stages[0].edges,
-                factors=lambda z, t: self._rises(still)[None],
-                rates_at_start=lambda z: np.zeros(len(still.angles)),
-                columns=self._line(),
+                columns=self.line,
+                factors=lambda z, t: rises[None],
+                rates_at_start=lambda z: 0.0 * rises,
             )
             set_down(contacts, ground, z)
         return z
 
-    def _line(self) -> Any:
-        """The contact line by unit steps across at the links, (x, derivative) -> (N, len(x))."""
-        assert self.system is not None
-        n = self.system.n_links
-        return contact_line(straight_chain(self.system), np.triu(np.ones((n, n + 1)), 1))
-
     def _rises(self, state: ChainState) -> Array:
-        """Components of the links across, (N,), m."""
-        assert self.system is not None
+        """Steps across from joint to joint, (N,), m."""
         return np.asarray(self.system.lengths * np.sin(np.cumsum(state.angles)))
 
     def _static(self, contacts: Contacts) -> ChainState:
-        """Equilibrium of the chain under the load of feet, shared equally among their points."""
-        system, p, line = self.system, contacts.points, self._line()
-        assert system is not None
-        state = at_rest(system)
+        """Equilibrium of the chain under the load of feet, shared equally among the points on either face."""
+        system, p, state = self.system, contacts.points, at_rest(self.system)
         if not contacts.presses:
             return state
-        foot, x = contacts.indices[:, lay.OF_FOOT], contacts.start + p[:, lay.OFFSET]
-        push = p[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
-        side = p[:, lay.FACE] * p[:, lay.IMAGE]
-        group = foot[:, None] * 4 + (side[:, None] > 0.0)
-        for number in np.unique(group):
-            own = group[:, 0] == number
-            push[own] = push[own].mean()
-        push *= p[:, lay.WEIGHT] * side
+        side, x = p[:, lay.FACE] * p[:, lay.IMAGE], contacts.start + p[:, lay.OFFSET]
+        group = 2 * contacts.indices[:, lay.OF_FOOT] + (p[:, lay.FACE] > 0.0)
+        push = np.bincount(group, p[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[group]
+        push = push * p[:, lay.WEIGHT] * side / np.bincount(group)[group]
         for _ in range(PASSES):
-            rises, at = self._rises(state), x
+            lean, rises = 0.0 * x, self._rises(state)
             for _ in range(PASSES):
-                at = x + p[:, lay.LEVER] * (rises @ line(at, 1))
-            lean = p[:, lay.LEVER] * (rises @ line(at, 1))
-            total = -(line(at) + lean * line(x, 1)) @ push
-            across = total - np.append(total[1:], 0.0)
-            loads = tuple(
-                LinkLoad(link=j + 1, at=float(system.lengths[j]), force=(0.0, float(across[j])))
-                for j in range(system.n_links)
-            )
+                lean = p[:, lay.LEVER] * (rises @ self.line(x + lean, 1))
+            beyond = (self.line(x + lean) + lean * self.line(x, 1)) @ push
+            across, ends = np.diff(beyond, append=0.0), system.lengths
+            loads = [LinkLoad(link=j + 1, at=float(ends[j]), force=(0.0, float(f))) for j, f in enumerate(across)]
             state = solve_static(changed(system, loads=(*system.loads, *loads)), state)
         return state
+
+    def _states(self, steps: Steps, contacts: Contacts, numbers: Array, progress: Progress) -> tuple[Array, float]:
+        """States of the chain at half steps, two-way of the first alone, and the step of the march, s."""
+        from verify.chain.rigid_links import begin
+
+        system, rigid, axial = self.system, self.links == "rigid", self._axial()
+        if contacts.two_way:
+            states = np.zeros((3, 2 * system.n_links + 2 if rigid else 4 * system.n_links + 4))
+            limit = elastic_step_limit(system, axial) / 4.0
+            if rigid:
+                states[0] = begin(system, self._static(contacts), numbers)
+                limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
+            return states, float(0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit))
+        times = np.linspace(0.0, steps.duration, 2 * steps.n + 1)
+        moved = from_rest(system, self.links, axial, times, tolerance=self.tolerance, progress=progress)
+        if isinstance(moved, ElasticMotion):
+            parts = [part.reshape(len(times), -1) for part in (moved.displacements, moved.velocities)]
+        else:
+            parts = [
+                moved.directions(),
+                np.cumsum(moved.rates, axis=1),
+                moved.dissipated[:, None],
+                moved.work_in[:, None],
+            ]
+        return np.concatenate(parts, axis=1), steps.dt
+
+    def _axial(self) -> Array:
+        return axial_stiffness(self.request.beam, self.system.n_links)
 
     def _marched(
         self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
@@ -183,47 +181,29 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         from verify.chain.slider_kernels import STALE, advance
 
         (stage,), system, began = stages, self.system, thread_time()
-        assert system is not None
         steps, count, rigid, two_way = stage.steps, system.n_links, self.links == "rigid", contacts.two_way
-        axial, n = axial_stiffness(self.request.beam, count), count if rigid else 2 * count + 2
-        still, spare = self._static(contacts), np.zeros((count if two_way else 0, 7))
-        model: Any = rigid_links if rigid else elastic_links
-        data = list(rigid_links.flatten(system) if rigid else elastic_links.flatten(system, axial, False))
-        spare[:, 0], spare[:, 6] = 0.5 * system.lengths[: len(spare)] if rigid else 1.0, np.arange(len(spare))
-        data[1] = np.concatenate([data[1], spare])
-        if two_way:
-            states = np.zeros((3, 2 * n + (2 if rigid else 0)))
-            if rigid:
-                states[0] = rigid_links.begin(system, still, data[2])
-                limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
-            else:
-                limit = elastic_step_limit(system, axial) / 4.0
-            substep = 0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit)
-        else:
-            times, substep = np.linspace(0.0, steps.duration, 2 * steps.n + 1), steps.dt
-            moved = from_rest(system, self.links, axial, times, tolerance=self.tolerance, progress=progress)
-            if isinstance(moved, ElasticMotion):
-                states = np.concatenate([part.reshape(len(times), n) for part in (moved.displacements, moved.velocities)], 1)
-            else:
-                quadratures = np.stack([moved.dissipated, moved.work_in], axis=1)
-                states = np.concatenate([moved.directions(), np.cumsum(moved.rates, axis=1), quadratures], axis=1)
-        points, columns, width = len(contacts.points), 2 * count, states.shape[1]
-        clock, counts, tableau = np.array([0.0, substep]), np.zeros(4, dtype=np.int64), DORMAND_PRINCE
-        chain = (
-            *data, tableau.a, tableau.c, n, substep, np.zeros(0), np.zeros((len(tableau.c) + 3, width)),
-            clock, np.array([0.0, 0.0, 0.0, np.pi, 0.0, 0.0, 0.0]), counts, np.zeros(width), np.zeros(2), states,
-            np.zeros((2, width)),
-        )  # fmt: skip
-        line, run = self._line(), Run(stages, contacts, self.request.points, False)
-        powers = line.c[::-1] * system.lengths[:, None] ** np.arange(4)[:, None, None]
-        places = np.zeros((len(self.request.points), columns))
-        places[:, :count] = line(self.request.points).T if len(places) else 0.0
-        codes = np.zeros(lay.CODES, dtype=np.int64)
+        links, loads, numbers, scratch = (
+            rigid_links.flatten(system) if rigid else elastic_links.flatten(system, self._axial(), False)
+        )
+        if two_way:  # dead loads at the far joints
+            spare = np.zeros((count, 7))
+            spare[:, 0], spare[:, 6] = 0.5 * system.lengths if rigid else 1.0, np.arange(count)
+            loads = np.concatenate([loads, spare])
+        states, substep = self._states(steps, contacts, numbers, progress)
+        n, points, columns, width = (states.shape[1] - 2 * rigid) // 2, len(contacts.points), 2 * count, states.shape[1]
+        tableau, run, first = DORMAND_PRINCE, Run(stages, contacts, self.request.points, False), states[0].copy()
+        powers = self.line.c[::-1] * system.lengths[:, None] ** np.arange(4)[:, None, None]
+        places, codes = np.zeros((len(self.request.points), columns)), np.zeros(lay.CODES, dtype=np.int64)
+        places[:, :count] = self.line(self.request.points).T
         codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES, lay.FOLLOWING]] = (
             contacts.law, two_way, contacts.presses, contacts.following,
         )  # fmt: skip
-        contact = (
-            codes, np.ascontiguousarray(np.moveaxis(powers, 0, 1)), system.nodes - contacts.start, contacts.sliders,
+        arrays = (
+            steps.every, steps.dt, contacts.gravity, max(one.normal_force for one in self.request.sliders),
+            stage.edges[[0, -1]] - contacts.start, links, loads, numbers, scratch, tableau.a, tableau.c, n, substep,
+            np.zeros(0), np.zeros((len(tableau.c) + 3, width)), np.zeros(2), np.array([0.0, 0.0, 0.0, np.pi, 0, 0, 0]),
+            np.zeros(4, dtype=np.int64), np.zeros(width), np.zeros(2), states, np.zeros((2, width)), codes,
+            np.ascontiguousarray(np.moveaxis(powers, 0, 1)), system.nodes - contacts.start, contacts.sliders,
             contacts.feet, contacts.points, contacts.contacts, contacts.indices, run.feet_of,
             np.zeros((4, 2, columns)), np.zeros((count, 2, 4)), np.zeros(count, dtype=np.int64),
             np.zeros((4, points, columns)), np.zeros(columns), run.couplings, run.spans, run.block,
@@ -232,15 +212,12 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             run.tally, run.sums, run.before, run.balance,
         )  # fmt: skip
         run.sample_first()
-        deflection, first = (places[:, :count] @ self._rises(still))[None], states[0].copy()
-        unit = max(one.normal_force for one in self.request.sliders)
-        limits = stage.edges[[0, -1]] - contacts.start
+        deflection = (places[:, :count] @ self._rises(self._static(contacts)))[None]
         run.set_up_s, began = thread_time() - began, thread_time()
         reason, stopped, chunk = lay.DONE, END, MARCHED if two_way else CHUNK
         try:
             while reason == lay.DONE and run.tally[lay.STEP] < steps.n:
-                n_steps = min(chunk, steps.n - int(run.tally[lay.STEP]))
-                reason = advance(n_steps, steps.every, steps.dt, contacts.gravity, unit, limits, *chain, *contact)
+                reason = advance(min(chunk, steps.n - int(run.tally[lay.STEP])), *arrays)
                 progress(float(run.tally[lay.STEP]) / steps.n)
         except KeyboardInterrupt:
             stopped = INTERRUPTED
@@ -250,12 +227,11 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         elif reason == lay.OFF_PIECES:
             x = contacts.start + run.positions()
             stopped = stage.beyond(float(x.min()), float(x.max()))
-        recorded, gains = run.recorded(z, steps.dt, stopped), (0.0, 0.0, 0.0)
+        gains = (0.0, 0.0, 0.0)
         if rigid:
             ends = np.array([first, states[0 if two_way else 2 * run.n_steps]])
             angles, rates = (np.diff(part, prepend=0.0) for part in (ends[:, :n], ends[:, n : 2 * n]))
             (k0, k1), (e0, e1), _ = energies(system, np.zeros(2), angles, rates)
             gains = float(k1 - k0), float(e1 - e0), float(k0 + e0)
-            run.balance[lay.LOST] += ends[1, 2 * n]
-            run.balance[lay.DRIVEN] += ends[1, 2 * n + 1]
-        return recorded, deflection, gains, rigid
+            run.balance[[lay.LOST, lay.DRIVEN]] += ends[1, 2 * n :]
+        return run.recorded(z, steps.dt, stopped), deflection, gains, rigid

@@ -234,9 +234,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         n_steps, accounts = sum(stage.steps.n for stage in stages), self.request.start == "rest"
         first, points = _beam_energy(self.basis, stages[0], z, 0.0), self.request.points
         deflection = stages[0].deflection(z, np.zeros(1), points)
-        recorded = run_stages(
-            stages, z, contacts, points, accounts=accounts, progress=lambda n: progress(n / n_steps)
-        )
+        recorded = run_stages(stages, z, contacts, points, accounts=accounts, progress=lambda n: progress(n / n_steps))
         kinetic, elastic = (_beam_energy(self.basis, stages[-1], recorded.z, None) - first).tolist()
         return recorded, deflection, (kinetic, elastic, float(first.sum())), accounts
 
