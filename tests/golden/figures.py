@@ -32,6 +32,7 @@ from verify import (
     simulate,
     travelling_wave,
 )
+from verify.chain.slider_on_chain import slide_on_chain
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 ENDS = ("pinned", "clamped", "free", "guided")

@@ -133,8 +133,8 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             return state
         side, x = p[:, lay.FACE] * p[:, lay.IMAGE], contacts.start + p[:, lay.OFFSET]
         group = 2 * contacts.indices[:, lay.OF_FOOT] + (p[:, lay.FACE] > 0.0)
-        push = np.bincount(group, p[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[group]
-        push = push * p[:, lay.WEIGHT] * side / np.bincount(group)[group]
+        total = np.bincount(group, p[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[group]
+        push = total * p[:, lay.WEIGHT] * side / np.bincount(group)[group]
         for _ in range(PASSES):
             lean, rises = 0.0 * x, self._rises(state)
             for _ in range(PASSES):
