@@ -78,6 +78,8 @@ def slide_on_chain(
         fixed_position=fixed_position, at=at, samples=samples, step=step, steps_per_period=steps_per_period,
         continue_from=None,
     )  # fmt: skip
+    if not request.sliders:
+        raise InputError("slider is missing: give one, or `verify.chain.motion.from_rest` for a chain alone")
     for one in request.sliders:
         if one.contact is not None and one.contact.hard:
             raise InputError("slider.contact is hard: on a nonlinear chain feet have springs, give contact.stiffness")
@@ -162,12 +164,8 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         if isinstance(moved, ElasticMotion):
             parts = [part.reshape(len(times), -1) for part in (moved.displacements, moved.velocities)]
         else:
-            parts = [
-                moved.directions(),
-                np.cumsum(moved.rates, axis=1),
-                moved.dissipated[:, None],
-                moved.work_in[:, None],
-            ]
+            works = np.stack([moved.dissipated, moved.work_in], axis=1)
+            parts = [moved.directions(), np.cumsum(moved.rates, axis=1), works]
         return np.concatenate(parts, axis=1), steps.dt
 
     def _axial(self) -> Array:
