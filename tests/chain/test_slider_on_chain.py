@@ -75,12 +75,15 @@ def test_a_slider_moves_as_dense_equations_state(links, kinematics):
 
 
 PRESSED = {"contact": Contact(stiffness=1.1e6, damping=17.0), "kinematics": "tangential", "gravity": 0.0}
+FACES = (Foot(offset=-0.02, length=0.02, points=3), Foot(offset=0.03, face="lower"))
+YIELDS = Contact(stiffness=1.1e6, damping=17.0, tangential_stiffness=4e5)
 KINDS = {
     "tanh": {"coupling": "one-way"},
     "tanh two-way": {"mass": 5.0, "mu": 0.4, "coupling": "two-way", "normal": "massless"},
     "coulomb two-way": {"mass": 5.0, "mu": 0.4, "coupling": "two-way", "normal": "massless", "law": "coulomb"},
     "feet": {"coupling": "one-way", "mass": 0.021, "foot": FEET, **PRESSED},
     "feet two-way": {"coupling": "two-way", "mass": 0.021, "foot": FEET, **PRESSED},
+    "faces two-way": {"coupling": "two-way", "mass": 0.021, "foot": FACES, **PRESSED, "contact": YIELDS},
 }
 """Sliders whose friction grows with the motion."""
 
@@ -207,8 +210,10 @@ def test_a_chain_whose_motion_is_not_resolved_is_refused(links):
         ({"line": "raw"}, "line"),
         ({"contact": Contact(restitution=0.3)}, "stiffness"),
         ({"contact": Contact(stiffness=1e5), "coupling": "two-way"}, "rigid"),
+        ({**KINDS["feet two-way"], "preload": 0.3, "preload_stiffness": 200.0, "links": "rigid"}, "preload"),
     ],
 )
 def test_sliders_that_a_chain_does_not_support_are_refused(change, field):
+    links = change.pop("links", "stretching")
     with pytest.raises(InputError, match=field):
-        slide_on_chain(STRIP, forces(2.0), HERTZ, 2e-4, slider=slider(**change), count=10, links="stretching")
+        slide_on_chain(STRIP, forces(2.0), HERTZ, 2e-4, slider=slider(**change), count=10, links=links)

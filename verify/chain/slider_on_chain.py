@@ -65,8 +65,9 @@ def slide_on_chain(
     resolve its highest mode, from its equilibrium under feet. `coupling` and `margins` are those of the linear chain;
     energies of stretching links are not in the balance.
 
-    Raises InputError as `simulate` does; for a hard contact, the straight edges of links, two-way normal = "held" and
-    stretching links; for a motion of the chain that is not resolved.
+    Raises InputError as `simulate` does; for a hard contact and the straight edges of links; two-way for normal =
+    "held", for feet on stretching links or with a preload that depends on the deflection; for a motion of the chain
+    that is not resolved.
     """
     began = perf_counter()
     check_word("links", links, LINKS)
@@ -89,6 +90,11 @@ def slide_on_chain(
             raise InputError("slider.normal = 'held': a nonlinear chain responds to friction alone, give 'massless'")
         if request.two_way and one.contact is not None and links == "stretching":
             raise InputError("slider.coupling = 'two-way': stretching links carry feet one-way, give links = 'rigid'")
+        if request.two_way and (one.preload_stiffness or any(foot.mirrored for foot in one.feet)):
+            raise InputError(
+                "slider.preload depends on the deflection, by preload_stiffness or a mirrored foot: the equilibrium of "
+                "a nonlinear chain is under constant loads, give coupling = 'one-way'"
+            )
     system = build_system(beam, count, request.forces, frequency_hz, load="reciprocal", joint_dashpot=joint_dashpot)
     basis = basis_of(beam, "segment", count, None, "spline")
     stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
