@@ -120,19 +120,17 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
         z = super()._initial(contacts, loaded)
         if loaded and contacts.presses:
-            rises = self._rises(self._static(contacts))
+            rises = self._rises(contacts)
             ground: Any = SimpleNamespace(
-                edges=self.stages[0].edges,
-                columns=self.line,
-                factors=lambda z, t: rises[None],
+                edges=self.stages[0].edges, columns=self.line, factors=lambda z, t: rises[None],
                 rates_at_start=lambda z: 0.0 * rises,
-            )
+            )  # fmt: skip
             set_down(contacts, ground, z)
         return z
 
-    def _rises(self, state: ChainState) -> Array:
-        """Steps across from joint to joint, (N,), m."""
-        return np.asarray(self.system.lengths * np.sin(np.cumsum(state.angles)))
+    def _rises(self, contacts: Contacts) -> Array:
+        """Steps across from joint to joint of the equilibrium, (N,), m."""
+        return np.asarray(self.system.lengths * np.sin(np.cumsum(self._static(contacts).angles)))
 
     def _static(self, contacts: Contacts) -> ChainState:
         """Equilibrium of the chain under the load of feet, shared equally among the points on either face."""
@@ -144,7 +142,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         total = np.bincount(group, p[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[group]
         push = total * p[:, lay.WEIGHT] * side / np.bincount(group)[group]
         for _ in range(PASSES):
-            lean, rises = 0.0 * x, self._rises(state)
+            lean, rises = 0.0 * x, system.lengths * np.sin(np.cumsum(state.angles))
             for _ in range(PASSES):
                 lean = p[:, lay.LEVER] * (rises @ self.line(x + lean, 1))
             beyond = (self.line(x + lean) + lean * self.line(x, 1)) @ push
@@ -157,11 +155,12 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         """States of the chain at half steps, two-way of the first alone, and the step of the march, s."""
         from verify.chain.rigid_links import begin
 
-        system, rigid, axial = self.system, self.links == "rigid", self._axial()
+        system, rigid = self.system, self.links == "rigid"
+        axial = axial_stiffness(self.request.beam, system.n_links)
         if contacts.two_way:
-            states = np.zeros((3, 2 * system.n_links + 2 if rigid else 4 * system.n_links + 4))
-            limit = elastic_step_limit(system, axial) / 4.0
+            states, limit = np.zeros((3, 4 * system.n_links + 4)), elastic_step_limit(system, axial) / 4.0
             if rigid:
+                states = np.zeros((3, 2 * system.n_links + 2))
                 states[0] = begin(system, self._static(contacts), numbers)
                 limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
             return states, float(0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit))
@@ -174,9 +173,6 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             parts = [moved.directions(), np.cumsum(moved.rates, axis=1), works]
         return np.concatenate(parts, axis=1), steps.dt
 
-    def _axial(self) -> Array:
-        return axial_stiffness(self.request.beam, self.system.n_links)
-
     def _marched(
         self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
     ) -> tuple[Recorded, Array, tuple[float, float, float], bool]:
@@ -186,9 +182,9 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
 
         (stage,), system, began = stages, self.system, thread_time()
         steps, count, rigid, two_way = stage.steps, system.n_links, self.links == "rigid", contacts.two_way
-        links, loads, numbers, scratch = (
-            rigid_links.flatten(system) if rigid else elastic_links.flatten(system, self._axial(), False)
-        )
+        axial = axial_stiffness(self.request.beam, count)
+        flat = rigid_links.flatten(system) if rigid else elastic_links.flatten(system, axial, False)
+        links, loads, numbers, scratch = flat
         if two_way:  # dead loads at the far joints
             spare = np.zeros((count, 7))
             spare[:, 0], spare[:, 6] = 0.5 * system.lengths if rigid else 1.0, np.arange(count)
@@ -216,13 +212,13 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             run.tally, run.sums, run.before, run.balance,
         )  # fmt: skip
         run.sample_first()
-        deflection = (places[:, :count] @ self._rises(self._static(contacts)))[None]
+        deflection = (places[:, :count] @ self._rises(contacts))[None]
         run.set_up_s, began = thread_time() - began, thread_time()
         reason, stopped, chunk = lay.DONE, END, MARCHED if two_way else CHUNK
         try:
             while reason == lay.DONE and run.tally[lay.STEP] < steps.n:
                 reason = advance(min(chunk, steps.n - int(run.tally[lay.STEP])), *arrays)
-                progress(float(run.tally[lay.STEP]) / steps.n)
+                progress(float(run.tally[lay.STEP]) / steps.n if two_way else 1.0)
         except KeyboardInterrupt:
             stopped = INTERRUPTED
         run.n_steps, run.loop_s = int(run.tally[lay.STEP]), thread_time() - began
