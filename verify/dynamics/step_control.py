@@ -1,9 +1,8 @@
 """Time steps of sliders: resolution of the motion, one step doubling, and the energy check."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, inf
-from typing import TypeVar
 
 import numpy as np
 
@@ -28,8 +27,6 @@ COMPARED = 16
 """Least number of samples at which two runs are compared: at a single one, different runs may coincide."""
 MOST_GAIN = 0.01
 """Energy that contact may add, or the balance may miss, relative to all energy exchanged."""
-NOT_CONVERGED = "step: not converged, doubling it changes the slider's displacement"
-T = TypeVar("T")
 
 
 def _speeds(stages: Sequence[Stage], z: ComplexArray, length: float) -> tuple[Array, float]:
@@ -99,19 +96,6 @@ def feet_step(longest: float, contact: float, fastest: float, step: float | None
 def stepped(stages: Sequence[Stage], step: float, closer: int = 1) -> list[Stage]:
     """All stages in steps no longer than `step`, with `closer` times as many samples."""
     return [stage.stepped(step, closer) for stage in stages]
-
-
-def doubled(
-    run: Callable[[list[Stage], Callable[[float], None]], Motion],
-    stages: Sequence[Stage],
-    progress: Callable[[float], None],
-) -> tuple[Motion, Motion, int]:
-    """Runs with doubled step and with that of `stages`, and how many samples of theirs make one of `stages`."""
-    dt, closer = max(s.steps.dt for s in stages), ceil(COMPARED / sum(s.steps.n // s.steps.every for s in stages))
-    coarse = run(stepped(stages, 2.0 * dt, closer), lambda part: progress(part / 3.0))
-    if coarse.statistics.interrupted:
-        return coarse, coarse, closer
-    return coarse, run(stepped(stages, dt, closer), lambda part: progress((1.0 + 2.0 * part) / 3.0)), closer
 
 
 def change(coarse: Motion, fine: Motion) -> float:

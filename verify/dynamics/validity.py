@@ -1,6 +1,6 @@
 """Margins of a run: errors that no time step removes."""
 
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,11 +8,13 @@ from msgspec import Struct
 
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
 from verify.exact.error_laws import LAWS, expected_error, leading_error
-from verify.linear.field import lossless_wavenumber
+from verify.linear.field import lossless_wavenumber, travelling_wavenumber
+from verify.linear.surface import section_at
 from verify.problem.beam import Beam
 
 if TYPE_CHECKING:
     from verify.dynamics.linear_system import Stage
+    from verify.dynamics.request import Request
 
 NONLINEAR = 1e-3
 """(kL)^2 <theta^2> from which the linear chain departs from the paper's nonlinear one."""
@@ -52,7 +54,20 @@ def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float
     return float(abs(lossless_wavenumber(beam, frequency_hz)) ** 2 * beam.length**2 * mean_square_slope)
 
 
-def nearest_mode(beam: Beam, drive_hz: float) -> int:
+def margins_of(request: "Request", stage: "Stage") -> Margins:
+    """Margins of a run with this last stage, before its steps are known."""
+    beam, hertz, x = request.beam, request.frequency_hz, np.linspace(0.0, request.beam.length, 400)
+    falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
+    square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
+    return Margins(
+        lift_off=falling / request.gravity if request.gravity else inf,
+        nonlinearity=axial_inertia_size(beam, hertz, square),
+        model_form=_model_form(beam, hertz),
+        discretisation=_discretisation(beam, request.model, request.count, hertz),
+    )
+
+
+def _nearest_mode(beam: Beam, drive_hz: float) -> int:
     """The exact mode whose frequency lies nearest a drive's."""
     turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
     mode = max(int(turns) - 1, 1)
@@ -62,23 +77,19 @@ def nearest_mode(beam: Beam, drive_hz: float) -> int:
     return mode - 1 if mode > 1 and drive_hz - below < frequency_hz(beam, mode) - drive_hz else mode
 
 
-def model_form(beam: Beam, drive_hz: float) -> float | None:
-    """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1; None without closed form."""
+def _model_form(beam: Beam, drive_hz: float) -> float | None:
     unknown = any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces)
     if beam.supports != ("pinned", "pinned") or not beam.uniform or unknown:
         return None
-    mode = nearest_mode(beam, drive_hz)
+    mode = _nearest_mode(beam, drive_hz)
     return frequency_hz(beam, mode, "timoshenko") / frequency_hz(beam, mode) - 1.0
 
 
-def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
-    """The leading frequency error of a discrete model at the mode nearest the drive; None where no law is known.
-
-    The whole law for a chain with clamped ends: its leading terms have the wrong sign at practical sizes.
-    """
+def _discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
+    """The whole law for a chain with clamped ends: its leading terms have the wrong sign at practical sizes."""
     if count is None or not beam.uniform or model not in LAWS:
         return None
-    mode = nearest_mode(beam, drive_hz)
+    mode = _nearest_mode(beam, drive_hz)
     if wavenumber_length(beam.supports, mode) >= pi * count:
         return None
     if "clamped" in beam.supports and LAWS[model].clamped_terms:
@@ -86,19 +97,18 @@ def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -
     return leading_error(model, beam.supports, mode, count)
 
 
-def margins_of(
-    beam: Beam, model: str, count: int | None, stage: "Stage", gravity: float, fall: float | None
-) -> Margins:
-    """Margins of a run with this last stage; `gravity` is N / m of the slider, m/s^2.
-
-    `fall` is the largest downward acceleration of the surface under a point slider in the run, m/s^2.
-    """
-    hertz, x = stage.omega / (2.0 * pi), np.linspace(0.0, beam.length, 400)
-    falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max()) if fall is None else fall
-    square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
-    return Margins(
-        lift_off=falling / gravity if gravity else float("inf"),
-        nonlinearity=axial_inertia_size(beam, hertz, square),
-        model_form=model_form(beam, hertz),
-        discretisation=discretisation(beam, model, count, hertz),
-    )
+def presliding(request: "Request") -> float | None:
+    """`Margins.presliding`, the largest of all feet."""
+    largest = 0.0
+    for slider, start in zip(request.sliders, request.starts, strict=True):
+        contact, section = slider.contact, section_at(request.beam, start)
+        if contact is None or contact.hard:
+            return None
+        compliances = [(contact.across(foot.length), contact.along(foot.length)) for foot in slider.feet]
+        if all(along for _, along in compliances):
+            k = travelling_wavenumber(section, request.frequency_hz)
+            if k is None:
+                return None
+            ratio = max(across / along for across, along in compliances)
+            largest = max(largest, slider.mu * ratio / (k * section.surface_distance))
+    return largest
