@@ -6,10 +6,11 @@ A mass on a spring is one modal row whose rotation moves the surface, the belt a
 from math import pi, sqrt
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
-from verify.dynamics.excitation import NO_ROWS, Rows
+from verify.dynamics.excitation import Rows
 from verify.dynamics.linear_system import Stage, Steps
 from verify.dynamics.stepping import Contacts, Recorded, run_stages
 from verify.errors import InputError
@@ -55,20 +56,15 @@ def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None
         return np.atleast_2d(slope * x if derivative == 0 else np.full(len(x), slope * (derivative == 1)))
 
     oscillator = Rows(rates=np.array([1j]), participations=np.array([-1j]), loads=np.zeros(1, dtype=complex))
-    alone = z is None
     stage = Stage(
-        rows=NO_ROWS if alone else oscillator,
-        forced=None,
-        shapes=(lambda x, derivative: np.empty((0, len(x)))) if alone else shapes,
         field=lambda x, derivative, psi: np.zeros((1, len(x)), dtype=complex),
-        edges=np.array([-1e300, 1e300]) if alone else np.array([-1.0, 1.0]),
+        edges=np.array([-1e300, 1e300]),
         degree=1,
         omega=1.0,
-        origin=0.0,
-        unit_s=1.0,
-        envelope=np.array([1.0]),
         steps=Steps(steps, dt, steps),
     )
+    if z is not None:
+        stage = replace(stage, rows=oscillator, shapes=shapes, edges=np.array([-1.0, 1.0]))
     return run_stages([stage], np.empty(0, dtype=complex) if z is None else z, contact, np.empty(0))
 
 

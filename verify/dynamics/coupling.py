@@ -70,9 +70,9 @@ def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptan
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
 
     def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
-        at = np.array([x])
-        lifted = np.asarray((compliance * basis.shapes(at, 0)[:, 0]) @ basis.shapes(places, 0), dtype=complex)
-        turned = np.asarray((compliance * basis.shapes(at, 1)[:, 0]) @ basis.shapes(places, 1), dtype=complex)
+        lifted, turned = (
+            np.asarray((compliance * basis.shapes(np.array([x]), d)[:, 0]) @ basis.shapes(places, d)) for d in (0, 1)
+        )
         if basis.tail is not None:
             hertz = omega / (2.0 * np.pi)
             turned += basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1)

@@ -49,13 +49,17 @@ class Growth(msgspec.Struct, frozen=True, eq=False):
     coefficients: Array
 
 
+def _no_shapes(x: Array, derivative: int) -> Array:
+    return np.empty((0, len(x)))
+
+
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A stretch of time in which the forces keep one envelope; its own time begins at 0."""
 
-    rows: Rows
-    forced: Forced | None
+    rows: Rows = NO_ROWS
+    forced: Forced | None = None
     """None where the drive's rows are a steady field."""
-    shapes: Callable[[Array, int], Any]
+    shapes: Callable[[Array, int], Any] = _no_shapes
     """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 where no mode is free."""
     field: Callable[[Array, int, Any], ComplexArray]
     """(x, derivative, psi) -> shapes of the drive, one for each power of t, (degree + 1, len(x)), m."""
@@ -63,10 +67,10 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(pieces + 1,), m: between them all shapes are polynomials of `degree`."""
     degree: int
     omega: float
-    origin: float
+    origin: float = 0.0
     """Seconds before the stage begins."""
-    unit_s: float
-    envelope: Array
+    unit_s: float = 1.0
+    envelope: Array = CONSTANT
     """Amplitude of the forces as a polynomial in t / unit_s."""
     steps: Steps
     complex_rows: int = 0
@@ -114,16 +118,11 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def rates_at_start(self, z: ComplexArray) -> Array:
         """Time derivatives of the factors at time 0 for free rows z, (columns,)."""
-        rates, drive = (
-            self.rows.rates * z,
-            np.zeros(1 if self.forced is None else self.forced.forward.shape[1], complex),
-        )
-        drive[0] = 1j * self.omega
-        drive[1:2] = 1.0 / self.unit_s
+        rates, powers = self.rows.rates * z, 1 if self.forced is None else self.forced.forward.shape[1]
+        drive = np.array([1j * self.omega, 1.0 / self.unit_s, *(0.0,) * powers])[:powers]
         drive *= np.exp(1j * self.omega * self.origin)
-        return np.concatenate(
-            [rates.real, -rates[len(rates) - self.complex_rows :].imag, interleaved(drive[None].conj())[0]]
-        )
+        imaginary = rates[len(rates) - self.complex_rows :].imag
+        return np.concatenate([rates.real, -imaginary, interleaved(drive[None].conj())[0]])
 
     def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
         """Closed form, (len(t), len(x)), m: free rows from z at t = 0, and the drive."""
@@ -224,19 +223,9 @@ def steady_stage(
         higher, rest = divmod(derivative, 4) if harmonic.count is None and harmonic.beam.uniform else (0, derivative)
         return np.asarray(harmonic.shapes(x, rest) * harmonic.wavenumber ** (4 * higher))[None, :]
 
-    return Stage(
-        rows=modal_rows(basis, (), damping) if basis else NO_ROWS,
-        forced=None,
-        shapes=basis.shapes if basis else lambda x, derivative: np.empty((0, len(x))),
-        field=field,
-        edges=_to_the_end(edges, harmonic.beam),
-        degree=degree,
-        omega=harmonic.omega,
-        origin=origin,
-        unit_s=1.0,
-        envelope=CONSTANT,
-        steps=steps,
-    )
+    edges = _to_the_end(edges, harmonic.beam)
+    stage = Stage(field=field, edges=edges, degree=degree, omega=harmonic.omega, origin=origin, steps=steps)
+    return replace(stage, rows=modal_rows(basis, (), damping), shapes=basis.shapes) if basis else stage
 
 
 def _to_the_end(edges: Array, beam: Beam) -> Array:

@@ -184,18 +184,12 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         began, request, contacts = perf_counter(), self.request, self._contacts()
         z = self._initial(contacts)
         p, depth = contacts.points, np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
-        energies = self._energies(contacts, stages[0].whole(z, 0.0))
-        energies[1] = 0.5 * float(p[:, lay.STIFF] @ depth**2)
-        deflection = stages[0].deflection(z, np.zeros(1), request.points)
+        kinetic, stored = self._kinetic(contacts), 0.5 * float(p[:, lay.STIFF] @ depth**2)
         heights, pressures = contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(), (p[:, lay.STIFF] * depth)[None]
-        n_steps, rest = sum(stage.steps.n for stage in stages), request.start == "rest"
-        recorded = run_stages(
-            stages, z, contacts, request.points, accounts=rest, progress=lambda n: progress(n / n_steps)
-        )
-        gains = self._energies(contacts, recorded.z) - energies
-        gains[1] += recorded.sums[:, lay.STORED].sum()
+        recorded, deflection, beam, accounts = self._marched(stages, z, contacts, progress)
+        gains = self._kinetic(contacts) - kinetic, float(recorded.sums[:, lay.STORED].sum()) - stored, *beam
         n, kept = len(recorded.samples), np.concatenate([recorded.first[None], recorded.samples])
-        if rest and request.before is None:
+        if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             kept[0, still, lay.KEPT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
         heights = np.concatenate([heights, recorded.heights])
@@ -234,7 +228,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             mean_surface_speed=each(mean * sums[:, lay.SURFACE_TIME]),
             coupling=self.coupling,
             margins=margins,
-            energy=_balance(recorded, gains, float(energies[2:].sum()), contacts.two_way, rest),
+            energy=_balance(recorded, gains, contacts.two_way, accounts),
             notes=(*self.notes, *lost * (recorded.n_events > len(recorded.events))),
             statistics=Statistics(
                 steps=recorded.n_steps,
@@ -257,19 +251,41 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             ),
         )
 
-    def _energies(self, contacts: Contacts, z: ComplexArray) -> Array:
-        """J: kinetic of sliders and feet along and across the beam, 0 for the springs, kinetic and elastic of modes."""
-        feet, basis, kinetic, elastic = contacts.feet, self.basis, 0.0, 0.0
-        masses = np.array([slider.mass for slider in self.request.sliders])
+    def _marched(
+        self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
+    ) -> tuple[Recorded, Array, tuple[float, float, float], bool]:
+        """Beam and sliders to the end.
+
+        Also the deflection at the start, (1, p), m; what the beam gains, kinetic and elastic, and its energy at the
+        start, J; whether work of the drive and loss in the beam are known.
+        """
+
+        def energies(rows: Stage, z: ComplexArray) -> tuple[float, float]:
+            if self.basis is None:
+                return 0.0, 0.0
+            q, rates = rows.rows.state(z)
+            return 0.5 * float(rates @ rates), 0.5 * float((self.basis.omegas**2 * q) @ q)
+
+        n_steps, points, rest = (
+            sum(stage.steps.n for stage in stages),
+            self.request.points,
+            self.request.start == "rest",
+        )
+        kinetic, elastic = energies(stages[0], stages[0].whole(z, 0.0))
+        deflection = stages[0].deflection(z, np.zeros(1), points)
+        recorded = run_stages(stages, z, contacts, points, accounts=rest, progress=lambda n: progress(n / n_steps))
+        after = energies(stages[-1], recorded.z)
+        return recorded, deflection, (after[0] - kinetic, after[1] - elastic, kinetic + elastic), rest
+
+    def _kinetic(self, contacts: Contacts) -> float:
+        """Of sliders and feet, along and across the beam, J."""
+        feet, masses = contacts.feet, np.array([slider.mass for slider in self.request.sliders])
         inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
         inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-        moving = masses @ contacts.sliders[:, lay.V] ** 2 + (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
+        twice = masses @ contacts.sliders[:, lay.V] ** 2 + (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
         if contacts.law == lay.BILATERAL:
-            moving += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2
-        if basis is not None:
-            q, rates = self.stages[0].rows.state(z)
-            kinetic, elastic = float(rates @ rates), float((basis.omegas**2 * q) @ q)
-        return 0.5 * np.array([moving, 0.0, kinetic, elastic])
+            twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2
+        return 0.5 * float(twice)
 
 
 def _time_after(stages: list[Stage], steps: int) -> float:
@@ -281,9 +297,9 @@ def _time_after(stages: list[Stage], steps: int) -> float:
     return stage.origin + steps * stage.steps.dt
 
 
-def _balance(recorded: Recorded, gains: Array, initial: float, two_way: bool, rest: bool) -> EnergyBalance:
-    """Works, losses and gains."""
-    s, (slider, stored, kinetic, elastic) = recorded.sums.sum(axis=0), gains.tolist()
+def _balance(recorded: Recorded, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
+    """Works, losses and gains: of sliders, springs and modes, kinetic and elastic, and the modes' initial energy."""
+    s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
     load = s[lay.PULLED] + s[lay.PRESSED]
     residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
@@ -306,5 +322,5 @@ def _balance(recorded: Recorded, gains: Array, initial: float, two_way: bool, re
         initial=initial,
         created=float(recorded.balance[lay.GAINED_ENERGY]),
         slider_residual=float(residual),
-        residual=float(beam if rest and abs(beam) > abs(residual) else residual),
+        residual=float(beam if accounts and abs(beam) > abs(residual) else residual),
     )

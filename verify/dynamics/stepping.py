@@ -20,6 +20,8 @@ RESOLVED = 1.5
 """Radians and nepers per step of a row beyond which rates are means over the step."""
 REACH = 8
 """Pieces of a table on each side of the points."""
+WHOLE = ("sums", "balance", "n_steps", "loop_s", "set_up_s", "first")
+"""Records of a run that do not grow with it."""
 
 
 class Contacts(msgspec.Struct, eq=False, kw_only=True):
@@ -95,53 +97,24 @@ def run_stages(
     accounts: bool = False,
     progress: Callable[[int], None] = lambda steps: None,
 ) -> Recorded:
-    """Advance a beam and its sliders through all stages.
+    """Advance a beam and its sliders through all stages, whose `steps` set step, number of steps and sampling.
 
-    Parameters
-    ----------
-    stages : sequence of Stage
-        Their `steps` set step, number of steps and sampling.
-    z : (n,) complex
-        Free part of the rows at the start of the first stage.
-    contacts : Contacts
-        Advanced in place; sums start at zero.
-    places : (p,) array
-        Positions of the deflection samples, m.
-    accounts : bool
-        Whether the work of the drive and the loss of the modes are integrated.
-    progress : callable
-        Called with the number of steps done.
+    z is the free part of the rows at the start, (n,); contacts are advanced in place; deflections are sampled at
+    `places`, (p,), m; with `accounts` the work of the drive and the loss of the modes are integrated; `progress` is
+    called with the number of steps done.
     """
-    run = _Run(stages, contacts, places, accounts)
+    run = Run(stages, contacts, places, accounts)
     stopped = "end"
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.free(z)
         stopped = run.stage(stage, z, progress)
-        z = stage.whole(run.z, run.time(stage))
+        z = stage.whole(run.z, float(run.tally[lay.STEP] * stage.steps.dt))
         if stopped != "end":
             break
-    run.store(stages[-1].steps.dt)
-    n = int(run.tally[lay.SAMPLES])
-    n_events = int(run.tally[lay.EVENTS])
-    return Recorded(
-        samples=run.samples[:n],
-        heights=run.heights[:n],
-        pressures=run.pressures[:n],
-        deflections=run.deflections[:n],
-        events=run.events[: min(n_events, EVENTS)],
-        n_events=n_events,
-        sums=run.sums,
-        balance=run.balance,
-        n_steps=run.n_steps,
-        loop_s=run.loop_s,
-        set_up_s=run.set_up_s,
-        stopped=stopped,
-        z=z,
-        first=run.first,
-    )
+    return run.recorded(z, stages[-1].steps.dt, stopped)
 
 
-class _Run:
+class Run:
     """State and records of a run."""
 
     def __init__(self, stages: Sequence[Stage], contacts: Contacts, places: Array, accounts: bool) -> None:
@@ -162,9 +135,21 @@ class _Run:
         self.accounts, self.n_steps, self.loop_s, self.set_up_s = accounts, 0, 0.0, 0.0
         self.z: ComplexArray = np.empty(0, dtype=complex)
 
-    def time(self, stage: Stage) -> float:
-        """Seconds of the stage so far."""
-        return float(self.tally[lay.STEP] * stage.steps.dt)
+    def recorded(self, z: ComplexArray, dt: float, stopped: str) -> Recorded:
+        """The run that ended with all of the motion z, in steps of dt.
+
+        Energy of the normal springs is that at the end of the last step, with the depths of its middle drawn on.
+        """
+        p, c, feet, indices = self.contacts.points, self.contacts.contacts, self.contacts.feet, self.contacts.indices
+        if len(feet):
+            foot = feet[indices[:, lay.OF_FOOT]]
+            climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
+            depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
+            np.add.at(self.sums[:, lay.STORED], indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2)
+        n, own = int(self.tally[lay.SAMPLES]), {name: getattr(self, name) for name in WHOLE}
+        own |= {name: getattr(self, name)[:n] for name in ("samples", "heights", "pressures", "deflections")}
+        events = int(self.tally[lay.EVENTS])
+        return Recorded(events=self.events[: min(events, EVENTS)], n_events=events, stopped=stopped, z=z, **own)
 
     def stage(self, stage: Stage, z: ComplexArray, progress: Callable[[int], None]) -> str:
         """One stage from free rows z in chunks; why it ended."""
@@ -181,12 +166,9 @@ class _Run:
             forced[:] = interleaved(stage.forced.forward + stage.forced.backward)
             growth = np.array(stage.envelope, dtype=float)
         codes = np.zeros(lay.CODES, dtype=np.int64)
-        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = (
-            contacts.law,
-            contacts.two_way,
-            contacts.two_way and contacts.presses,
-        )
-        codes[[lay.FOLLOWING, lay.COMPLEX, lay.ACCOUNTS]] = contacts.following, own - n, self.accounts
+        codes[[lay.LAW, lay.TWO_WAY]] = contacts.law, contacts.two_way
+        codes[[lay.PRESSES, lay.FOLLOWING]] = contacts.two_way and contacts.presses, contacts.following
+        codes[[lay.COMPLEX, lay.ACCOUNTS]] = own - n, self.accounts
         factors, two_way = np.zeros((4, 2, columns)), contacts.two_way
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
         self.tally[lay.STEP], first = 0, self._around(stage)
@@ -197,7 +179,7 @@ class _Run:
                 table = stage.table(*first)
                 local = np.zeros((len(table), 2, stage.degree + 1))
                 stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
-                contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self._positions())
+                contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self.positions())
                 self.set_up_s += thread_time() - began
                 arrays = (
                     contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
@@ -209,7 +191,7 @@ class _Run:
                 rigid = contacts.restitution is not None
                 if self.n_steps == 0 and not rigid:
                     advance(0, 1, stage.steps.dt, *arrays)
-                    self._sample_first()
+                    self.sample_first()
                 while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
                     began = thread_time()
                     n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
@@ -234,7 +216,7 @@ class _Run:
             if contacts.moving_load:
                 self._go_on(stage)
             else:
-                x = contacts.start + self._positions()
+                x = contacts.start + self.positions()
                 why = stage.beyond(float(x.min()), float(x.max()))
         return why
 
@@ -256,7 +238,7 @@ class _Run:
             )
         )  # fmt: skip
 
-    def _sample_first(self) -> None:
+    def sample_first(self) -> None:
         """The state before the first step; a slider in contact with feet has friction from the first step on."""
         sliders, contacts = self.contacts.sliders, self.contacts.contacts
         self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
@@ -266,35 +248,20 @@ class _Run:
             self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
             self.first[:, lay.KEPT_SURFACE] = np.nan
             return
-        load, slip, steepness = (
-            self.contacts.points[:, lay.LOAD],
-            sliders[:, lay.V] - contacts[:, lay.START],
-            sliders[:, lay.STEEPNESS],
-        )
+        load, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.STEEPNESS]
+        slip = sliders[:, lay.V] - contacts[:, lay.START]
         law = np.where(steepness > 0.0, np.tanh(steepness * slip), np.sign(slip))
         self.first[:, lay.KEPT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
         self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
 
-    def store(self, dt: float) -> None:
-        """Energy of the normal springs at the end of the last step, with the depths of its middle drawn on."""
-        p, c, feet = self.contacts.points, self.contacts.contacts, self.contacts.feet
-        if len(feet):
-            foot = feet[self.contacts.indices[:, lay.OF_FOOT]]
-            climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
-            depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
-            np.add.at(
-                self.sums[:, lay.STORED], self.contacts.indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2
-            )
-
-    def _positions(self) -> Array:
+    def positions(self) -> Array:
         """Points from the start of the first slider, (points,), m, half a step on for feet."""
-        contacts = self.contacts
-        x, owner = contacts.sliders[:, lay.X], contacts.indices[:, lay.OF_SLIDER]
-        return np.asarray(x[owner] + contacts.points[:, lay.OFFSET])
+        x, owner = self.contacts.sliders[:, lay.X], self.contacts.indices[:, lay.OF_SLIDER]
+        return np.asarray(x[owner] + self.contacts.points[:, lay.OFFSET])
 
     def _around(self, stage: Stage) -> tuple[int, int] | None:
         """The pieces around all points, first and end, or None where a point is off the beam."""
-        edges, x = stage.edges - self.contacts.start, self._positions()
+        edges, x = stage.edges - self.contacts.start, self.positions()
         if x.min() < edges[0] or x.max() > edges[-1]:
             return None
         pieces = len(edges) - 1
@@ -305,20 +272,15 @@ class _Run:
         """The beam alone, after a moving load has left it, to the end of the stage."""
         begun, dt = int(self.tally[lay.STEP]), stage.steps.dt
         rest = np.arange(begun // stage.steps.every + 1, stage.steps.n // stage.steps.every + 1) * stage.steps.every
-        row = int(self.tally[lay.SAMPLES])
-        free = stage.rows.after(self.z, (rest - begun) * dt)
-        shapes, x = stage.shapes(self.places, 0), self.contacts.sliders[:, lay.X]
-        drive = (
-            stage.drive_factors(np.asarray(rest * dt, dtype=float))
-            @ interleaved(stage.drive_shapes(self.places, 0).T).T
-        )
-        self.deflections[row : row + len(rest)] = (free @ shapes).real + drive
-        speed = self.contacts.sliders[:, lay.V]
-        self.samples[row : row + len(rest), :, lay.KEPT_X] = x + np.multiply.outer((rest - begun) * dt, speed)
-        self.samples[row : row + len(rest), :, lay.KEPT_V] = speed
+        row, (x, speed) = int(self.tally[lay.SAMPLES]), self.contacts.sliders[:, [lay.X, lay.V]].T
+        rows, since = slice(row, row + len(rest)), np.asarray((rest - begun) * dt, dtype=float)
+        free = stage.rows.after(self.z, since)
+        self.deflections[rows] = stage.factors(free, since + begun * dt) @ stage.columns(self.places)
+        self.samples[rows, :, lay.KEPT_X] = x + np.multiply.outer(since, speed)
+        self.samples[rows, :, lay.KEPT_V] = speed
         self.contacts.sliders[:, lay.X] += (stage.steps.n - begun) * dt * speed
         self.z = stage.rows.after(self.z, (stage.steps.n - begun) * dt)
-        self.tally[lay.STEP], self.tally[lay.SAMPLES] = stage.steps.n, row + len(rest)
+        self.tally[[lay.STEP, lay.SAMPLES]] = stage.steps.n, row + len(rest)
 
 
 def rows_of(stage: Stage, z: ComplexArray) -> Array:
@@ -328,14 +290,5 @@ def rows_of(stage: Stage, z: ComplexArray) -> Array:
     gain = stage.rows.participations * np.where(rate == 0.0, dt, grown / np.where(rate == 0.0, 1.0, rate))
     coarse = abs(rate) * dt > RESOLVED
     end = np.where(coarse, gain / dt, stage.rows.participations * grown)
-    half, rows = np.exp(0.5 * rate * dt), np.empty((lay.ROW, len(z)))
-    for first, value in (
-        (lay.Z_RE, z),
-        (lay.RATE_RE, rate),
-        (lay.HALF_RE, half),
-        (lay.GAIN_RE, gain),
-        (lay.END_RE, end),
-    ):
-        rows[first], rows[first + 1] = value.real, value.imag
-    rows[lay.COARSE] = coarse
-    return rows
+    pairs = (part for value in (z, rate, np.exp(0.5 * rate * dt), gain, end) for part in (value.real, value.imag))
+    return np.array([*pairs, coarse])  # in the order of `layout`
