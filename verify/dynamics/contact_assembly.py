@@ -127,6 +127,7 @@ def contact_rate(contacts: Contacts, sliders: Sequence[Slider], basis: TimeBasis
 
 def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]) -> None:
     """Raise InputError for sliders off the beam, over a step of its surface, or that do not run together."""
+    feet = [foot for slider in sliders for foot in slider.feet]
     for slider, start in zip(sliders, starts, strict=True):
         span, near = contact_range(beam, start), SLACK * beam.length
         for foot in slider.feet if slider.contact else ():
@@ -139,14 +140,13 @@ def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]
                     f"range of the beam{over}: move the slider or shorten slider.foot.length"
                 )
     check_one_range(beam, starts)
-    one, feet = sliders[0], [foot for slider in sliders for foot in slider.feet]
-    for name in ("coupling",) if one.contact else ("coupling", "normal", "kinematics", "line", "gravity"):
+    for name in ("coupling",) if sliders[0].contact else ("coupling", "normal", "kinematics", "line", "gravity"):
         values = {getattr(slider, name) for slider in sliders}
         if len(values) > 1:
             raise InputError(f"slider.{name} differs among sliders on one beam, {sorted(values)!r}: give all the same")
     if len({slider.contact is None for slider in sliders}) > 1:
         raise InputError("slider.contact is missing in some of the sliders on one beam: give it to all, or to none")
-    if any(foot.mirrored for foot in feet) and one.coupling == "two-way":
+    if any(foot.mirrored for foot in feet) and sliders[0].coupling == "two-way":
         for name in ("gravity", "preload_stiffness"):
             if value := max(getattr(slider, name) for slider in sliders):
                 raise InputError(
@@ -156,13 +156,19 @@ def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]
         if not all(foot.mirrored for foot in feet):
             raise InputError("slider.foot: some are mirrored and some are not, give all the same, or 'one-way'")
     if any(slider.contact and slider.contact.hard for slider in sliders):
-        if len(sliders) > 1:
-            raise InputError("slider: a hard contact is of one slider, give slider.contact.stiffness")
-        wrong = [(name, getattr(one, name)) for name in ("coupling", "preload_stiffness")]
-        wrong += [(f"foot.{name}", getattr(feet[0], name)) for name in ("face", "length", "offset", "mirrored")]
-        for (name, value), right in zip(wrong, ("one-way", 0.0, "upper", 0.0, 0.0, False), strict=True):
-            if value != right:
-                raise InputError(
-                    f"slider.{name} = {value!r} with a hard contact, a point on the upper face of a one-way coupled "
-                    f"beam under a constant force: give {right!r}, or slider.contact.stiffness"
-                )
+        _check_hard(sliders)
+
+
+def _check_hard(sliders: Sequence[Slider]) -> None:
+    """Raise InputError for what impacts of a hard contact do not support."""
+    if len(sliders) > 1:
+        raise InputError("slider: a hard contact is of one slider, give slider.contact.stiffness")
+    slider, foot = sliders[0], sliders[0].feet[0]
+    own = [(name, getattr(slider, name)) for name in ("coupling", "preload_stiffness")]
+    own += [(f"foot.{name}", getattr(foot, name)) for name in ("face", "length", "offset", "mirrored")]
+    for (name, value), right in zip(own, ("one-way", 0.0, "upper", 0.0, 0.0, False), strict=True):
+        if value != right:
+            raise InputError(
+                f"slider.{name} = {value!r} with a hard contact, a point on the upper face of a one-way coupled beam "
+                f"under a constant force: give {right!r}, or slider.contact.stiffness"
+            )

@@ -70,9 +70,8 @@ def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptan
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
 
     def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
-        lifted, turned = (
-            np.asarray((compliance * basis.shapes(np.array([x]), d)[:, 0]) @ basis.shapes(places, d)) for d in (0, 1)
-        )
+        ends = ((basis.shapes(np.array([x]), derivative), basis.shapes(places, derivative)) for derivative in (0, 1))
+        lifted, turned = (np.asarray((compliance * here[:, 0]) @ there, dtype=complex) for here, there in ends)
         if basis.tail is not None:
             hertz = omega / (2.0 * np.pi)
             turned += basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1)

@@ -10,7 +10,8 @@ from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, ResonanceError
 from verify.linear.field import phasor
 from verify.linear.time_basis import Ratio, TimeBasis
-from verify.problem.beam import PointForce
+from verify.problem.beam import Beam, PointForce
+from verify.validation import check_number
 
 RESONANCE = 1e-9
 """Relative distance to an undamped resonance within which a drive is refused."""
@@ -123,6 +124,14 @@ def _amplitudes(stiff: ComplexArray, load: ComplexArray, unit_s: float) -> Compl
         for d in range(load.shape[1] - 1):
             a[slow, d + 1] = unit_s * (load[slow, d] - stiff[slow] * a[slow, d]) / (d + 1)
     return a
+
+
+def check_damping(beam: Beam, modal_damping: float | None) -> None:
+    """Raise InputError for a damping ratio, prescribed or that of the beam's loss factor, outside 0 to 1."""
+    if modal_damping is None:
+        check_number("half of beam.loss_factor", 0.5 * beam.loss_factor, "ratio of every mode", at_least=0, below=1)
+    else:
+        check_number("modal_damping", modal_damping, "ratio of every mode", at_least=0, below=1)
 
 
 def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) -> None:

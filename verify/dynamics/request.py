@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array
 from verify.dynamics.contact_assembly import check_sliders
-from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_phase
+from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_damping, check_phase
 from verify.dynamics.linear_system import Growth, Stage, cut
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown, written
@@ -179,14 +179,6 @@ def request_of(
         step=step,
         before=before,
     )
-
-
-def check_damping(beam: Beam, modal_damping: float | None) -> None:
-    """Raise InputError for a damping ratio, prescribed or that of the beam's loss factor, outside 0 to 1."""
-    if modal_damping is None:
-        check_number("half of beam.loss_factor", 0.5 * beam.loss_factor, "ratio of every mode", at_least=0, below=1)
-    else:
-        check_number("modal_damping", modal_damping, "ratio of every mode", at_least=0, below=1)
 
 
 def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:

@@ -81,8 +81,8 @@ def periodic_orbit(
             best = PeriodicOrbit(run=after, residual=residual, multipliers=np.linalg.eigvals(jacobian).astype(complex))
         if residual <= tolerance:
             return best
-        step: Array = np.linalg.lstsq(np.eye(len(free)) - jacobian, change, rcond=None)[0]
-        run = replace(after, end=shifted(after.end, run.end.feet, step))
+        step = np.linalg.lstsq(np.eye(len(free)) - jacobian, change, rcond=None)[0]
+        run = replace(after, end=shifted(after.end, run.end.feet, np.asarray(step)))
     if best is None or best.residual > REPEATS:
         raise InputError(f"speed = {speed!r} m/s: no motion repeats after one period, use means over many periods")
     return best
