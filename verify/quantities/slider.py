@@ -1,6 +1,5 @@
 """Quantities in time: a slider on the driven beam, its energy balance and coupling, and the beam alone."""
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
@@ -68,7 +67,7 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     from verify.dynamics.request import soft_start
 
     motion, soft = scene.motion, by.soft_start_periods
-    time = by.time if by.time is not None or motion is None else motion.duration
+    time = by.time if motion is None else by.time or motion.duration
     if time is None:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
     opt.check_count(by.model, by.count)
@@ -79,28 +78,20 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     if soft is None:
         soft = soft_start(start, motion.soft_start_periods if motion and start == "rest" else None)
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
-    return {
-        "beam": scene.beam,
-        "forces": by.forces(scene, by.force),
-        "frequency_hz": opt.drive_frequency(scene, by.frequency_hz),
-        "duration": time,
-        "model": by.model,
-        "count": by.count,
-        "modes": by.modes,
-        "start": start,
-        "soft_start_periods": soft,
-        "modal_damping": damping,
-    }
+    forces, hertz = by.forces(scene, by.force), opt.drive_frequency(scene, by.frequency_hz)
+    own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "soft_start_periods": soft}
+    driven = {"beam": scene.beam, "forces": forces, "frequency_hz": hertz, "duration": time}
+    return {**driven, **own, "modal_damping": damping}
 
 
 def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -> "Motion":
     """A simulation, from the cache where it is there."""
-    key = tuple((arguments | more).items())
-    if key not in cache.motions:
-        from verify.dynamics.simulate import simulate
+    from verify.dynamics.simulate import simulate
 
-        more = {"samples": 2} | more
-        cache.motions[key] = simulate(**arguments, **more, progress=cache.progress)
+    arguments = arguments | {"samples": 2} | more
+    key = tuple(arguments.items())
+    if key not in cache.motions:
+        cache.motions[key] = simulate(**arguments, progress=cache.progress)
     return cache.motions[key]
 
 
@@ -132,22 +123,19 @@ def slider_run(
     return run
 
 
-def _run_figure(attribute: str) -> Callable[..., float]:
-    def run_figure(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
-        return float(getattr(slider_run(scene, cache, by, slider), attribute))
+def _of_run(name: str, unit: str, summary: str) -> None:
+    """Register an attribute of the run."""
 
-    return run_figure
+    @quantity(f"slider.{name}", unit=unit, summary=summary)
+    def of_run(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
+        return float(getattr(slider_run(scene, cache, by, slider), name))
 
 
-RUN_FIGURES = {
-    "displacement": ("m", "Displacement of the scene's slider along +x after a time."),
-    "mean_speed": ("m/s", "Displacement of the slider over time."),
-    "largest_friction": ("N", "Largest friction force on the slider."),
-    "mean_friction": ("N", "Friction force on the slider along +x, mean over time."),
-    "mean_surface_speed": ("m/s", "Tangential velocity of the surface under the slider, mean over time."),
-}
-for _name, (_unit, _text) in RUN_FIGURES.items():
-    quantity(f"slider.{_name}", unit=_unit, summary=_text)(_run_figure(_name))
+_of_run("displacement", "m", "Displacement of the scene's slider along +x after a time.")
+_of_run("mean_speed", "m/s", "Displacement of the slider over time.")
+_of_run("largest_friction", "N", "Largest friction force on the slider.")
+_of_run("mean_friction", "N", "Friction force on the slider along +x, mean over time.")
+_of_run("mean_surface_speed", "m/s", "Tangential velocity of the surface under the slider, mean over time.")
 
 
 @quantity("slider.reversal", unit="1")
@@ -199,21 +187,9 @@ def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: Sl
 
 def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "EnergyBalance":
     run = slider_run(scene, cache, by, slider)
-    balance = run.energy
-    if balance is None or run.end.steady:
+    if run.energy is None or run.end.steady:
         raise InputError("start = 'steady': the energy balance is of a run from rest, give start = 'rest'")
-    return balance
-
-
-ENERGIES = {
-    "external_work": "drive_work",
-    "damping_loss": "damping_loss",
-    "friction_loss": "friction_loss",
-    "slider": "slider",
-    "friction_on_beam": "friction_on_beam",
-    "normal_on_beam": "normal_on_beam",
-}
-"""Attributes of the energy balance by the name of the term."""
+    return run.energy
 
 
 @quantity("slider.energy", unit="J")
@@ -229,7 +205,8 @@ def energy(
     ],
 ) -> float:
     """A term of the energy balance of beam and slider from rest."""
-    return float(getattr(_energy_balance(scene, cache, by, slider), ENERGIES[of]))
+    balance = _energy_balance(scene, cache, by, slider)
+    return float(getattr(balance, "drive_work" if of == "external_work" else of))
 
 
 @quantity("slider.imbalance", unit="1")
@@ -281,11 +258,11 @@ def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window:
     from verify.travelling_wave import measure_series
     from verify.waves.window import check_span, check_waves
 
-    arguments = motion_arguments(scene, by)
+    arguments, beam = motion_arguments(scene, by), scene.beam
     hertz = arguments["frequency_hz"]
-    check_span(scene.beam, [force.position for force in arguments["forces"]], window)
-    check_waves(scene.beam, hertz, window)
-    x = positions_on("window", np.linspace(*window, POINTS), scene.beam.length)
+    check_span(beam, [force.position for force in arguments["forces"]], window)
+    check_waves(beam, hertz, window)
+    x = positions_on("window", np.linspace(*window, POINTS), beam.length)
     samples = int(SAMPLES_PER_PERIOD * arguments["duration"] * hertz) + 1
     run = _simulated(cache, arguments, at=tuple(map(float, x)), samples=samples)
-    return measure_series(scene.beam, x, run.times, run.deflection, hertz).reflection
+    return measure_series(beam, x, run.times, run.deflection, hertz).reflection

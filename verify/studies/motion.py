@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title
+from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title, table
 from verify.validation import Relative, check_number
 
 if TYPE_CHECKING:
@@ -115,23 +115,20 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         warnings, valid = _warnings(runs)
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{scene.slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
-        paths = [(_title(run), run.times, run.travelled, model_style(run.model)) for run in runs.values()]
-        forces = [(_title(run), run.times, run.friction, model_style(run.model)) for run in runs.values()]
+
+        def figure(name: str, title: str, unit: str, lines: list[Any]) -> Figure:
+            drawn = partial(plot_lines, lines=lines, x=("time", "s"), y=(name, unit))
+            return Figure(f"slider-{name.split(maxsplit=1)[0]}", title, "Along +x.", drawn)
+
+        def of_all(name: str) -> list[Any]:
+            return [(_title(run), run.times, getattr(run, name), model_style(run.model)) for run in runs.values()]
+
         surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
         velocity = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
-        lines = [
-            ("slider-displacement", f"Displacement of the slider, N = {self.count}", paths, ("displacement", "m")),
-            (
-                "slider-velocity",
-                f"Velocity of the slider and the surface, {_title(chain)}",
-                velocity,
-                ("velocity", "m/s"),
-            ),
-            ("slider-friction", f"Friction force on the slider, N = {self.count}", forces, ("friction force", "N")),
-        ]
         figures = [
-            Figure(key, title, "Along +x.", partial(plot_lines, lines=own, x=("time", "s"), y=y))
-            for key, title, own, y in lines
+            figure("displacement", f"Displacement of the slider, N = {self.count}", "m", of_all("travelled")),
+            figure("velocity", f"Velocity of the slider and the surface, {_title(chain)}", "m/s", velocity),
+            figure("friction force", f"Friction force on the slider, N = {self.count}", "N", of_all("friction")),
         ]
         keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
         keys += ["coupling", "margins", "energy", "statistics", "notes"]
@@ -165,39 +162,42 @@ def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
     change = max(run.statistics.step_change or 0.0 for run in runs.values())
     one_way = [run.coupling for run in runs.values() if run.coupling and not run.coupling.two_way]
     normal = max((coupling.normal_size for coupling in one_way), default=0.0)
-    limits = {
-        "lift-off": (lift_off, 1.0),
-        "coupling": (normal, COUPLED),
-        "axial": (axial, NONLINEAR),
-        "step": (change, CONVERGED),
-    }
-    warnings = [WARNINGS[key].format(value) for key, (value, limit) in limits.items() if value > limit]
+    sizes = zip(WARNINGS.values(), (lift_off, normal, axial, change), (1.0, COUPLED, NONLINEAR, CONVERGED), strict=True)
+    warnings = [text.format(value) for text, value, limit in sizes if value > limit]
     valid = not stopped and lift_off <= 1.0 and max(normal, axial) < LARGE and change <= CONVERGED
     return [*stopped, *warnings], valid
 
 
 def _tables(runs: "dict[str, Run]") -> "list[Table]":
-    from verify.report.result import Column, Table
+    from verify.report.result import Column
 
-    exact = runs["analytic"].displacement
-    rows, validity = [], []
-    for run in runs.values():
-        error = run.displacement / exact - 1.0 if exact and run.model != "analytic" else None
-        balance = run.energy.residual / run.energy.drive_work if run.energy and run.energy.drive_work else None
-        own = (run.displacement, error, run.mean_speed, run.largest_friction, run.statistics.steps, balance)
-        rows.append((_title(run), *own))
-        coupling, margins = run.coupling, run.margins
-        assert coupling is not None
-        sizes = ("two-way" if coupling.two_way else "one-way", coupling.friction_size, coupling.normal_size)
-        frequency = (margins.model_form, margins.discretisation)
-        validity.append((_title(run), *sizes, margins.lift_off, margins.nonlinearity, *frequency))
-    results = [Column("model"), si("displacement", "m", "+.5g"), percent("error", "+.3g")]
-    results += [si("mean speed", "m/s", "+.5g"), si("largest friction", "N"), Column("steps")]
-    results += [Column("energy imbalance", format=".1e")]
-    limits = [Column("model"), Column("coupling"), Column("friction coupling", format=".1e")]
-    limits += [Column("normal coupling", format=".1e"), Column("lift-off", format=".3g")]
-    limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), percent("theory", "+.3g"), percent("discretisation", "+.3g")]
-    return [Table("Slider on each model", results, rows), Table("Validity of these runs", limits, validity, NOTES)]
+    exact, all_runs = runs["analytic"].displacement, runs.values()
+
+    def imbalance(run: "Run") -> float | None:
+        return run.energy.residual / run.energy.drive_work if run.energy and run.energy.drive_work else None
+
+    results = {
+        Column("model"): _title,
+        si("displacement", "m", "+.5g"): lambda run: run.displacement,
+        percent("error", "+.3g"): lambda run: (
+            run.displacement / exact - 1.0 if exact and run.model != "analytic" else None
+        ),
+        si("mean speed", "m/s", "+.5g"): lambda run: run.mean_speed,
+        si("largest friction", "N"): lambda run: run.largest_friction,
+        Column("steps"): lambda run: run.statistics.steps,
+        Column("energy imbalance", format=".1e"): imbalance,
+    }
+    limits = {
+        Column("model"): _title,
+        Column("coupling"): lambda run: "two-way" if run.coupling.two_way else "one-way",
+        Column("friction coupling", format=".1e"): lambda run: run.coupling.friction_size,
+        Column("normal coupling", format=".1e"): lambda run: run.coupling.normal_size,
+        Column("lift-off", format=".3g"): lambda run: run.margins.lift_off,
+        Column("(kL)² ⟨θ²⟩", format=".1e"): lambda run: run.margins.nonlinearity,
+        percent("theory", "+.3g"): lambda run: run.margins.model_form,
+        percent("discretisation", "+.3g"): lambda run: run.margins.discretisation,
+    }
+    return [table("Slider on each model", all_runs, results), table("Validity of these runs", all_runs, limits, *NOTES)]
 
 
 def _movie(run: "Run") -> "Callable[[Axes], Any]":
