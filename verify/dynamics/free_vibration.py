@@ -8,7 +8,7 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array
-from verify.dynamics.excitation import check_damping, check_free_phases, modal_rows
+from verify.dynamics.excitation import check_damping, modal_rows
 from verify.dynamics.linear_system import basis_of
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown
@@ -115,7 +115,6 @@ def free_vibration(
     points = vector_on("at", at, beam.length)
     basis = basis_of(beam, model, count, modes)
     damping = damping_in(basis, modal_damping)
-    check_free_phases(basis, damping, duration)
     q, rates, truncation = _start(basis, shape, amplitude, velocity)
     rows, times = modal_rows(basis, (), damping), np.linspace(0.0, duration, samples)
     z0, shapes, parts = rows.of_state(q, rates), basis.shapes(points, 0), []

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array
 from verify.dynamics.contact_assembly import check_sliders
-from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_damping, check_phase
+from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_damping
 from verify.dynamics.linear_system import Growth, Stage, cut
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown, written
@@ -33,6 +33,8 @@ SHORTEST = 1e-100
 """Least seconds of a motion, and periods of a growth, shorter ones being a step: their squares are numbers."""
 COARSEST = 0.25
 """Longest step of a slider in periods of the drive."""
+MOST_PERIODS = 1e12
+"""Periods of the drive after which its phase is uncertain by 1e-3 rad."""
 MOST_STEPS = 2e9
 MOST_SAMPLES = 10_000_000
 Envelope = Sequence[tuple[float, Sequence[float]]]
@@ -148,7 +150,8 @@ def request_of(
     if modes is not None and start == "steady" and not two_way:
         raise InputError(f"modes = {modes!r}: a steady field without two-way coupling has none, leave it out")
     before = _before(continue_from, beam, model, count, start, sliders)
-    check_phase("the drive", frequency_hz, duration, before.time if before else 0.0)
+    if frequency_hz * (duration + (before.time if before else 0.0)) > MOST_PERIODS:
+        raise InputError(f"duration = {duration!r} s: the phase of the drive is unknown after 1e12 periods, shorten it")
     replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
     own = before.starts if before and before.contact is not None and sliders else ()
     starts = own or tuple(one.start_on(beam) for one in sliders)

@@ -6,7 +6,7 @@ from time import perf_counter
 import numpy as np
 from msgspec.structs import replace
 
-from verify.dynamics.excitation import check_free_phases, check_no_resonance
+from verify.dynamics.excitation import check_no_resonance
 from verify.dynamics.free_vibration import FreeVibration
 from verify.dynamics.linear_system import Stage, basis_of, damped_field, stages_from_rest, steady_stage
 from verify.dynamics.request import Envelope, Request, request_of
@@ -133,7 +133,6 @@ def _stages(request: Request, basis: TimeBasis | None) -> list[Stage]:
     if request.start == "rest":
         assert basis is not None
         check_no_resonance(basis, request.frequency_hz, damping)
-        check_free_phases(basis, damping, sum(piece.steps.duration for piece in request.pieces))
         return stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, origin)
     field = damped_field(
         request.model, request.count, request.beam, request.forces, request.frequency_hz, request.modal_damping

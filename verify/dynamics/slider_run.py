@@ -46,6 +46,11 @@ COLUMNS = {
     "friction_loss": lay.KEPT_LOSS, "tangential_work": lay.KEPT_ALONG,
 }  # fmt: skip
 """Column of the engine's samples of each field of a motion."""
+WORKS = {
+    "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "slope_work": lay.UPHILL, "friction_loss": lay.DISSIPATED,
+    "contact_loss": lay.DAMPED, "friction_on_beam": lay.ON_BEAM, "normal_on_beam": lay.LIFTED_BEAM,
+}  # fmt: skip
+"""Column of the engine's sums of each term of the balance."""
 SAMPLED = ("times", "deflection", "height", "pitch", "pressures", *COLUMNS)
 Progress = Callable[[float], None]
 
@@ -311,14 +316,8 @@ def _balance(recorded: Recorded, gains: tuple[float, ...], two_way: bool, accoun
         contact_elastic=stored,
         drive_work=driven,
         load_work=float(load),
-        tangential_work=float(s[lay.ALONG]),
-        normal_work=float(s[lay.ACROSS]),
-        slope_work=float(s[lay.UPHILL]),
         damping_loss=lost,
-        friction_loss=float(s[lay.DISSIPATED]),
-        contact_loss=float(s[lay.DAMPED]),
-        friction_on_beam=float(s[lay.ON_BEAM]),
-        normal_on_beam=float(s[lay.LIFTED_BEAM]),
+        **{name: float(s[column]) for name, column in WORKS.items()},
         initial=initial,
         created=float(recorded.balance[lay.GAINED_ENERGY]),
         slider_residual=float(residual),
