@@ -177,44 +177,29 @@ def stages_from_rest(
     if tail:  # its third derivative jumps where a force acts
         basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
     for piece in pieces:
-        forced = forced_response(rows, omega, piece.coefficients, piece.steps.duration, origin)
+        unit, envelope = piece.steps.duration, piece.coefficients
+        forced = forced_response(rows, omega, envelope, unit, origin)
+        growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
+
+        def field(x: Array, derivative: int, psi: Any, forced: Forced = forced, growth: Array = growth) -> ComplexArray:
+            shapes = forced.drive_shapes(psi)  # truncated modes follow the envelope at once
+            return shapes + np.outer(growth, tail(x, derivative)) if tail else shapes
+
         stages.append(
             Stage(
-                rows=rows,
-                forced=forced,
-                shapes=basis.shapes,
-                field=_forced_field(forced, tail, piece.coefficients),
-                edges=_to_the_end(basis.edges, basis.beam),
-                degree=basis.degree,
-                omega=omega,
-                origin=origin,
-                unit_s=piece.steps.duration,
-                envelope=piece.coefficients,
-                steps=piece.steps,
+                rows=rows, forced=forced, shapes=basis.shapes, field=field, edges=_to_the_end(basis.edges, basis.beam),
+                degree=basis.degree, omega=omega, origin=origin, unit_s=unit, envelope=envelope, steps=piece.steps,
             )
-        )
-        origin += piece.steps.duration
+        )  # fmt: skip
+        origin += unit
     return stages
-
-
-def _forced_field(
-    forced: Forced, tail: Callable[[Array, int], ComplexArray] | None, envelope: Array
-) -> Callable[[Array, int, Any], ComplexArray]:
-    """`Stage.field` of the forced rows and of the truncated modes, which follow the envelope at once."""
-    growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
-
-    def field(x: Array, derivative: int, psi: Any) -> ComplexArray:
-        shapes = forced.drive_shapes(psi)
-        return shapes + np.outer(growth, tail(x, derivative)) if tail else shapes
-
-    return field
 
 
 def steady_stage(
     harmonic: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio
 ) -> Stage:
     """A beam in its steady state; with a basis, its modes are at rest at first and respond to contact forces."""
-    edges, degree = steady_edges(harmonic)
+    edges, degree = _steady_edges(harmonic)
     if basis:
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
 
@@ -233,7 +218,7 @@ def _to_the_end(edges: Array, beam: Beam) -> Array:
     return np.append(edges[:-1], beam.length)
 
 
-def steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
+def _steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
     """Edges of the polynomial pieces of a steady field, m, and their degree."""
     beam = harmonic.beam
     if harmonic.count is not None:

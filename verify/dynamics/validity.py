@@ -70,11 +70,7 @@ def margins_of(request: "Request", stage: "Stage") -> Margins:
 def _nearest_mode(beam: Beam, drive_hz: float) -> int:
     """The exact mode whose frequency lies nearest a drive's."""
     turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
-    mode = max(int(turns) - 1, 1)
-    while frequency_hz(beam, mode) < drive_hz:
-        mode += 1
-    below = frequency_hz(beam, mode - 1) if mode > 1 else 0.0
-    return mode - 1 if mode > 1 and drive_hz - below < frequency_hz(beam, mode) - drive_hz else mode
+    return min(range(max(int(turns) - 2, 1), int(turns) + 4), key=lambda n: abs(frequency_hz(beam, n) - drive_hz))
 
 
 def _model_form(beam: Beam, drive_hz: float) -> float | None:

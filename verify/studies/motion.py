@@ -44,6 +44,24 @@ NOTES = [
 ]
 
 
+Damping = Annotated[Relative, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")]
+
+
+def check_start(table: str, start: Start, soft_start_periods: float | None) -> None:
+    """Raise InputError for forces that grow in a steady beam."""
+    if start == "steady" and soft_start_periods:
+        raise InputError(
+            f"{table}.soft_start_periods = {soft_start_periods!r} with start = 'steady': a steady beam has no start, "
+            "leave it out"
+        )
+
+
+def check_driven(table: str, scene: "Scene") -> None:
+    """Raise InputError for a scene without forces."""
+    if not scene.forces or scene.drive is None or scene.drive.kind != "force":
+        raise InputError(f"{table}: a beam moves in time under a [drive] of kind force, add its forces")
+
+
 class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The driven beam in time with the scene's slider; also the settings of quantities in time."""
 
@@ -55,9 +73,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     soft_start_periods: Annotated[
         float | None, Meta(description="Periods over which the forces grow; 2 from rest unless set, 0 is a step load.")
     ] = None
-    modal_damping: Annotated[
-        Relative | None, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")
-    ] = None
+    modal_damping: Damping | None = None
     count: Annotated[int, Meta(ge=1, description="Segments and elements.")] = 49
     steps_per_period: Annotated[int, Meta(ge=1, description="Steps of the slider in a period, at least.")] = 128
     samples: Annotated[int, Meta(ge=2, le=100_000, description="Stored instants, ends included.")] = 1001
@@ -68,16 +84,11 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_number("motion.soft_start_periods", self.soft_start_periods, "periods", at_least=0)
         if self.modal_damping is not None:
             check_number("motion.modal_damping", self.modal_damping, "ratio", at_least=0, below=1)
-        if self.start == "steady" and self.soft_start_periods:
-            raise InputError(
-                f"motion.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
-                "start, leave it out"
-            )
+        check_start("motion", self.start, self.soft_start_periods)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces, and for steps without a slider."""
-        if not scene.forces or scene.drive is None or scene.drive.kind != "force":
-            raise InputError("motion: a beam moves in time under a [drive] of kind force, add its forces")
+        check_driven("motion", scene)
         if scene.slider is None and self.steps_per_period != STEPS_PER_PERIOD:
             raise InputError(
                 f"motion.steps_per_period = {self.steps_per_period!r} belongs to a slider: a beam alone takes no "

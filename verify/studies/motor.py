@@ -13,7 +13,7 @@ from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
-from verify.validation import Relative
+from verify.studies.motion import Damping, check_driven, check_start
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
@@ -84,9 +84,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     periods: Annotated[int, Meta(ge=20, le=100_000, description="Periods of a free run, at most of stopping.")] = 2000
     start: Annotated[Start, Meta(description="Beam at the start of the free run: steady or at rest.")] = "steady"
     soft_start_periods: Annotated[float, Meta(ge=0, description="Periods over which forces from rest grow.")] = 0.0
-    modal_damping: Annotated[
-        Relative | None, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")
-    ] = None
+    modal_damping: Damping | None = None
     steps_per_period: Annotated[int, Meta(ge=16, le=4096, description="Steps in a period, at least.")] = 61
 
     def __post_init__(self) -> None:
@@ -94,18 +92,13 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         for model in self.models:
             ModelName("time_basis").check(model, "motor.models")
-        if self.start == "steady" and self.soft_start_periods:
-            raise InputError(
-                f"motor.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
-                "start, leave it out"
-            )
+        check_start("motor", self.start, self.soft_start_periods)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
         from verify.dynamics.contact_assembly import check_sliders
 
-        if not scene.forces or scene.drive is None or scene.drive.kind != "force":
-            raise InputError("motor: the beam moves under a [drive] of kind force, add its forces")
+        check_driven("motor", scene)
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
         check_sliders(scene.beam, (scene.slider,), (scene.slider.start_on(scene.beam),))
