@@ -12,7 +12,7 @@ from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.excitation import Rows
 from verify.dynamics.linear_system import Stage, Steps
-from verify.dynamics.stepping import Contacts, Recorded, run_stages
+from verify.dynamics.stepping import Contacts, Run, run_stages
 from verify.errors import InputError
 from verify.problem.slider import GRAVITY
 from verify.validation import check_number
@@ -48,7 +48,7 @@ def _contact(
     return contact
 
 
-def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None) -> Recorded:
+def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None) -> Run:
     """Steps on a surface at rest, or on a unit mass on a unit spring in the state z = position - i speed."""
 
     def shapes(x: Array, derivative: int) -> Array:

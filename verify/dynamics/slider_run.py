@@ -34,7 +34,7 @@ from verify.dynamics.step_control import (
     stepped,
     unresolved,
 )
-from verify.dynamics.stepping import Contacts, Recorded, run_stages
+from verify.dynamics.stepping import Contacts, Run, run_stages
 from verify.dynamics.validity import Margins, margins_of, presliding
 from verify.errors import InputError
 from verify.linear.surface import contact_range
@@ -258,7 +258,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def _marched(
         self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
-    ) -> tuple[Recorded, Array, tuple[float, float, float], bool]:
+    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
         """Beam and sliders to the end.
 
         Also the deflection at the start, (1, p), m; what the beam gains, kinetic and elastic, and its energy at the
@@ -302,7 +302,7 @@ def _time_after(stages: list[Stage], steps: int) -> float:
     return stage.origin + steps * stage.steps.dt
 
 
-def _balance(recorded: Recorded, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
+def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
     """Works, losses and gains: of sliders, springs and modes, kinetic and elastic, and the modes' initial energy."""
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
     load = s[lay.PULLED] + s[lay.PRESSED]

@@ -20,8 +20,6 @@ RESOLVED = 1.5
 """Radians and nepers per step of a row beyond which rates are means over the step."""
 REACH = 8
 """Pieces of a table on each side of the points."""
-WHOLE = ("sums", "balance", "n_steps", "loop_s", "set_up_s", "first")
-"""Records of a run that do not grow with it."""
 
 
 class Contacts(msgspec.Struct, eq=False, kw_only=True):
@@ -56,38 +54,6 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """Of rigid contact (`impact`): one point with a foot, one-way; None for the laws above."""
 
 
-class Recorded(msgspec.Struct, eq=False, kw_only=True):
-    """Raw samples, events and sums of a run; the sample before the first step is not among them."""
-
-    samples: Array
-    """(n, sliders, KEPT)"""
-    heights: Array
-    """(n, feet, 2): height and pitch."""
-    pressures: Array
-    """(n, points): normal forces."""
-    deflections: Array
-    """(n, places)"""
-    events: Array
-    """(m, 4): time, kind, point, distance travelled."""
-    n_events: int
-    """Events altogether, also beyond the capacity of `events`."""
-    sums: Array
-    """(sliders, SUMS)"""
-    balance: Array
-    """(BALANCE,)"""
-    n_steps: int
-    loop_s: float
-    """Processor time of the compiled loop."""
-    set_up_s: float
-    """Processor time of tables and arrays."""
-    stopped: str
-    """"end", "left the beam" and the like (`Stage.beyond`), "diverged", "interrupted" or "chatters"."""
-    z: ComplexArray
-    """All of the motion of every row at the end, (n,)."""
-    first: Array
-    """(sliders, KEPT), before the first step: speed; of points without feet the friction law and the surface speed."""
-
-
 def run_stages(
     stages: Sequence[Stage],
     z: ComplexArray,
@@ -96,7 +62,7 @@ def run_stages(
     *,
     accounts: bool = False,
     progress: Callable[[int], None] = lambda steps: None,
-) -> Recorded:
+) -> "Run":
     """Advance a beam and its sliders through all stages, whose `steps` set step, number of steps and sampling.
 
     z is the free part of the rows at the start, (n,); contacts are advanced in place; deflections are sampled at
@@ -115,28 +81,32 @@ def run_stages(
 
 
 class Run:
-    """State and records of a run."""
+    """State of a run and its raw samples, events and sums; the sample before the first step is apart, in `first`."""
 
     def __init__(self, stages: Sequence[Stage], contacts: Contacts, places: Array, accounts: bool) -> None:
         samples = sum(stage.steps.n // stage.steps.every for stage in stages)
         n, n_sliders, n_feet = len(contacts.points), len(contacts.sliders), len(contacts.feet)
-        self.contacts, self.places = contacts, places
-        self.samples = np.zeros((samples, n_sliders, lay.KEPT))
-        self.heights, self.pressures = np.zeros((samples, n_feet, 2)), np.zeros((samples, n))
-        self.deflections, self.events = np.zeros((samples, len(places))), np.zeros((EVENTS, 4))
+        self.contacts, self.places, self.accounts = contacts, places, accounts
+        self.samples, self.first = np.zeros((samples, n_sliders, lay.KEPT)), np.zeros((n_sliders, lay.KEPT))
+        self.heights = np.zeros((samples, n_feet, 2))
+        """And pitches of the feet."""
+        self.pressures, self.deflections = np.zeros((samples, n)), np.zeros((samples, len(places)))
+        self.events, self.n_events = np.zeros((EVENTS, 4)), 0
+        """Time, kind, point, distance travelled; how many altogether, also beyond the capacity."""
         self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
         self.balance, self.tally = np.zeros(lay.BALANCE), np.zeros(3, dtype=np.int64)
         self.spans, self.block = np.zeros((n, 4 + 2 * SPANS)), np.zeros((n, n + 1))
-        self.first = np.zeros((n_sliders, lay.KEPT))
-        self.couplings = np.zeros((2, n, n))
-        self.feet_of = np.zeros(n_feet, dtype=np.int64)
+        self.couplings, self.feet_of = np.zeros((2, n, n)), np.zeros(n_feet, dtype=np.int64)
         if n_feet:
             self.feet_of[contacts.indices[:, lay.OF_FOOT]] = contacts.indices[:, lay.OF_SLIDER]
-        self.accounts, self.n_steps, self.loop_s, self.set_up_s = accounts, 0, 0.0, 0.0
-        self.z: ComplexArray = np.empty(0, dtype=complex)
+        self.n_steps, self.loop_s, self.set_up_s = 0, 0.0, 0.0
+        """Steps; processor time of the compiled loop, and of tables and arrays."""
+        self.stopped, self.z = "end", np.empty(0, dtype=complex)
+        """"end", "left the beam" and the like (`Stage.beyond`), "diverged", "interrupted" or "chatters"; the motion of
+        every row at the end, (n,)."""
 
-    def recorded(self, z: ComplexArray, dt: float, stopped: str) -> Recorded:
-        """The run that ended with all of the motion z, in steps of dt.
+    def recorded(self, z: ComplexArray, dt: float, stopped: str) -> "Run":
+        """The run that ended with all of the motion z, in steps of dt: its samples and events so far.
 
         Energy of the normal springs is that at the end of the last step, with the depths of its middle drawn on.
         """
@@ -146,10 +116,11 @@ class Run:
             climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
             depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
             np.add.at(self.sums[:, lay.STORED], indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2)
-        n, own = int(self.tally[lay.SAMPLES]), {name: getattr(self, name) for name in WHOLE}
-        own |= {name: getattr(self, name)[:n] for name in ("samples", "heights", "pressures", "deflections")}
-        events = int(self.tally[lay.EVENTS])
-        return Recorded(events=self.events[: min(events, EVENTS)], n_events=events, stopped=stopped, z=z, **own)
+        for name in ("samples", "heights", "pressures", "deflections"):
+            setattr(self, name, getattr(self, name)[: self.tally[lay.SAMPLES]])
+        self.n_events = int(self.tally[lay.EVENTS])
+        self.events, self.stopped, self.z = self.events[: min(self.n_events, EVENTS)], stopped, z
+        return self
 
     def stage(self, stage: Stage, z: ComplexArray, progress: Callable[[int], None]) -> str:
         """One stage from free rows z in chunks; why it ended."""
