@@ -15,10 +15,10 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.motion import ChainMotion, ElasticMotion, from_rest
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
-from verify.dynamics.coupling import Coupling, coupling_of, field_receptance
 from verify.dynamics.linear_system import Steps, damped_field, steady_stage
 from verify.dynamics.request import check_step
 from verify.dynamics.result import END, Statistics
+from verify.dynamics.validity import Coupling, coupling_of, field_receptance
 from verify.errors import InputError, written
 from verify.linear.surface import section_at
 from verify.motion.records import KEPT_FRICTION, Given, Rider

@@ -4,8 +4,7 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array
-from verify.dynamics.coupling import Coupling
-from verify.dynamics.validity import Margins
+from verify.dynamics.validity import Coupling, Margins
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider

@@ -12,7 +12,6 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble, contact_rate
-from verify.dynamics.coupling import Coupling, coupling_of, field_receptance, modal_receptance
 from verify.dynamics.initial_state import (
     deepen_between_beams,
     largest_static_deflection,
@@ -35,7 +34,15 @@ from verify.dynamics.step_control import (
     unresolved,
 )
 from verify.dynamics.stepping import Contacts, Run, run_stages
-from verify.dynamics.validity import Margins, margins_of, presliding
+from verify.dynamics.validity import (
+    Coupling,
+    Margins,
+    coupling_of,
+    field_receptance,
+    margins_of,
+    modal_receptance,
+    presliding,
+)
 from verify.errors import InputError
 from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis

@@ -159,9 +159,8 @@ def _title(run: "Run") -> str:
 
 def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
     """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
-    from verify.dynamics.coupling import COUPLED
     from verify.dynamics.step_control import CONVERGED
-    from verify.dynamics.validity import NONLINEAR
+    from verify.dynamics.validity import COUPLED, NONLINEAR
 
     stopped = [
         f"{_title(run)}: the slider {run.statistics.stopped}, after {1e3 * run.end.time:.4g} ms."
