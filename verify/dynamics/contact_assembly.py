@@ -149,10 +149,7 @@ def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]
     if any(foot.mirrored for foot in feet) and sliders[0].coupling == "two-way":
         for name in ("gravity", "preload_stiffness"):
             if value := max(getattr(slider, name) for slider in sliders):
-                raise InputError(
-                    f"slider.{name} = {value!r} with slider.foot.mirrored and two-way coupling: the beams would "
-                    "not stay mirror images, give 0, or coupling = 'one-way'"
-                )
+                raise InputError(f"slider.{name} = {value!r} moves mirrored beams apart: give 0, or 'one-way'")
         if not all(foot.mirrored for foot in feet):
             raise InputError("slider.foot: some are mirrored and some are not, give all the same, or 'one-way'")
     if any(slider.contact and slider.contact.hard for slider in sliders):
@@ -168,7 +165,4 @@ def _check_hard(sliders: Sequence[Slider]) -> None:
     own += [(f"foot.{name}", getattr(foot, name)) for name in ("face", "length", "offset", "mirrored")]
     for (name, value), right in zip(own, ("one-way", 0.0, "upper", 0.0, 0.0, False), strict=True):
         if value != right:
-            raise InputError(
-                f"slider.{name} = {value!r} with a hard contact, a point on the upper face of a one-way coupled beam "
-                f"under a constant force: give {right!r}, or slider.contact.stiffness"
-            )
+            raise InputError(f"slider.{name} = {value!r} with a hard contact: give {right!r} or contact.stiffness")

@@ -68,10 +68,7 @@ def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
     loop = np.eye(len(x)) - omega**2 * (shapes.T * compliance) @ shapes * mass
     if np.linalg.svd(loop, compute_uv=False).min() < RESONANCE:
-        raise InputError(
-            f"slider.mass = {float(mass[0])!r} kg on the beam at {float(x[0])!r} m is in resonance with the drive: "
-            "give the beam a loss_factor or choose another mass"
-        )
+        raise InputError(f"slider.mass = {float(mass[0])!r} kg is in resonance with the drive: give beam.loss_factor")
     force = mass * omega**2 * np.linalg.solve(loop, stage.drive_shapes(x, 0)[0]) * np.exp(1j * omega * stage.origin)
     phasors = (shapes @ force) * compliance
     return stage.rows.of_state(phasors.real, (1j * omega * phasors).real)

@@ -27,8 +27,6 @@ STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
 not all reverse their friction at the same phases of it."""
 FEET_MODES = 80
 """Modes of the exact beam under feet, unless given."""
-SOFT_START_PERIODS = 2.0
-"""Of a scene from rest: forces that act at once excite all modes, under which a slider's path does not converge."""
 SHORTEST = 1e-100
 """Least seconds of a motion, and periods of a growth, shorter ones being a step: their squares are numbers."""
 COARSEST = 0.25
@@ -39,11 +37,6 @@ MOST_STEPS = 2e9
 MOST_SAMPLES = 10_000_000
 Envelope = Sequence[tuple[float, Sequence[float]]]
 """Pieces (seconds, coefficients of ascending powers of t / seconds, 0 to 1 within each) of the forces' amplitude."""
-
-
-def soft_start(start: str, periods: float | None) -> float:
-    """Periods over which the forces grow in a scene, 2 from rest and 0 in a steady beam unless prescribed."""
-    return (SOFT_START_PERIODS if start == "rest" else 0.0) if periods is None else periods
 
 
 class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -143,10 +136,7 @@ def request_of(
     if start not in ("rest", "steady"):
         raise InputError(f"start = {start!r} is not known: known are rest, steady")
     if sliders and sliders[0].line == "raw" and ("raw" not in kind.lines or start == "steady"):
-        raise InputError(
-            f"slider.line = 'raw' with model = {model!r}, start = {start!r}: only rigid links from rest have straight "
-            "edges, leave it out"
-        )
+        raise InputError("slider.line = 'raw': only rigid links from rest have straight edges, leave it out")
     if modes is not None and start == "steady" and not two_way:
         raise InputError(f"modes = {modes!r}: a steady field without two-way coupling has none, leave it out")
     before = _before(continue_from, beam, model, count, start, sliders)
@@ -203,10 +193,7 @@ def _growth(soft: float, envelope: Envelope, frequency_hz: float, moves: bool) -
     except (TypeError, ValueError):
         pieces, good = [], False
     if not good:
-        raise InputError(
-            f"envelope = {shown(envelope)}: give pieces (seconds, coefficients), each longer than 0 s and of finite "
-            "coefficients"
-        )
+        raise InputError(f"envelope = {shown(envelope)}: give pieces (seconds above 0, finite coefficients)")
     if soft and pieces:
         raise InputError(f"soft_start_periods = {soft!r} and envelope = {shown(envelope)}: give one of the two")
     if (soft or pieces) and moves:
@@ -220,9 +207,9 @@ def _longest_step(
 ) -> float:
     """The longest step of a slider, s; infinite of a beam alone. Raises InputError."""
     if not sliders:
-        for name, value in (("step", step), ("steps_per_period", steps_per_period)):
-            if value is not None:
-                raise InputError(f"{name} = {shown(value)} is a slider's: a beam alone takes no steps, leave it out")
+        if step is not None or steps_per_period is not None:
+            name = "steps_per_period" if step is None else "step"
+            raise InputError(f"{name}: a beam alone takes no steps, leave it out or give slider")
         return inf
     least = STEPS_PER_PERIOD if sliders[0].contact is None else FEET_STEPS_PER_PERIOD
     per_period = least if steps_per_period is None else steps_per_period
@@ -238,18 +225,14 @@ def check_steps(duration: float, step: float) -> None:
     """Raise InputError for a step, s, of which a run takes too many."""
     if duration / step > MOST_STEPS:
         raise InputError(
-            f"duration = {written(duration)} s takes more than {MOST_STEPS:g} steps of {step:.3g} s: shorten it, or "
-            "lengthen step or soft_start_periods"
+            f"duration = {written(duration)} s: {duration / step:.2g} steps are too many, shorten it or lengthen step"
         )
 
 
 def check_step(step: float, frequency_hz: float) -> None:
     """Raise InputError for a slider's step, s, that does not resolve the period of the drive."""
     if step * frequency_hz > COARSEST:
-        raise InputError(
-            f"step = {step!r} s is {step * frequency_hz:.3g} periods of the drive, which it does not resolve: "
-            f"give at most {COARSEST / frequency_hz:.3g} s"
-        )
+        raise InputError(f"step = {step!r} s does not resolve the drive: give at most {COARSEST / frequency_hz:.3g} s")
 
 
 def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
@@ -261,8 +244,7 @@ def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samp
     rest = duration - total
     if rest < -1e-12 * duration:
         raise InputError(
-            f"duration = {written(duration)} s is shorter than the growth of the forces, {written(total)} s: lengthen "
-            "it, or shorten soft_start_periods or envelope"
+            f"soft_start_periods or envelope last {written(total)} s: lengthen duration = {written(duration)} s"
         )
     pieces = grown + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
     shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]
@@ -298,8 +280,5 @@ def _before(
         own = (slider.position, (None, first, first + travelled)), (slider.speed, (0.0, earlier.speed, speed))
         for name, (value, known) in zip(("position", "speed"), own, strict=True):
             if value not in known:
-                raise InputError(
-                    f"slider.{name} = {value!r}: the slider continues from {known[-1]!r}; give the {name} of the "
-                    "earlier run's slider, or none"
-                )
+                raise InputError(f"slider.{name} = {value!r}: the earlier slider ends with {known[-1]!r}, give none")
     return before

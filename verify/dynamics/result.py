@@ -225,8 +225,5 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     def duration(self) -> float:
         """Simulated seconds. Raises InputError where the slider left before the first sample."""
         if not (seconds := float(self.times[-1] - self.times[0])):
-            raise InputError(
-                f"the slider {self.statistics.stopped} before the first sample: change its position, speed or mu, or "
-                "give more samples"
-            )
+            raise InputError(f"samples: the slider {self.statistics.stopped} before the first one, give more")
         return seconds

@@ -86,10 +86,7 @@ def feet_step(longest: float, contact: float, fastest: float, step: float | None
     if step is None:
         return min(longest, CONTACT_RADIANS / contact if contact else inf, MODE_RADIANS / fastest if fastest else inf)
     if contact * step >= UNSTABLE:
-        raise InputError(
-            f"step = {step!r} s is {contact * step:.3g} radians of the contact, unstable from {UNSTABLE:.3g} on: give "
-            f"at most {CONTACT_RADIANS / contact:.3g} s"
-        )
+        raise InputError(f"step = {step!r} s is unstable: give at most {CONTACT_RADIANS / contact:.3g} s")
     return step
 
 

@@ -170,8 +170,7 @@ def _window(
     run = case.run(periods, BATCHES + 1, before, speed)
     if not run.statistics.finished:
         raise InputError(
-            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped} after "
-            f"{run.end.time:.6g} s, give more"
+            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped}, give more"
         )
     batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
     assert run.energy is not None

@@ -22,6 +22,8 @@ Time = Annotated[float, Meta(gt=0, description="s; default: the scene's motion.d
 Window = Annotated[tuple[float, float], Meta(description="m, start and end")]
 SAMPLES_PER_PERIOD, POINTS = 32, 40
 """Instants and positions of a motion in which waves are measured."""
+SOFT_START_PERIODS = 2.0
+"""From rest: forces that act at once excite all modes, under which a slider's path does not converge."""
 
 
 class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
@@ -56,16 +58,12 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
         scene.slider.check_stays()
-        if self.law == "coulomb" and self.slope is not None:
-            raise InputError(f"slope = {self.slope!r} is K of law = 'tanh': law = 'coulomb' has none, leave it out")
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
-    from verify.dynamics.request import soft_start
-
     motion, soft = scene.motion, by.soft_start_periods
     time = by.time if motion is None else by.time or motion.duration
     if time is None:
@@ -76,7 +74,8 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     opt.check_forces(scene, "motion in time")
     start = by.start or (motion.start if motion else "rest")
     if soft is None:
-        soft = soft_start(start, motion.soft_start_periods if motion and start == "rest" else None)
+        soft = motion.soft_start_periods if motion and start == "rest" else None
+        soft = (SOFT_START_PERIODS if start == "rest" else 0.0) if soft is None else soft
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
     forces, hertz = by.forces(scene, by.force), opt.drive_frequency(scene, by.frequency_hz)
     own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "soft_start_periods": soft}
@@ -99,27 +98,20 @@ def slider_run(
     scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, reverse: bool = False, **more: Any
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
-    from verify.dynamics.request import STEPS_PER_PERIOD
     from verify.dynamics.step_control import CONVERGED
 
     arguments = motion_arguments(scene, by)
     if reverse:
         arguments["forces"] = tuple(replace(one, phase_deg=-one.phase_deg) for one in arguments["forces"])
-    steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
+    steps = scene.motion.steps_per_period if scene.motion else None
     run = _simulated(cache, arguments, slider=slider.of(scene), step=slider.step, steps_per_period=steps, **more)
     status = run.statistics
     if status.interrupted:
         raise KeyboardInterrupt
     if not status.finished:
-        raise InputError(
-            f"time = {arguments['duration']:.12g} s: the slider {status.stopped} after {run.end.time:.6g} s, give a "
-            "shorter time or another slider_position"
-        )
+        raise InputError(f"time = {arguments['duration']:.12g} s: the slider {status.stopped}, give a shorter time")
     if status.step_change is not None and status.step_change > CONVERGED:
-        raise InputError(
-            f"step = {status.step_s:.3g} s, the default: halving it changes the displacement by "
-            f"{100.0 * status.step_change:.2g} %, give a shorter step or time"
-        )
+        raise InputError(f"step = {status.step_s:.3g} s, the default, has not converged: give a shorter step or time")
     return run
 
 
@@ -162,21 +154,23 @@ def order(
     def displacement(by: TimeOptions, step: float | None = None) -> float:
         return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
 
-    if counts is not None and steps is None:
-        check_sizes("counts", counts)
-        if by.count is not None or not MODELS.named(by.model).sized:
-            raise InputError(f"counts = {list(counts)}: an order over counts is of a discrete model without count")
-        exact = displacement(replace(by, model="analytic"))
-        errors = [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
-        return asymptotic_order(counts, errors)
-    if steps is None or counts is not None:
+    if (counts is None) == (steps is None):
         raise InputError(f"counts = {counts!r} and steps = {steps!r}: give one of the two")
-    check_sizes("steps", steps)
-    if slider.step is not None:
-        raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
-    exact = displacement(by, min(steps) / 16.0)
-    errors = [relative_error(displacement(by, step), exact) for step in steps]
-    return asymptotic_order([1.0 / step for step in steps], errors, given=f"steps = {list(steps)}")
+    if steps is not None:
+        check_sizes("steps", steps)
+        if slider.step is not None:
+            raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
+        exact = displacement(by, min(steps) / 16.0)
+        errors = [relative_error(displacement(by, step), exact) for step in steps]
+        return asymptotic_order([1.0 / step for step in steps], errors, given=f"steps = {list(steps)}")
+    assert counts is not None
+    check_sizes("counts", counts)
+    if by.count is not None or not MODELS.named(by.model).sized:
+        raise InputError(f"counts = {list(counts)}: an order over counts is of a discrete model without count")
+    exact = displacement(replace(by, model="analytic"))
+    return asymptotic_order(
+        counts, [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
+    )
 
 
 @quantity("slider.deflection", unit="m")

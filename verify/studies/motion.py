@@ -50,10 +50,7 @@ Damping = Annotated[Relative, Meta(description="Damping ratio of every mode; fro
 def check_start(table: str, start: Start, soft_start_periods: float | None) -> None:
     """Raise InputError for forces that grow in a steady beam."""
     if start == "steady" and soft_start_periods:
-        raise InputError(
-            f"{table}.soft_start_periods = {soft_start_periods!r} with start = 'steady': a steady beam has no start, "
-            "leave it out"
-        )
+        raise InputError(f"{table}.soft_start_periods = {soft_start_periods!r}: a steady beam has no start, drop it")
 
 
 def check_driven(table: str, scene: "Scene") -> None:
@@ -90,10 +87,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raise InputError without forces, and for steps without a slider."""
         check_driven("motion", scene)
         if scene.slider is None and self.steps_per_period != STEPS_PER_PERIOD:
-            raise InputError(
-                f"motion.steps_per_period = {self.steps_per_period!r} belongs to a slider: a beam alone takes no "
-                "steps, leave it out or add [slider]"
-            )
+            raise InputError(f"motion.steps_per_period = {self.steps_per_period!r}: only a slider takes steps, drop it")
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Simulate the slider on every model. Raises InputError."""
