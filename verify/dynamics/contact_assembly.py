@@ -136,8 +136,8 @@ def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]
                 step = span.start if first < span.start else span.end
                 over = "" if step in (0.0, beam.length) else f", over the step of beam.section at {written(step)} m"
                 raise InputError(
-                    f"slider.position = {start!r} m puts a foot from {first:.6g} to {last:.6g} m, off the contact "
-                    f"range of the beam{over}: move the slider or shorten slider.foot.length"
+                    f"slider.position = {start!r} m and slider.foot.length = {foot.length!r} m put a foot from "
+                    f"{first:.6g} to {last:.6g} m, off the beam{over}: move the slider or shorten the foot"
                 )
     check_one_range(beam, starts)
     for name in ("coupling",) if sliders[0].contact else ("coupling", "normal", "kinematics", "line", "gravity"):
