@@ -100,13 +100,12 @@ def change(coarse: Motion, fine: Motion) -> float:
 
     Infinite where the runs end differently; 0 where nothing moved.
     """
-    ends = coarse.end.time, fine.end.time
-    if coarse.statistics.finished != fine.statistics.finished or abs(ends[0] - ends[1]) > CONVERGED * ends[1]:
+    apart = abs(coarse.end.time - fine.end.time)
+    if coarse.statistics.finished != fine.statistics.finished or apart > CONVERGED * fine.end.time:
         return inf
     n = min(len(coarse.travelled), len(fine.travelled))
-    moved = fine.travelled[:n] - fine.travelled[0]
-    apart, size = abs(coarse.travelled[:n] - fine.travelled[:n]), abs(moved)
-    pairs = ((float(apart[-1].max()), float(size[-1].max())), (float(apart.max()), float(size.max())))
+    differs, size = abs(coarse.travelled[:n] - fine.travelled[:n]), abs(fine.travelled[:n] - fine.travelled[0])
+    pairs = ((float(differs[rows].max()), float(size[rows].max())) for rows in (slice(-1, None), slice(None)))
     return max(one / of if of else 0.0 if not one else inf for one, of in pairs)
 
 

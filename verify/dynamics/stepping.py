@@ -81,16 +81,17 @@ def run_stages(
 
 
 class Run:
-    """State of a run and its raw samples, events and sums; the sample before the first step is apart, in `first`."""
+    """State of a run and its raw samples, events and sums; `first` is the sample before the first step."""
 
     def __init__(self, stages: Sequence[Stage], contacts: Contacts, places: Array, accounts: bool) -> None:
         samples = sum(stage.steps.n // stage.steps.every for stage in stages)
         n, n_sliders, n_feet = len(contacts.points), len(contacts.sliders), len(contacts.feet)
         self.contacts, self.places, self.accounts = contacts, places, accounts
         self.samples, self.first = np.zeros((samples, n_sliders, lay.KEPT)), np.zeros((n_sliders, lay.KEPT))
-        self.heights = np.zeros((samples, n_feet, 2))
-        """And pitches of the feet."""
-        self.pressures, self.deflections = np.zeros((samples, n)), np.zeros((samples, len(places)))
+        """`first`: speed; of points without feet the friction law and the surface speed."""
+        self.heights, self.pressures = np.zeros((samples, n_feet, 2)), np.zeros((samples, n))
+        """Heights and pitches of the feet; normal forces of the points."""
+        self.deflections = np.zeros((samples, len(places)))
         self.events, self.n_events = np.zeros((EVENTS, 4)), 0
         """Time, kind, point, distance travelled; how many altogether, also beyond the capacity."""
         self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
