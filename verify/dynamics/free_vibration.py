@@ -152,28 +152,24 @@ def _start(
         raise InputError("shape is None and so is velocity: give one of them, or both, else nothing moves")
     rest = np.zeros(len(basis.omegas)), 0.0
     rates = rest[0] if velocity is None else _projected(basis, "velocity", velocity)[0]
-    if isinstance(shape, int) and not isinstance(shape, bool):
-        return _single_mode(basis, shape, amplitude), rates, 0.0
-    if amplitude is not None:
-        raise InputError(f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out")
-    q, truncation = rest if shape is None else _projected(basis, "shape", shape)
-    return q, rates, truncation
-
-
-def _single_mode(basis: TimeBasis, mode: int, amplitude: float | None) -> Array:
-    """One mode with its largest deflection `amplitude`, m. Raises InputError."""
-    check_whole("shape", mode, 1, len(basis.omegas))
+    if not isinstance(shape, int) or isinstance(shape, bool):
+        if amplitude is not None:
+            raise InputError(
+                f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out"
+            )
+        q, truncation = rest if shape is None else _projected(basis, "shape", shape)
+        return q, rates, truncation
+    check_whole("shape", shape, 1, len(basis.omegas))
     if amplitude is None:
-        raise InputError(f"amplitude is missing: give mode {mode} its largest deflection in metres")
-    most = 1e100 * basis.beam.length
-    check_number("amplitude", amplitude, "metres", at_least=-most, at_most=most)
-    x = np.linspace(0.0, basis.beam.length, 20 * mode + 41)
-    least, largest = extremes(lambda x: np.asarray(basis.shapes(x, 0)[mode - 1]), x)
-    size, values = max(largest, -least), basis.shapes(x, 0)[mode - 1]
-    first = values[np.argmax(abs(values) > 1e-3 * size)]
+        raise InputError(f"amplitude is missing: give mode {shape} its largest deflection in metres")
+    length, own = basis.beam.length, slice(shape - 1, shape)
+    check_number("amplitude", amplitude, "metres", at_least=-1e100 * length, at_most=1e100 * length)
+    x = np.linspace(0.0, length, 20 * shape + 41)
+    least, largest = extremes(lambda x: np.asarray(basis.shapes(x, 0)[own][0]), x)
+    size, values = max(largest, -least), basis.shapes(x, 0)[own][0]
     q = np.zeros(len(basis.omegas))
-    q[mode - 1] = amplitude * np.sign(first) / size
-    return q
+    q[own] = amplitude * np.sign(values[np.argmax(abs(values) > 1e-3 * size)]) / size
+    return q, rates, 0.0
 
 
 def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]:

@@ -6,7 +6,7 @@ from math import ceil, inf
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray
+from verify.arrays import ComplexArray
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.result import EnergyBalance, Motion
 from verify.errors import InputError
@@ -29,38 +29,29 @@ MOST_GAIN = 0.01
 """Energy that contact may add, or the balance may miss, relative to all energy exchanged."""
 
 
-def _speeds(stages: Sequence[Stage], z: ComplexArray, length: float) -> tuple[Array, float]:
-    """Surface speed of every free mode, the largest of all stages, and of the driven motion, but for a common factor.
-
-    Means over the beam: omega |q| n pi / L, with n pi / L for the slope of the nth mode over its deflection, whose mean
-    square on a uniform beam is 1/mass.
-    """
-    starts = [z]
-    for before, stage in pairwise(stages):
-        end = before.whole(before.rows.after(starts[-1], before.duration), before.duration)
-        starts.append(stage.free(end))
-    wavenumbers = np.pi / length * np.arange(1.0, len(z) + 1.0)
-    free, last = np.abs(starts).max(axis=0) * wavenumbers * abs(stages[0].rows.rates.imag), stages[-1]
-    if last.forced is not None:
-        driven = float(np.linalg.norm(abs(last.forced.forward + last.forced.backward)[:, 0] * wavenumbers))
-    else:
-        x = np.linspace(0.0, length, 129)
-        first = np.sqrt((last.shapes(x, 0)[0] ** 2).mean())
-        driven = float(np.sqrt((abs(last.drive_shapes(x, 1)[0]) ** 2).mean()) / first)
-    return free, last.omega * driven
-
-
 def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: float) -> float:
     """Share of the surface speed, rms, that steps of dt do not resolve from free rows z.
 
     A parabola through start, middle and end of a step misses (omega dt / 2)^4 / 180 of the mean of a cosine, and all of
-    one that turns faster.
+    one that turns faster. Speeds, but for a common factor, are means over the beam, omega |q| n pi / L, largest of all
+    stages: n pi / L is the slope of the nth mode over its deflection, whose mean square on a uniform beam is 1/mass.
     """
     if not len(z):
         return 0.0
-    free, driven = _speeds(stages, z, length)
-    missed = free * np.minimum((0.5 * abs(stages[0].rows.rates.imag) * dt) ** 4 / 180.0, 1.0)
-    total = np.hypot(driven, np.linalg.norm(free))
+    starts, last, turning = [z], stages[-1], abs(stages[0].rows.rates.imag)
+    for before, stage in pairwise(stages):
+        end = before.whole(before.rows.after(starts[-1], before.duration), before.duration)
+        starts.append(stage.free(end))
+    wavenumbers = np.pi / length * np.arange(1.0, len(z) + 1.0)
+    free = np.abs(starts).max(axis=0) * wavenumbers * turning
+    if last.forced is not None:
+        driven = np.linalg.norm(abs(last.forced.forward + last.forced.backward)[:, 0] * wavenumbers)
+    else:
+        x = np.linspace(0.0, length, 129)
+        first = np.sqrt((last.shapes(x, 0)[0] ** 2).mean())
+        driven = np.sqrt((abs(last.drive_shapes(x, 1)[0]) ** 2).mean()) / first
+    missed = free * np.minimum((0.5 * turning * dt) ** 4 / 180.0, 1.0)
+    total = np.hypot(last.omega * driven, np.linalg.norm(free))
     return float(np.linalg.norm(missed) / total) if total else 0.0
 
 
