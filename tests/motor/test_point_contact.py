@@ -5,10 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
-from reference.motor import DRAGGED, PRESSED, STUCK, TOUCHED, OneWay, Point, Rider, V, X, Z, body
+from reference.motor import DRAGGED, PRESSED, STUCK, TOUCHED, OneWay, Point, Rider, V, X, Z, body, lift_off_ratio
 
 from verify.dynamics.layout import LANDS
-from verify.exact.contact.impact import lift_off_ratio
 from verify.problem.slider import Contact, Slider
 
 AMPLITUDE, BACK, MASS, LOAD, STIFFNESS, PERIODS = 1e-6, 0.1, 2e-3, 2.0, 5e6, 5

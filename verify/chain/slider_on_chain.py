@@ -24,7 +24,7 @@ from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_re
 from verify.dynamics.request import request_of
 from verify.dynamics.result import END, INTERRUPTED, Motion
 from verify.dynamics.slider_run import Progress, SliderRun
-from verify.dynamics.stepping import Contacts, Recorded, Run
+from verify.dynamics.stepping import Contacts, Run
 from verify.errors import InputError
 from verify.linear.positions import Forces, Numbers
 from verify.options import LINKS, Links
@@ -175,7 +175,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
 
     def _marched(
         self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
-    ) -> tuple[Recorded, Array, tuple[float, float, float], bool]:
+    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
         from verify.chain import elastic_links, rigid_links
         from verify.chain.runge_kutta import DORMAND_PRINCE
         from verify.chain.slider_kernels import STALE, advance
