@@ -205,7 +205,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(),
             (contacts.points[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[None],
         )
-        n_steps, accounts = sum(stage.steps.n for stage in stages), request.start == "rest"
+        n_steps, rigid = sum(stage.steps.n for stage in stages), contacts.restitution is not None
+        accounts = request.start == "rest" and not rigid  # impacts are one-way: the beam's own balance is exact
         recorded = run_stages(
             stages, z, contacts, request.points, accounts=accounts, progress=lambda n: progress(n / n_steps)
         )
