@@ -120,7 +120,7 @@ def test_feet_stay_up_to_the_static_limit_and_slide_under_the_kinetic_one(feet, 
     """A pull P on a slider at rest: what gives way swings to 2 P; below mu_s N = 1 N it stays, beyond it slides."""
     beam = replace(STRIP, length=0.2, thickness=0.004)
     still, own = (
-        PointForce(position=0.03, amplitude=1e-9),
+        PointForce(position=0.03, amplitude=0.0),
         {"mass": 0.05, "gravity": 0.0, "preload": 2.0, "position": 0.13},
     )
     rigid = coupling == "one-way" and feet in ("point", "hard")
