@@ -87,6 +87,7 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
     rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
     along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
     along = along - slope * rise if contacts.following else along
+    along = along * contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.FREE]
     climb = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
     if not len(contacts.feet):
         state[:, lay.RISE_RATE] = climb
