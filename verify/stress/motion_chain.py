@@ -1,8 +1,8 @@
 """Checks of time steps, of friction laws, and of the nonlinear chain."""
 
-from collections.abc import Sequence
-from functools import cache
-from math import asin, atan, exp, inf, pi, sin, sqrt, tanh
+from collections.abc import Callable
+from functools import cache, partial
+from math import asin, exp, inf, pi, sin, sqrt, tanh
 from typing import Any
 
 import numpy as np
@@ -17,14 +17,14 @@ STEP = 1.0 / (64 * HERTZ)
 ULP = 1.1e-16
 
 
-def driven(steps: float, slope: float | None = None, mu: float = 0.23, samples: int = 2, **more: Any) -> Any:
+def driven(steps: float, slope: float | None = None, samples: int = 2) -> Any:
     """The strip from rest under a force, in steps where it carries 3 mg with one-way coupling."""
     from verify.dynamics.simulate import simulate
 
-    slider = None if slope is None else Slider(mass=3e-9, mu=mu, slope=slope, coupling="one-way")
+    slider = None if slope is None else Slider(mass=3e-9, mu=0.23, slope=slope, coupling="one-way")
     force, at = (PointForce(position=0.37 * STRIP.length, amplitude=1e-3),), [0.29 * STRIP.length]
     settings: dict[str, Any] = {"model": "analytic", "modes": MODES, "step": STEP if slider else None, "slider": slider}
-    return simulate(STRIP, force, HERTZ, steps * STEP, **settings, at=at, samples=samples, **more)
+    return simulate(STRIP, force, HERTZ, steps * STEP, **settings, at=at, samples=samples)
 
 
 @cache
@@ -51,48 +51,29 @@ def time_stepping(steps: float) -> float:
     return float(error / (amplitude() * ULP * stepped.statistics.steps))
 
 
-def imbalance(steps: float, slope: float = 310.0) -> float:
+@check("energy-slope", "friction slope, s/m", (1.0, 1e3, 1e6, 1e9), 1e-6)
+def energy_slope(slope: float) -> float:
     """Energy missing from the balance of a slider on the driven strip, over input work and friction loss."""
-    energy = driven(steps, slope).energy
+    energy = driven(20_000, slope).energy
     return float(abs(energy.residual) / (energy.friction_loss + energy.drive_work))
 
 
-@check("energy-steps", "steps", (1e4, 1e6, 1e7), 1e-6, slow=True)
-def energy_steps(steps: float) -> float:
-    """Energy balance of a slider on the driven strip over many steps."""
-    return imbalance(steps)
+SPEED, MU, SLOPE, STEPS = 0.1, 0.23, 310.0, 4096
 
 
-@check("energy-slope", "friction slope, s/m", (1.0, 1e3, 1e6, 1e9), 1e-6)
-def energy_slope(slope: float) -> float:
-    """Energy balance of a slider on the driven strip, 20 000 steps."""
-    return imbalance(20_000, slope)
-
-
-@check("friction-bound", "mu", (1e-6, 1.0, 1e3, 1e6), 1e-12)
-def friction_bound(mu: float) -> float:
-    """Excess of the friction force over mu m g and of the displacement over what it can cause, slope 1e9 s/m."""
-    run, limit = driven(20_000, 1e9, mu), mu * GRAVITY
-    reach = 0.5 * limit * float(run.times[-1]) ** 2
-    return max(worst(run.friction) / (3e-9 * limit) - 1.0, worst(run.travelled) / reach - 1.0, 0.0)
-
-
-SPEED, MU, SLOPE, STEEP, STEPS = 0.1, 0.23, 310.0, 1e6, 4096
-
-
-def speed_left(mu: float, slope: float, time: float) -> D:
+def speed_left(slope: float, time: float) -> D:
     """Of a free slide under tanh friction: sinh(K v) = sinh(K v0) exp(-mu g K t), m/s."""
     k, start = D(slope), D(slope) * D(SPEED)
-    rate = D(mu * GRAVITY) * k * D(time)
+    rate = D(MU * GRAVITY) * k * D(time)
     if start - rate > 200:  # sinh is half an exponential to 1e-174
         return (start - rate) / k
     x = (start.exp() - (-start).exp()) / 2 * (-rate).exp() if start < 200 else (start - rate).exp() / 2
     return (x + (x * x + 1).sqrt()).ln() / k
 
 
-def rk4_decay(mu: float, slope: float, time: float) -> float:
+def rk4_decay(slope: float, time: float) -> float:
     """The speed left by classical Runge-Kutta in 4096 steps, m/s."""
-    v, h, limit = SPEED, time / STEPS, mu * GRAVITY
+    v, h, limit = SPEED, time / STEPS, MU * GRAVITY
     for _ in range(STEPS):
         a = -limit * tanh(slope * v)
         b = -limit * tanh(slope * (v + 0.5 * h * a))
@@ -101,38 +82,21 @@ def rk4_decay(mu: float, slope: float, time: float) -> float:
     return v
 
 
-def decay(mu: float, slope: float, time: float) -> float:
-    """The speed left in the package, m/s."""
-    from verify.dynamics.belt import free_decay
-
-    return free_decay(mu, slope, SPEED, time)
-
-
-def decay_error(mu: float, slope: float, method: Any = decay) -> float:
+def decay_error(slope: float, method: Callable[[float, float], float]) -> float:
     """Of the speed left before and after Coulomb friction would have stopped the slide, over the initial speed."""
-    times = [part * SPEED / (mu * GRAVITY) for part in (0.7, 1.3)]
-    return worst([float(D(method(mu, slope, t)) - speed_left(mu, slope, t)) for t in times]) / SPEED
+    times = [part * SPEED / (MU * GRAVITY) for part in (0.7, 1.3)]
+    return worst([float(D(method(slope, t)) - speed_left(slope, t)) for t in times]) / SPEED
 
 
-_RK4 = ("RK4 in 4096 steps", lambda slope: decay_error(MU, slope, rk4_decay))
+_RK4 = ("RK4 in 4096 steps", partial(decay_error, method=rk4_decay))
 
 
 @check("friction-slope", "slope, s/m", (1e-3, 1.0, 1e3, 1e6, 1e9), 1e-10, beyond=(1e12, 1e15), baseline=_RK4)
 def friction_slope(slope: float) -> float:
     """Speed left of a free slide under tanh friction, viscous to step-like."""
-    return decay_error(MU, slope)
+    from verify.dynamics.belt import free_decay
 
-
-@check("friction-coefficient", "mu", (1e-9, 1e-3, 1.0, 1e3, 1e6), 1e-10, beyond=(1e9, 1e12))
-def friction_coefficient(mu: float) -> float:
-    """Speed left of a free slide under tanh friction of slope 1e6 s/m."""
-    return decay_error(mu, STEEP)
-
-
-@check("friction-rest", "mu", (1e-6, 1.0, 1e6), 1e-20)
-def friction_rest(mu: float) -> float:
-    """Speed long after tanh friction has stopped a slide, over the initial speed."""
-    return abs(decay(mu, STEEP, (30.0 * SPEED + 60.0 / STEEP) / (mu * GRAVITY))) / SPEED  # exp(-60) of the last speed
+    return decay_error(slope, lambda slope, time: free_decay(MU, slope, SPEED, time))
 
 
 @check("friction-creep", "1 - F / (mu m g)", (0.9, 0.1, 1e-3, 1e-5, 2e-6), 1e-10, beyond=(1e-7, 1e-12), refused=True)
@@ -146,22 +110,7 @@ def friction_creep(left: float) -> float:
     return left * abs(float(D(creep_speed(MU, SLOPE, force)) / exact - 1))
 
 
-_BELT = (2.0 * pi / 4000) ** 2 / 12.0
-"""Order 2 in 4000 steps of the spring's period, (omega dt)^2 / 12."""
-
-
-@check("stick-slip", "belt speed, m/s", (0.3, 0.03, 3e-3, 3e-4), _BELT, beyond=(1e-7, 1e-12), refused=True)
-def stick_slip(speed: float) -> float:
-    """Stick and slip times of Coulomb friction on a belt, integrated, against their closed form."""
-    from verify.dynamics import belt
-
-    mass, stiffness, static, kinetic = 1.3, 170.0, 5.1, 3.7
-    omega, drop = sqrt(stiffness / mass), (static - kinetic) / stiffness
-    exact = np.array([2.0 * drop / speed, (2.0 * pi - 2.0 * atan(omega * drop / speed)) / omega])
-    return worst(np.array(belt.stick_slip_times(mass, stiffness, static, kinetic, speed)) / exact - 1.0)
-
-
-LINKS, SHORT, RATE = 100, 12, 17.3
+LINKS = 100
 
 
 @check("chain-roll-up", "turns", (1, 5, 20), 1e-12, beyond=(40,))
@@ -196,69 +145,17 @@ def chain_dead_load(load: float) -> float:
     return worst(tip.deflection - w, tip.shortening - u) / (load / (12.0 * LINKS**2))
 
 
-def pendulum(turns: Sequence[float], gravity: float = 0.0, **how: Any) -> Any:
-    """Motion at these turns of twelve stiff links about a pin, gravity along x, straight and rotating at first."""
-    from verify.chain.motion import simulate, step_limit
-    from verify.chain.system import ChainState, ChainSystem
-    from verify.segments.chain import link_inertia
-
-    lengths, masses = np.full(SHORT, 0.73 / SHORT), np.full(SHORT, 0.31 / SHORT)
-    stiffness, none = np.append(0.0, np.full(SHORT - 1, 2.9)), np.zeros(SHORT)
-    system = ChainSystem(
-        lengths=lengths,
-        masses=masses,
-        inertias=link_inertia(masses, lengths),
-        stiffness=stiffness,
-        dashpots=none,
-        gravity=(gravity, 0.0),
-    )
-    start = ChainState(none, np.append(RATE, none[1:]))
-    if "method" in how:
-        how["step"] = 0.5 * step_limit(system)
-    return simulate(system, start, [2.0 * pi * turn / RATE for turn in turns], **how)
-
-
-@check("chain-spin", "turns", (1.0, 10.0, 100.0), 1e-10)
-def chain_spin(turns: float) -> float:
-    """Straight chain rotating about its pin by RK4: error of its angle and its bending over the angle."""
-    first, *bending = pendulum([turns], method="rk4").angles[-1] / (2.0 * pi * turns)
-    return worst(first - 1.0, bending)
-
-
-@check("chain-whirl", "turns", (1.0, 10.0, 30.0), 2.0)
-def chain_whirl(turns: float) -> float:
-    """Heavy chain whirling over its pin: energy drift over the sum of the steps' tolerances of 1e-10."""
-    motion = pendulum([0.0, turns], 9.81, tolerance=1e-10)
-    return float(abs(motion.residual()[-1] / motion.energies()[0][0]) / (1e-10 * motion.statistics.steps))
-
-
-def strip_limit(n: int, scatter: float = 0.0) -> tuple[Any, Any, float]:
-    """(system, start, RK4 step limit) of the strip as a chain, at rest or in scattered angles."""
-    from verify.chain.kinematics import at_rest
-    from verify.chain.motion import step_limit
-    from verify.chain.system import build_system
-
-    system = build_system(STRIP, n)
-    start = at_rest(system, scatter * np.random.default_rng(3).standard_normal(n))
-    return system, start, step_limit(system)
-
-
 @check("rk4-stability", "dt / limit", (0.1, 0.5, 0.9, 0.99), 1e-12, beyond=(1.01, 2.0), refused=True)
 def rk4_stability(part: float) -> float:
-    """Energy gain of a chain of 12 links in 2000 RK4 steps."""
-    from verify.chain.motion import simulate
+    """Energy gain of a chain of 12 links, from scattered angles, in 2000 RK4 steps."""
+    from verify.chain.kinematics import at_rest
+    from verify.chain.motion import simulate, step_limit
+    from verify.chain.system import build_system
 
-    system, start, limit = strip_limit(SHORT, 1e-7)
-    step = part * limit
+    system = build_system(STRIP, 12)
+    start = at_rest(system, 1e-7 * np.random.default_rng(3).standard_normal(12))
+    step = part * step_limit(system)
     motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step)
     kinetic, elastic, _ = motion.energies()
     total = kinetic + elastic
     return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.finished else inf
-
-
-@check("rk4-limit", "N", (8, 20, 49, 200, 1000), 1e-3)
-def rk4_limit(n: float) -> float:
-    """RK4 step limit of a pinned chain against 2 sqrt(2) over its highest mode in closed form."""
-    s2 = sin((n - 1.0) * pi / n / 2.0) ** 2
-    highest = sqrt(48.0 * s2 * s2 / (3.0 - 2.0 * s2)) * STRIP.wave_constant * (n / STRIP.length) ** 2
-    return abs(strip_limit(int(n))[2] * highest / (2.0 * sqrt(2.0)) - 1.0)
