@@ -4,7 +4,7 @@ Times are processor seconds of one thread, medians over the rounds, from the bea
 """
 
 import platform
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from math import exp, isfinite, log
@@ -175,8 +175,8 @@ RATIO_NOTE = (
 )
 
 
-def result(measured: Sequence[tuple[Question, Sequence[Row]]], against: Mapping[str, Any] | None = None) -> Result:
-    """Tables, one log-log chart for each question, and data that `against` of a later run takes."""
+def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
+    """Tables, one log-log chart for each question, and data."""
     rows = [(q.id, *_cells(row)) for q, found in measured for row in found]
     compared = {q.id: ratios(q, found) for q, found in measured}
     tables = [
@@ -185,8 +185,6 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]], against: Mapping[
             "Time ratio", RATIO_COLUMNS, [(t, m, *r) for t, c in compared.items() for m, r in c.items()], [RATIO_NOTE]
         ),
     ]
-    if against is not None:
-        tables.append(_changes(compared, against))
     references = Table(
         "References",
         (Column("set"), Column("quantity"), Column("reference"), Column("uncertainty", format=".1g")),
@@ -207,28 +205,6 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]], against: Mapping[
 def _cells(row: Row) -> tuple[Any, ...]:
     size = f"{row.size_name} = {row.size:.3g}" if row.size_name else ""
     return row.method, size, row.error, row.order, row.seconds, row.spread
-
-
-def _changes(compared: Mapping[str, Any], against: Mapping[str, Any]) -> Table:
-    """Ratios then and now at the first error that both runs have."""
-    rows = []
-    for name, earlier in ((one["id"], one["ratios"]) for one in against["questions"]):
-        for method, now in compared.get(name, {}).items():
-            pairs = [
-                (error, then, new)
-                for error, then, new in zip(ERRORS, earlier.get(method, ()), now, strict=False)
-                if then and new
-            ]
-            rows += [(name, method, *pairs[0], pairs[0][2] / pairs[0][1])] if pairs else []
-    columns = (
-        Column("set"),
-        Column("method"),
-        Column("at error"),
-        Column("ratio then", format=".3g"),
-        Column("ratio now", format=".3g"),
-        Column("now / then", format=".3g"),
-    )
-    return Table("Change of the time ratios", columns, rows)
 
 
 def _figure(question: Question, rows: Sequence[Row]) -> Figure:

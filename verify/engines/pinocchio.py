@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.base import Chain, Recorder, Rider, Run, near, tree_frequencies
+from verify.engines.base import Chain, Recorder, Run, tree_frequencies
 
 Acceleration = Callable[[float, Array, Array], Array]
 
@@ -34,13 +34,11 @@ class Pinocchio:
         closure = np.array(pin.computeFrameJacobian(model, data, straight, frame, world)[1])
         return tree_frequencies(upper + np.triu(upper, 1).T, closure, np.full(chain.n, chain.spring))
 
-    def run(self, chain: Chain, steps: int, end: float, rider: Rider | None = None) -> Run:
+    def run(self, chain: Chain, steps: int, end: float) -> Run:
         """In steps of order 4."""
-        f, h, n = _acceleration(chain, rider), end / steps, chain.n
+        f, h, n = _acceleration(chain), end / steps, chain.n
         recorder = Recorder(chain, steps, h)
-        q, v = np.zeros(n + bool(rider)), np.zeros(n + bool(rider))
-        if rider:
-            v[-1] = rider.speed
+        q, v = np.zeros(n), np.zeros(n)
         with np.errstate(all="ignore"):
             for k in range(steps):
                 t = k * h
@@ -54,7 +52,7 @@ class Pinocchio:
                 q, v = q + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
                 if not float(np.abs(q[1:n]).max()) < np.pi:
                     return recorder.run(k, f"at t = {t + h:.4g} s a joint has turned by half a turn")
-                recorder.keep(k + 1, q, v)
+                recorder.keep(k + 1, q)
         return recorder.run(steps, "")
 
 
@@ -73,8 +71,8 @@ def _model(chain: Chain) -> tuple[Any, int]:
     return model, last
 
 
-def _acceleration(chain: Chain, rider: Rider | None) -> Acceleration:
-    """(t, q, v) -> accelerations of the hinges, and of the slider as the last coordinate."""
+def _acceleration(chain: Chain) -> Acceleration:
+    """(t, q, v) -> accelerations of the hinges."""
     import pinocchio as pin
 
     model, _ = _model(chain)
@@ -95,12 +93,4 @@ def _acceleration(chain: Chain, rider: Rider | None) -> Acceleration:
         inward = chain.link * np.sin(angles) @ np.square(v.cumsum())
         return np.asarray(free - (levers @ free - inward) / (levers @ unit) * unit)
 
-    def with_rider(t: float, q: Array, v: Array) -> Array:
-        assert rider is not None
-        x = rider.start + float(q[-1])
-        first = near(chain, x) - 2
-        spins = np.cumsum(v[: first + 5])[first:].tolist()
-        force = rider.force(float(v[-1]) - rider.surface_speed(chain, spins, x, first))
-        return np.append(hinges(t, q[:-1], v[:-1]), force / rider.mass)
-
-    return with_rider if rider else hinges
+    return hinges

@@ -1,4 +1,4 @@
-"""Exact references of the linear chain: modes in closed form, motion as a sum over all of them, a slider on it.
+"""Exact references of the linear chain: modes in closed form, motion as a sum over all of them.
 
 Joint deflections of a uniform pinned chain swing as sin(j k pi / n); mass and stiffness are polynomials of one second
 difference. No eigenvalue solver takes part.
@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.base import Chain, Rider
+from verify.engines.base import Chain
 
 
 def frequencies(chain: Chain) -> Array:
@@ -54,23 +54,3 @@ def deflection(chain: Chain, times: Array, x: float | None = None) -> Array:
     turns, phase = np.outer(times, omega), drive * np.asarray(times)
     steady = np.cos(phase) * (cosine @ weights) + np.sin(phase) * (sine @ weights)
     return np.asarray(steady - np.cos(turns) @ (cosine * weights) - np.sin(turns) @ (sine * drive / omega * weights))
-
-
-def ride(chain: Chain, rider: Rider, end: float, steps: int = 20_000) -> tuple[Array, Array, Array]:
-    """(times, distance, speed), each (steps + 1,), by DOP853 on the exact motion of the links."""
-    from scipy.integrate import solve_ivp
-
-    omega, shapes, cosine, sine = _modal(chain)
-    drive, tilts = 2.0 * np.pi * chain.frequency_hz, np.diff(shapes, axis=0).T / chain.link
-
-    def rates(t: float, state: Array) -> tuple[float, float]:
-        turns, phase = omega * t, drive * t
-        modal = drive * (np.cos(phase) * sine - np.sin(phase) * cosine)
-        spins = (modal + np.sin(turns) * (cosine * omega) - np.cos(turns) * (sine * drive)) @ tilts
-        x, speed = rider.start + float(state[0]), float(state[1])
-        return speed, rider.force(speed - rider.surface_speed(chain, spins, x)) / rider.mass
-
-    times, scale = np.linspace(0.0, end, steps + 1), 1e-12 * max(abs(rider.speed), 1.0 / rider.slope)
-    tight = {"rtol": 1e-10, "atol": [scale * end, scale], "max_step": end / 50}
-    found = solve_ivp(rates, (0.0, end), [0.0, rider.speed], "DOP853", times, **tight)
-    return times, found.y[0], found.y[1]
