@@ -190,7 +190,7 @@ def test_table_of_another_study(data, bare):
 def test_charts_are_written(call, bare):
     assert call("table bare.toml --study spectrum --charts charts")[0] == 0
     assert any(one.read_text().startswith("<svg") for one in Path("charts").glob("*.svg"))
-    assert len(list(Path("charts").glob("*.png"))) == len(list(Path("charts").glob("*.csv"))) > 0
+    assert len(list(Path("charts").glob("*.png"))) == len(list(Path("charts").glob("*.svg"))) > 0
 
 
 def test_choose_is_sufficient(data, bare):

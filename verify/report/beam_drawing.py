@@ -107,7 +107,7 @@ class _Sketch:
         return 0.22 if scene.slider and abs(scene.slider.start_on(self.beam) - x) < near else 0.0
 
     def line(self, *points: tuple[float, float], color: str = INK, width: float = 1.3, **more: Any) -> None:
-        self.ax.plot(*zip(*points, strict=True), color=color, linewidth=width, gid="guide", **more)
+        self.ax.plot(*zip(*points, strict=True), color=color, linewidth=width, **more)
         self.top = max(self.top, *(y + 0.05 for _, y in points))
         self.bottom = min(self.bottom, *(y - 0.05 for _, y in points))
 

@@ -50,7 +50,7 @@ def result(outcomes: Sequence[Outcome]) -> Result:
 
 def _fractions(ax: "Axes", records: Sequence[dict[str, Any]]) -> None:
     ax.barh([one["id"] for one in records], [max(one["worst"] / one["tolerance"], 1e-6) for one in records])
-    ax.axvline(1.0, linestyle="--", gid="guide")
+    ax.axvline(1.0, linestyle="--")
     ax.set(xscale="log", xlabel="worst / tolerance", xlim=(1e-6, 10.0))
     ax.invert_yaxis()
     ax.tick_params(axis="y", labelsize=7)
