@@ -25,7 +25,7 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     """What to export."""
 
     what: str | None = None
-    """modes, wave, motion or tables; by default what the scene has and the file type holds."""
+    """modes, wave or motion; by default what the scene has and the file type holds."""
     model: str = "segment"
     count: int | None = None
     """Segments or elements; by default the count of the scene's study of the same subject, else 49."""
@@ -33,8 +33,6 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     """Number of modes of data, the mode of a picture."""
     samples: int | None = None
     """Steps of a period or of a motion."""
-    solid: bool = False
-    """Picture by pyvista."""
 
 
 @dataclass(frozen=True)
