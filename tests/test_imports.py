@@ -42,7 +42,7 @@ def test_numerics_know_nothing_of_scenes_and_reports(room):
             ["measure", "paper", "mode.frequency", "model=analytic", "mode=3"],
             {"numba", "matplotlib", "skfem"},
         ),
-        (["scenes", "list"], {"scipy", "numba", "matplotlib", "skfem"}),
+        (["scenes"], {"scipy", "numba", "matplotlib", "skfem"}),
     ],
 )
 def test_a_command_loads_only_what_it_uses(words, unloaded):
