@@ -211,7 +211,7 @@ def chain(problem: Problem) -> Iterator[Question]:
 
 def engines(problem: Problem) -> Iterator[Question]:
     """Modes and the nonlinear chain in other engines beside segments."""
-    from verify.engines import ENGINES, chain_of, missing, references
+    from verify.engines import ENGINES, chain_of, missing
 
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
     if not adapters:
@@ -232,7 +232,7 @@ def engines(problem: Problem) -> Iterator[Question]:
     yield Question("engines-modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, [ours, *theirs])
 
     links = chain_of(beam, LINKS, problem.forces, hertz)
-    limit = references.stability_limit(links)
+    _, limit = chain_solver(problem)
 
     def steps(name: str) -> list[int]:
         longest = 0.01 / hertz if ENGINES[name].implicit else min(1.0 / (12.0 * hertz), 0.99 * limit)

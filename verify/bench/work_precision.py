@@ -3,7 +3,6 @@
 Times are processor seconds of one thread, medians over the rounds, from the beam to the answer.
 """
 
-import platform
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.report.result import Column, Figure, Result, Table
+from verify.report.summary import environment
 from verify.timing import forget, spread
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
         [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured],
     )
     data = {
-        "machine": machine(),
+        "machine": {"processor": processor(), **environment()},
         "questions": [
             {"id": q.id, "title": q.title, "reference": q.reference, "uncertainty": q.uncertainty}
             | {"rows": [asdict(row) for row in found], "ratios": compared[q.id]}
@@ -224,20 +224,12 @@ def _figure(question: Question, rows: Sequence[Row]) -> Figure:
     return Figure(f"bench-{question.id}", question.title, caption, draw)
 
 
-def machine() -> dict[str, str]:
-    """Processor, system and versions."""
-    from datetime import date
-    from importlib.metadata import PackageNotFoundError, version
+def processor() -> str:
+    """Its name."""
+    import platform
     from pathlib import Path
 
     info = Path("/proc/cpuinfo")
     lines = info.read_text("utf-8").splitlines() if info.exists() else []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    found = {"date": str(date.today()), "processor": names[0] if names else platform.processor()}
-    found |= {"system": f"{platform.system()} {platform.machine()}", "python": platform.python_version()}
-    for package in ("numpy", "scipy", "scikit-fem", "numba", "exudyn", "mujoco", "pin"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found
+    return names[0] if names else platform.processor()

@@ -51,7 +51,7 @@ def slope_guide(ax: "Axes", slope: float, at: tuple[float, float], decades: floa
     x, y = at
     far = x * 10.0**decades
     ends = [y, y * (far / x) ** slope]
-    ax.plot([x, far], ends, color=INK, linestyle=(0, (4, 3)), linewidth=1.0, alpha=0.7)
+    ax.plot([x, far], ends, color=INK, linestyle=(0, (4, 3)), linewidth=1.0, alpha=0.7, gid="guide")
     middle = (x * 10.0 ** (decades / 2), y * 10.0 ** (slope * decades / 2))
     ax.annotate(f"order {abs(slope):g}", middle, (5, 5), textcoords="offset points", fontsize=8.5)
 

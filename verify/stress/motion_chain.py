@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache, partial
-from math import asin, exp, inf, pi, sin, sqrt, tanh
+from math import asin, inf, pi, sin, tanh
 from typing import Any
 
 import numpy as np
@@ -110,39 +110,12 @@ def friction_creep(left: float) -> float:
     return left * abs(float(D(creep_speed(MU, SLOPE, force)) / exact - 1))
 
 
-LINKS = 100
-
-
 @check("chain-roll-up", "turns", (1, 5, 20), 1e-12, beyond=(40,))
 def chain_roll_up(turns: float) -> float:
     """Gap of a cantilever of 100 links rolled into closed circles by an end moment, over its length."""
     from verify.chain.benchmarks import rollup_gap
 
-    return rollup_gap(LINKS, "half", turns)
-
-
-def elastica(load: float) -> tuple[float, float]:
-    """(w / L, 1 - x / L) of a tip under P L^2 / EI: Bisshopp and Drucker, Quart. Appl. Math. 3 (1945) 272."""
-    from scipy.optimize import brentq
-    from scipy.special import ellipe, ellipeinc, ellipkinc, ellipkm1
-
-    def gap(log_rest: float) -> float:
-        rest = exp(log_rest)  # the sine of the tip's slope is 1 - rest, k^2 = 1 - rest / 2
-        return float(ellipkm1(0.5 * rest) - ellipkinc(asin(sqrt(1.0 / (2.0 - rest))), 1.0 - 0.5 * rest)) - root
-
-    root = sqrt(load)
-    rest = exp(brentq(gap, -2.0 * root - 9.0, -1e-12, xtol=1e-14))
-    m, phi = 1.0 - 0.5 * rest, asin(sqrt(1.0 / (2.0 - rest)))
-    return 1.0 - 2.0 / root * float(ellipe(m) - ellipeinc(phi, m)), 1.0 - sqrt(2.0 * (1.0 - rest)) / root
-
-
-@check("chain-dead-load", "P L^2 / EI", (0.1, 1.0, 4.0, 10.0, 100.0), 1.0, beyond=(1000.0, 1e4))
-def chain_dead_load(load: float) -> float:
-    """Tip of 100 links under a dead load against the elastica, error over its bound load / (12 N^2)."""
-    from verify.chain.benchmarks import cantilever_tip
-
-    tip, (w, u) = cantilever_tip(load, LINKS), elastica(load)
-    return worst(tip.deflection - w, tip.shortening - u) / (load / (12.0 * LINKS**2))
+    return rollup_gap(100, "half", turns)
 
 
 @check("rk4-stability", "dt / limit", (0.1, 0.5, 0.9, 0.99), 1e-12, beyond=(1.01, 2.0), refused=True)
