@@ -19,8 +19,8 @@ FORCES = (
 )
 """The first and the last on one link of 13, none on a joint."""
 FREQUENCY, END = 1234.5, 2e-3
-STEPS = {"Exudyn": 500, "MuJoCo": 50, "Pinocchio": 50}
-ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2), "Pinocchio": (3.7, 5.2)}
+STEPS = {"Exudyn": 500, "MuJoCo": 50}
+ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2)}
 
 
 @pytest.fixture

@@ -215,7 +215,7 @@ def engines(problem: Problem) -> Iterator[Question]:
 
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
     if not adapters:
-        raise InputError("engines: none is installed: pip install exudyn mujoco pin, or leave this set out")
+        raise InputError("engines: none is installed: pip install exudyn mujoco, or leave this set out")
     beam, mode, hertz, end = problem.beam, problem.mode, problem.frequency_hz, problem.duration
     exact = ExactModel(beam).frequency_hz(mode)
 

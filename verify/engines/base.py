@@ -117,7 +117,6 @@ ENGINES: Registry[Engine] = Registry(
     own=(
         Engine("Exudyn", "exudyn", "exudyn", "verify.engines.exudyn:Exudyn", implicit=True),
         Engine("MuJoCo", "mujoco", "mujoco", "verify.engines.mujoco:Mujoco"),
-        Engine("Pinocchio", "pin", "pinocchio", "verify.engines.pinocchio:Pinocchio"),
     ),
     refuses=lambda one: "" if isinstance(one, Engine) else "is not a verify.engines.Engine: make it one",
 )
@@ -130,20 +129,6 @@ def missing(engine: Engine) -> str:
     if find_spec(engine.module) is not None:
         return ""
     return f"{engine.name} is not installed: pip install {engine.package}, or leave it out"
-
-
-def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
-    """(n - 1,), Hz, of a tree over joint angles whose far end is constrained, ascending.
-
-    `mass` (n, n), `closure` (n,) the far end's height by the angles, `stiffness` (n,). The largest eigenvalues of the
-    inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
-    """
-    from scipy.linalg import eigh
-
-    basis = np.vstack([-closure[1:] / closure[0], np.eye(len(closure) - 1)])
-    root = 1.0 / np.sqrt(stiffness[1:])
-    values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
-    return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
 
 
 @dataclass

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.base import Chain, Recorder, Run, tree_frequencies
+from verify.engines.base import Chain, Recorder, Run
 from verify.errors import one_line
 
 
@@ -56,6 +56,20 @@ class Mujoco:
             mujoco.set_mjcb_control(None)
             mujoco.set_mju_user_warning(before)
         return recorder.run(steps, "")
+
+
+def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
+    """(n - 1,), Hz, of a tree over joint angles whose far end is constrained, ascending.
+
+    `mass` (n, n), `closure` (n,) the far end's height by the angles, `stiffness` (n,). The largest eigenvalues of the
+    inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
+    """
+    from scipy.linalg import eigh
+
+    basis = np.vstack([-closure[1:] / closure[0], np.eye(len(closure) - 1)])
+    root = 1.0 / np.sqrt(stiffness[1:])
+    values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
+    return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
 
 
 def model_text(chain: Chain, step: float) -> str:

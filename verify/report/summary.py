@@ -100,7 +100,7 @@ def environment() -> dict[str, str]:
 
     values = {"date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"), "verify": __version__}
     values |= {"Python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
-    for name in ("numpy", "scipy", "numba", "scikit-fem", "matplotlib", "exudyn", "mujoco", "pin"):
+    for name in ("numpy", "scipy", "numba", "scikit-fem", "matplotlib", "exudyn", "mujoco"):
         with suppress(PackageNotFoundError):  # the engines are optional
             values[name] = version(name)
     return values
