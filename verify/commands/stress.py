@@ -2,20 +2,18 @@
 
 import click
 
-from verify.commands.shared import GATE_FAILED, charts_option, format_options, progress, save_charts, show
+from verify.commands.shared import GATE_FAILED, format_options, progress, show
 
 
 @click.command()
 @click.argument("ids", nargs=-1, metavar="[ID]...")
 @click.option("--slow", is_flag=True, help="Run the checks that take minutes as well.")
 @click.option("--list", "listed", is_flag=True, help="List the checks and run none.")
-@charts_option
 @format_options
 def stress(
     ids: tuple[str, ...],
     slow: bool,
     listed: bool,
-    charts: str | None,
     **formats: bool,
 ) -> None:
     """Run the numerical stress checks and report where each tolerance is exceeded; exit 1 where one fails.
@@ -37,6 +35,5 @@ def stress(
         outcomes = run(checks, progress=step)
     found = result(outcomes)
     show(found, **formats)
-    save_charts(found, charts)
     if not all(one.passed for one in outcomes):
         raise SystemExit(GATE_FAILED)

@@ -1,12 +1,10 @@
 """The chain that every engine gets, what it returns, and which engines there are."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from math import cos, pi, radians
 from typing import Protocol
-
-import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
@@ -129,27 +127,3 @@ def missing(engine: Engine) -> str:
     if find_spec(engine.module) is not None:
         return ""
     return f"{engine.name} is not installed: pip install {engine.package}, or leave it out"
-
-
-@dataclass
-class Recorder:
-    """Samples of a run in relative joint angles."""
-
-    chain: Chain
-    steps: int
-    step: float
-    samples: list[tuple[float, float]] = field(default_factory=list)
-
-    def keep(self, k: int, q: Array) -> None:
-        """Store the state after k steps, about `SAMPLES` times in a run."""
-        if k % max(self.steps // SAMPLES, 1):
-            return
-        middle, at = self.chain.locate(0.5 * self.chain.length)
-        reach = np.append(np.full(middle, self.chain.link), at)
-        height = float(np.sin(np.cumsum(q[: middle + 1])) @ reach)
-        self.samples.append((k * self.step, height))
-
-    def run(self, steps: int, failure: str) -> Run:
-        """The run from its samples."""
-        times, deflection = np.array(self.samples).reshape(-1, 2).T
-        return Run(times, deflection, steps, failure)

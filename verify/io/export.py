@@ -64,8 +64,7 @@ def _mesh(data: Dataset, points: "dict[str, Array]") -> Any:
     import meshio
 
     lines = np.stack([np.arange(len(data.x) - 1), np.arange(1, len(data.x))], axis=1)
-    cells = {name: [values] for name, values in data.cells.items()}
-    return meshio.Mesh(_vectors(data.x, 0), [("line", lines)], point_data=points, cell_data=cells)
+    return meshio.Mesh(_vectors(data.x, 0), [("line", lines)], point_data=points)
 
 
 def _vtu(data: Dataset, path: Path) -> None:
@@ -111,7 +110,7 @@ def _csv(data: Dataset, path: Path) -> None:
 
 def _arrays(data: Dataset) -> "dict[str, Array]":
     series = {data.step_name: data.steps, "deflection": data.deflection}
-    return {"x": data.x, **data.cells, **data.points, **series, **data.histories}
+    return {"x": data.x, **data.points, **series, **data.histories}
 
 
 def _json(data: Dataset, path: Path) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from verify.errors import InputError, near_name
 
-MODULES = ("modes", "waves", "motion_chain")
+MODULES = ("modes", "waves", "motion")
 DIGITS = 60
 HALVINGS = 8
 Error: TypeAlias = Callable[..., float]

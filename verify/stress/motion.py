@@ -1,62 +1,14 @@
-"""Checks of time steps, of friction laws, and of the nonlinear chain."""
+"""Checks of friction laws and of the nonlinear chain."""
 
 from collections.abc import Callable
-from functools import cache, partial
-from math import asin, inf, pi, sin, tanh
-from typing import Any
+from functools import partial
+from math import inf, tanh
 
 import numpy as np
 
-from verify.problem.beam import PointForce
-from verify.problem.slider import GRAVITY, Slider
+from verify.problem.slider import GRAVITY
 from verify.stress.engine import check, worst
-from verify.stress.reference import STRIP, D, pinned_hertz
-
-HERTZ, MODES = 731.0, 3
-STEP = 1.0 / (64 * HERTZ)
-ULP = 1.1e-16
-
-
-def driven(steps: float, slope: float | None = None, samples: int = 2) -> Any:
-    """The strip from rest under a force, in steps where it carries 3 mg with one-way coupling."""
-    from verify.dynamics.simulate import simulate
-
-    slider = None if slope is None else Slider(mass=3e-9, mu=0.23, slope=slope, coupling="one-way")
-    force, at = (PointForce(position=0.37 * STRIP.length, amplitude=1e-3),), [0.29 * STRIP.length]
-    settings: dict[str, Any] = {"model": "analytic", "modes": MODES, "step": STEP if slider else None, "slider": slider}
-    return simulate(STRIP, force, HERTZ, steps * STEP, **settings, at=at, samples=samples)
-
-
-@cache
-def amplitude() -> float:
-    """Largest deflection over 0.2 s, m."""
-    return float(abs(driven(0.2 / STEP, samples=2001).deflection).max())
-
-
-def central_error(steps: float) -> float:
-    """Phase error of central differences in units of rounding per step: (omega dt)^3 / 24 a step."""
-    turn = 2.0 * pi * float(pinned_hertz(STRIP, MODES)) * STEP
-    lag = abs(2.0 * asin(0.5 * turn) - turn) * steps
-    return 2.0 * abs(sin(min(0.5 * lag, 0.5 * pi))) / (ULP * steps)
-
-
-_CENTRAL = ("central differences", central_error)
-
-
-@check("time-stepping", "steps", (1e3, 1e4, 1e5, 1e6, 1e7), 1.0, slow=True, baseline=_CENTRAL)
-def time_stepping(steps: float) -> float:
-    """Modes advanced step by step against their closed form, error over 1.1e-16 per step."""
-    stepped, closed = driven(steps, 310.0), driven(steps)
-    error = abs(stepped.deflection[-1, 0] - closed.deflection[-1, 0])
-    return float(error / (amplitude() * ULP * stepped.statistics.steps))
-
-
-@check("energy-slope", "friction slope, s/m", (1.0, 1e3, 1e6, 1e9), 1e-6)
-def energy_slope(slope: float) -> float:
-    """Energy missing from the balance of a slider on the driven strip, over input work and friction loss."""
-    energy = driven(20_000, slope).energy
-    return float(abs(energy.residual) / (energy.friction_loss + energy.drive_work))
-
+from verify.stress.reference import STRIP, D
 
 SPEED, MU, SLOPE, STEPS = 0.1, 0.23, 310.0, 4096
 
