@@ -51,13 +51,6 @@ class Section:
     folded: bool = False
 
 
-def write_page(run: "RunResult", path: Path, command: str = "") -> None:
-    """Write the report of a run, whole or not at all. Raises InputError where the file cannot be written."""
-    from verify.files import write_whole
-
-    write_whole(path, run_page(run, command), "report")
-
-
 def run_page(run: "RunResult", command: str = "") -> str:
     """The report of a run as HTML."""
     from verify.report.beam_drawing import beam_figure
