@@ -127,7 +127,7 @@ def test_command_prints_rows(capsys):
     ("words", "message"),
     [
         (["modez"], "did you mean 'modes'?"),
-        (["modes", "--sizes", "ten"], "--sizes = 'ten'"),
+        (["modes", "--sizes", "ten"], "--sizes[0] = 'ten'"),
     ],
 )
 def test_bad_options_are_named(words, message, capsys):

@@ -30,18 +30,16 @@ def bench(
 
     from verify.bench import measure, result
     from verify.bench.methods import SETS, Problem, problem_of, questions
-    from verify.errors import InputError, shown
+    from verify.convert import convert, typed
+    from verify.errors import InputError
 
     problem = Problem()
     if scene:
         from verify.scene.load import load_scene
 
         problem = problem_of(load_scene(scene))
-    try:
-        counts = tuple(sorted({int(text) for text in sizes.split(",")})) if sizes else problem.sizes
-    except ValueError:
-        raise InputError(f"--sizes = {shown(sizes)}: give whole numbers, for instance 24,49,98") from None
-    problem = replace(problem, sizes=counts, mode=mode or problem.mode)
+    counts = convert(typed(sizes, tuple[int, ...], "--sizes"), tuple[int, ...], "--sizes") if sizes else problem.sizes
+    problem = replace(problem, sizes=sorted(set(counts)), mode=mode or problem.mode)
     measured = []
     with progress(quiet=any(formats.values())) as step:
         for name in sets or SETS:
