@@ -9,7 +9,7 @@ from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 
-END, INTERRUPTED = "end", "interrupted"
+END = "end"
 """Why a run stopped: at its end, or by the user."""
 NONE, NO_EVENTS, NAN = np.empty(0), np.empty((0, 4)), float("nan")
 
@@ -34,17 +34,12 @@ class Statistics(Struct, frozen=True, kw_only=True):
     unconverged: int = 0
     """Steps in which the contact forces did not converge."""
     stopped: str
-    """end, interrupted, left the beam, came to a step (and where), or diverged; a chain's adds when."""
+    """end, left the beam, came to a step (and where), or diverged; a chain's adds when."""
 
     @property
     def finished(self) -> bool:
         """Whether it reached its end."""
         return self.stopped == END
-
-    @property
-    def interrupted(self) -> bool:
-        """Whether the user stopped it."""
-        return self.stopped.partition(" ")[0] == INTERRUPTED
 
 
 class EnergyBalance(Struct, frozen=True, kw_only=True):

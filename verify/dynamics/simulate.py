@@ -99,7 +99,7 @@ def simulate(
     Returns
     -------
     Motion
-        Up to where the run was interrupted or a slider left the beam (`statistics.stopped`).
+        Up to where a slider left the beam (`statistics.stopped`).
 
     Raises
     ------

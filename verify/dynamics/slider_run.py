@@ -21,7 +21,7 @@ from verify.dynamics.initial_state import (
 )
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
-from verify.dynamics.result import END, INTERRUPTED, ContactState, EnergyBalance, Motion, Statistics
+from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
 from verify.dynamics.step_control import (
     COMPARED,
     CONVERGED,
@@ -163,11 +163,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         closer = ceil(COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
         coarse = self.run(stepped(stages, 2.0 * dt, closer), lambda part: progress(part / 3.0))
-        if coarse.statistics.interrupted:
-            return coarse
         fine = self.run(stepped(stages, dt, closer), lambda part: progress((1.0 + 2.0 * part) / 3.0))
-        if fine.statistics.interrupted:
-            return fine
         moved, cost = change(coarse, fine), coarse.statistics
         note = f"step: not converged, doubling it changes the slider's displacement by {100.0 * moved:.2g} %"
         statistics = replace(
@@ -182,7 +178,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def _checked(self, motion: Motion) -> Motion:
         """A motion with a note on its energy balance. Raises InputError where that does not close."""
-        if motion.statistics.interrupted or motion.energy is None:
+        if motion.energy is None:
             return motion
         dt, request, resolved = motion.statistics.step_s, self.request, True
         if request.step is not None:
@@ -213,7 +209,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             margins = replace(margins, lift_off=fall / request.gravity if request.gravity else inf)
         offsets = np.array(request.starts) - request.starts[0]
         lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
-        left = recorded.stopped not in (END, INTERRUPTED, "diverged", "chatters")
+        left = recorded.stopped not in (END, "diverged", "chatters")
         state = contacts.sliders[:, [lay.X, lay.V]], contacts.feet[:, : lay.TURN + 1].copy(), contacts.contacts.copy()
 
         def each(values: Array) -> Any:

@@ -103,7 +103,7 @@ class Run:
         self.n_steps, self.loop_s, self.set_up_s = 0, 0.0, 0.0
         """Steps; processor time of the compiled loop, and of tables and arrays."""
         self.stopped, self.z = "end", np.empty(0, dtype=complex)
-        """"end", "left the beam" and the like (`Stage.beyond`), "diverged", "interrupted" or "chatters"; the motion of
+        """"end", "left the beam" and the like (`Stage.beyond`), "diverged" or "chatters"; the motion of
         every row at the end, (n,)."""
 
     def recorded(self, z: ComplexArray, dt: float, stopped: str) -> "Run":
@@ -145,44 +145,41 @@ class Run:
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
         self.tally[lay.STEP], first = 0, self._around(stage)
         why, steps = "end", self.n_steps
-        try:
-            while first is not None and self.tally[lay.STEP] < stage.steps.n:
-                edges = stage.edges[first[0] : first[1] + 1] - contacts.start
-                table = stage.table(*first)
-                local = np.zeros((len(table), 2, stage.degree + 1))
-                stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
-                contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self.positions())
-                self.set_up_s += thread_time() - began
-                arrays = (
-                    contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
-                    contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
-                    response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
-                    self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
-                    self.balance,
-                )  # fmt: skip
-                rigid = contacts.restitution is not None
-                if self.n_steps == 0 and not rigid:
-                    advance(0, 1, stage.steps.dt, *arrays)
-                    self.sample_first()
-                while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
-                    began = thread_time()
-                    n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
-                    if rigid:
-                        reason = self._impacts(n_steps, stage, codes, drive, rows, table, edges, factors, places)
-                    else:
-                        reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
-                    self.loop_s += thread_time() - began
-                    self.n_steps = steps + int(self.tally[lay.STEP])
-                    progress(self.n_steps)
-                if reason in (lay.NOT_FINITE, lay.CHATTERS):
-                    why = "diverged" if reason == lay.NOT_FINITE else "chatters"
-                    break
-                began, last = thread_time(), first
-                first = self._around(stage)
-                if reason == lay.OFF_PIECES and first == last:
-                    first = None
-        except KeyboardInterrupt:  # the loop advances all arrays together
-            why = "interrupted"
+        while first is not None and self.tally[lay.STEP] < stage.steps.n:
+            edges = stage.edges[first[0] : first[1] + 1] - contacts.start
+            table = stage.table(*first)
+            local = np.zeros((len(table), 2, stage.degree + 1))
+            stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
+            contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self.positions())
+            self.set_up_s += thread_time() - began
+            arrays = (
+                contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
+                contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
+                response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
+                self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
+                self.balance,
+            )  # fmt: skip
+            rigid = contacts.restitution is not None
+            if self.n_steps == 0 and not rigid:
+                advance(0, 1, stage.steps.dt, *arrays)
+                self.sample_first()
+            while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
+                began = thread_time()
+                n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
+                if rigid:
+                    reason = self._impacts(n_steps, stage, codes, drive, rows, table, edges, factors, places)
+                else:
+                    reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
+                self.loop_s += thread_time() - began
+                self.n_steps = steps + int(self.tally[lay.STEP])
+                progress(self.n_steps)
+            if reason in (lay.NOT_FINITE, lay.CHATTERS):
+                why = "diverged" if reason == lay.NOT_FINITE else "chatters"
+                break
+            began, last = thread_time(), first
+            first = self._around(stage)
+            if reason == lay.OFF_PIECES and first == last:
+                first = None
         self.z = rows[lay.Z_RE] + 1j * rows[lay.Z_IM]
         if why == "end" and self.tally[lay.STEP] < stage.steps.n:
             if contacts.moving_load:

@@ -78,8 +78,6 @@ class MotorCase(Struct, frozen=True, kw_only=True):
             **asdict(self), duration=periods * self.period, samples=samples, continue_from=before,
             prescribed_speed=prescribed_speed, fixed_position=prescribed_speed is not None,
         )  # fmt: skip
-        if run.statistics.interrupted:
-            raise KeyboardInterrupt
         return run
 
 

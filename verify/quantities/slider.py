@@ -106,8 +106,6 @@ def slider_run(
     steps = scene.motion.steps_per_period if scene.motion else None
     run = _simulated(cache, arguments, slider=slider.of(scene), step=slider.step, steps_per_period=steps, **more)
     status = run.statistics
-    if status.interrupted:
-        raise KeyboardInterrupt
     if not status.finished:
         raise InputError(f"time = {arguments['duration']:.12g} s: the slider {status.stopped}, give a shorter time")
     if status.step_change is not None and status.step_change > CONVERGED:

@@ -114,8 +114,6 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2),
                 steps_per_period=self.steps_per_period,
             )
-            if runs[model].statistics.interrupted:
-                raise KeyboardInterrupt
         chain = runs[bounding()[0].name]
         warnings, valid = _warnings(runs)
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
