@@ -162,8 +162,10 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             return self._checked(self.run(stages, progress))
         closer = ceil(COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
-        coarse = self.run(stepped(stages, 2.0 * dt, closer), lambda part: progress(part / 3.0))
-        fine = self.run(stepped(stages, dt, closer), lambda part: progress((1.0 + 2.0 * part) / 3.0))
+        rough = stepped(stages, 2.0 * dt, closer)
+        close = [one.stepped(0.5 * of.steps.dt, closer) for one, of in zip(stages, rough, strict=True)]  # samples fit
+        coarse = self.run(rough, lambda part: progress(part / 3.0))
+        fine = self.run(close, lambda part: progress((1.0 + 2.0 * part) / 3.0))
         moved, cost = change(coarse, fine), coarse.statistics
         note = f"step: not converged, doubling it changes the slider's displacement by {100.0 * moved:.2g} %"
         statistics = replace(
@@ -180,11 +182,14 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """A motion with a note on its energy balance. Raises InputError where that does not close."""
         if motion.energy is None:
             return motion
-        dt, request, resolved = motion.statistics.step_s, self.request, True
+        statistics, request, resolved = motion.statistics, self.request, True
+        dt = statistics.step_s
         if request.step is not None:
             z = self._initial(self._contacts(), loaded=False)
             resolved = unresolved(self.stages, z, request.beam.length, dt) <= UNRESOLVED
         notes = check_energy(motion.energy, dt, request.frequency_hz, request.feet, resolved)
+        if statistics.unconverged:
+            notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)
         return replace(motion, notes=(*motion.notes, *notes))
 
     def run(self, stages: list[Stage], progress: Progress) -> Motion:

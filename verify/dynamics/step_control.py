@@ -111,7 +111,7 @@ def check_energy(energy: EnergyBalance, dt: float, frequency_hz: float, feet: bo
     if not np.isfinite(exchanged):
         raise InputError(f"step = {dt:.3g} s: the energy overflows; give smaller forces or a lighter slider")
     rest = energy.residual if resolved else energy.slider_residual
-    missed = max(-energy.friction_loss, 0.0 if feet else abs(rest))
+    missed = max(-energy.friction_loss, energy.created, 0.0 if feet else abs(rest))
     if missed > MOST_GAIN * exchanged > 0.0:
         raise InputError(
             f"step = {dt:.3g} s: the energy balance misses {missed:.3g} J of {exchanged:.3g} J exchanged; give a step "
