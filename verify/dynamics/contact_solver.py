@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
-from verify.dynamics.friction import coulomb_force, elastic_force, held_force, tanh_force
+from verify.dynamics.friction import coulomb_force, elastic_force, held_force, line_force, tanh_force
 from verify.jit import FAST, inline
 
 SWEEPS = 100
@@ -180,6 +180,98 @@ def friction_force(
 
 
 @inline
+def slide(b: int, dt: float, sliders: Array, points: Array, contacts: Array, indices: Indices, spans: Array) -> float:
+    """Friction of all points on the feet of slider b that a beam does not respond to; what is left of its momentum, N.
+
+    The points are coupled by the slider's gain of speed alone, and friction falls with it: one root, by Newton's method
+    between bounds. It may lie at a gain that stops a point, where what the other points leave is shared by the points
+    at rest as their limits go. Sets of `spans`: 1 or 0.5 (from an event in the step) of a point at rest, mean loss.
+    """
+    light, v, steepness = dt * sliders[b, lay.INVERSE_MASS], sliders[b, lay.V], sliders[b, lay.STEEPNESS]
+    mu, mu_static, pulled = sliders[b, lay.MU], sliders[b, lay.MU_STATIC], sliders[b, lay.GAINED]
+    most, total = 0.0, 0.0
+    for i in range(points.shape[0]):
+        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
+            most += contacts[i, lay.NORMAL] * mu_static
+            total += contacts[i, lay.WAS_FRICTION]
+    low, high = pulled - 1.001 * light * most, pulled + 1.001 * light * most
+    gained, late = min(max(pulled + light * total, low), high), max(1.0 - 2.0 / (light * most * steepness + 1e-300), 0.0)
+    least, top, miss = 0.0, 0.0, 0.0
+    for _ in range(SWEEPS):
+        least, top, slope = 0.0, 0.0, 0.0
+        for i in range(points.shape[0]):
+            if indices[i, lay.OF_SLIDER] != b or contacts[i, lay.NORMAL] <= 0.0:
+                continue
+            kinetic, static = mu * contacts[i, lay.NORMAL], mu_static * contacts[i, lay.NORMAL]
+            mean, rise, stuck = contacts[i, lay.MEAN], contacts[i, lay.RISE], contacts[i, lay.WAS_STUCK] > 0.0
+            start = v - mean + 0.5 * rise
+            rounding = 1e-13 * (abs(v) + abs(mean) + abs(rise) + light * kinetic)
+            if points[i, lay.TANGENTIAL] > 0.0:
+                stiff, depth, was = points[i, lay.TANGENTIAL], contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH]
+                stiff *= 0.5 * dt if was > 0.0 else dt * depth / (depth - was)
+                trial = points[i, lay.TANGENTIAL] * contacts[i, lay.STRETCH] - stiff * (v + 0.5 * gained - mean)
+                force, spans[i, 0] = elastic_force(trial, stiff, static if stuck else kinetic, kinetic, steepness)
+                soft = spans[i, 0]
+                if steepness > 0.0:
+                    soft = steepness * (kinetic - force * force / kinetic)
+                    soft /= soft + stiff
+                spans[i, 4], spans[i, 5], slope = force, force, slope - 0.5 * stiff * soft
+            else:
+                end = start + gained - rise
+                spans[i, 4], spans[i, 5], fall = line_force(
+                    start, end, light, kinetic, static, steepness, late, stuck, rounding
+                )
+                rests = 1.0 if stuck or abs(start) <= rounding else 0.5
+                spans[i, 0], slope = rests if spans[i, 4] < spans[i, 5] else 0.0, slope + fall
+                # where the point stops, if the line to there is steep enough
+                stops = steepness == 0.0 and abs(start) < light * (static + kinetic) and abs(end) > rounding
+                spans[i, 6] = rise - start if stops else gained
+            least, top = least + spans[i, 4], top + spans[i, 5]
+        miss = gained - pulled - light * top
+        if miss > 0.0:
+            high = gained
+        else:
+            miss = min(gained - pulled - light * least, 0.0)
+            low = gained
+        if abs(miss) <= 1e-14 * light * most:
+            break
+        after = gained - miss / (1.0 - light * slope)
+        if not low < after < high:
+            after = 0.5 * (low + high)
+        for i in range(points.shape[0] if steepness == 0.0 else 0):  # to the first stop on the line
+            if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0 and points[i, lay.TANGENTIAL] == 0.0:
+                if min(gained, after) < spans[i, 6] < max(gained, after):
+                    after = spans[i, 6]
+        if after == gained or after == low or after == high:
+            break
+        gained = after
+    share, total = 0.5, 0.0
+    if light > 0.0 and top > least:
+        share = min(max(((gained - pulled) / light - least) / (top - least), 0.0), 1.0)
+    for i in range(points.shape[0]):
+        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
+            contacts[i, lay.FRICTION] = spans[i, 4] + share * (spans[i, 5] - spans[i, 4])
+            total += contacts[i, lay.FRICTION]
+    sliders[b, lay.GAINED] = pulled + light * total
+    for i in range(points.shape[0]):
+        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
+            force, kinetic = contacts[i, lay.FRICTION], mu * contacts[i, lay.NORMAL]
+            contacts[i, lay.SLIP] = v + 0.5 * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
+            start = v - contacts[i, lay.MEAN] + 0.5 * contacts[i, lay.RISE]
+            end, spans[i, 1] = start + gained - contacts[i, lay.RISE], -force * contacts[i, lay.SLIP]
+            if points[i, lay.TANGENTIAL] > 0.0:
+                continue
+            if steepness > 0.0:
+                t = kinetic * np.tanh(steepness * end)
+                spans[i, 1] += late * t * (end - contacts[i, lay.SLIP])
+            elif start * end <= 0.0 or spans[i, 0] > 0.0:  # on both sides of the reversal
+                side = -1.0 if start < 0.0 else 1.0
+                before = abs(start) / (light * (kinetic + side * force) + abs(start - end) + 1e-300)
+                spans[i, 1] = 0.5 * kinetic * (abs(start) * before + abs(end) * (1.0 - before))
+    return abs(gained - sliders[b, lay.GAINED]) / light if light > 0.0 else 0.0
+
+
+@inline
 def solve(
     dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
     shapes: Array, response: Array, couplings: Array, spans: Array, block: Array, balance: Array,
@@ -196,16 +288,13 @@ def solve(
         feet[k, lay.LIFTED], feet[k, lay.TURNED] = dt * feet[k, lay.INVERSE_FOOT_MASS] * press, 0.0
     for j in range(len(response)):
         response[j] = 0.0
-    coupled, largest, pressing = law == lay.BILATERAL, 0.0, False
+    alone, coupled, largest = law == lay.SPRING and not two_way, law == lay.BILATERAL, 0.0
     for i in range(points.shape[0]):
-        b = indices[i, lay.OF_SLIDER]
         contacts[i, lay.WAS_FRICTION] = contacts[i, lay.FRICTION]
         contacts[i, lay.NORMAL], contacts[i, lay.FRICTION], contacts[i, lay.SLIP] = 0.0, 0.0, 0.0
         contacts[i, lay.WAS_STUCK], contacts[i, lay.STUCK] = contacts[i, lay.STUCK], 0.0
         contacts[i, lay.OWN] = own_product(i, 0, shapes) if two_way else 0.0
-        many = points.shape[0] > 1 and (two_way or sliders[b, lay.INVERSE_MASS] > 0.0)
-        coupled = coupled or many or (points[i, lay.DASHPOT] > 0.0 and two_way)
-        pressing = pressing or (points[i, lay.DASHPOT] > 0.0 and not two_way)  # normal forces come first, by themselves
+        coupled = coupled or (points.shape[0] > 1 and two_way) or points[i, lay.DASHPOT] > 0.0
     sweeps, changed = 0, 0.0
     while sweeps < SWEEPS:
         changed = 0.0
@@ -214,7 +303,7 @@ def solve(
             if law == lay.SPRING and contacts[i, lay.DEPTH] <= 0.0:
                 continue
             b, k = indices[i, lay.OF_SLIDER], indices[i, lay.OF_FOOT]
-            if sweeps == 1 or law == lay.BILATERAL or (points[i, lay.DASHPOT] > 0.0 and (two_way or pressing)):
+            if sweeps == 1 or law == lay.BILATERAL or points[i, lay.DASHPOT] > 0.0:
                 normal = normal_force(
                     i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
                 )
@@ -227,7 +316,7 @@ def solve(
                     feet[k, lay.LIFTED] += push * feet[k, lay.INVERSE_FOOT_MASS]
                     feet[k, lay.TURNED] += push * points[i, lay.ARM] * feet[k, lay.INVERSE_INERTIA]
                 changed, largest = max(changed, abs(more)), max(largest, normal)
-            if pressing:
+            if alone:  # normal forces do not depend on friction
                 continue
             force = friction_force(i, dt, codes, sliders, points, contacts, indices, shapes, response, spans)
             more = force - contacts[i, lay.FRICTION]
@@ -237,16 +326,16 @@ def solve(
                 if two_way:
                     respond(i, 0, more, shapes, response)
                 changed = max(changed, abs(more))
-        if pressing:
-            pressing = changed > TOLERANCE * largest and sweeps < SWEEPS - 1
-        elif changed <= TOLERANCE * largest or not coupled:
+        if changed <= TOLERANCE * largest or not coupled:
             changed = 0.0
             break
     balance[lay.SWEEPS] += sweeps
-    if sweeps == SWEEPS and changed > TOLERANCE * largest:
-        changed = solve_block(dt, codes, sliders, points, contacts, indices, shapes, response, spans, block)
+    for b in range(sliders.shape[0] if alone else 0):
+        changed = max(changed, slide(b, dt, sliders, points, contacts, indices, spans))
+    if changed > TOLERANCE * largest and two_way:
+        changed = solve_block(dt, sliders, points, contacts, indices, shapes, response, spans, block)
         balance[lay.BLOCKS] += 1.0
-        balance[lay.UNCONVERGED] += 1.0 if changed > 1e-9 * largest else 0.0
+    balance[lay.UNCONVERGED] += 1.0 if changed > 1e-9 * largest else 0.0
     balance[lay.RESIDUAL] = max(balance[lay.RESIDUAL], changed)
     for i in range(points.shape[0]):
         contacts[i, lay.STUCK] = spans[i, 0] if contacts[i, lay.NORMAL] > 0.0 else 0.0
@@ -261,23 +350,18 @@ def solve(
 
 @inline
 def solve_block(
-    dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array,
-    response: Array, spans: Array, block: Array,
+    dt: float, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array, response: Array,
+    spans: Array, block: Array,
 ) -> float:  # fmt: skip
-    """Friction of all rigid points together: Newton's method on active sets; last change.
-
-    By their mean slips where the beam responds, else by those at the end of the step: no mean slip reverses the speed
-    of a slider without a beam's response in every step.
-    """
-    n, two_way, changed = points.shape[0], codes[lay.TWO_WAY] > 0, 0.0
-    part = 0.5 if two_way or codes[lay.LAW] != lay.SPRING else 1.0
+    """Friction of all rigid points together, which a beam responds to: Newton's method on active sets; last change."""
+    n, changed = points.shape[0], 0.0
     for _ in range(4 * n + 20):
         for i in range(n):  # row i: what the law asks of all changes of force
             b, force = indices[i, lay.OF_SLIDER], contacts[i, lay.FRICTION]
             most = sliders[b, lay.MU] * max(contacts[i, lay.NORMAL], 0.0)
-            slip = sliders[b, lay.V] + part * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
-            slip -= product(i, 0, shapes, response) if two_way else (part - 0.5) * contacts[i, lay.RISE]
-            own = part * dt * sliders[b, lay.INVERSE_MASS] + contacts[i, lay.OWN] + 1e-300
+            slip = sliders[b, lay.V] + 0.5 * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
+            slip -= product(i, 0, shapes, response)
+            own = 0.5 * dt * sliders[b, lay.INVERSE_MASS] + contacts[i, lay.OWN] + 1e-300
             diagonal, slope, miss = 0.0, 1.0, slip
             if points[i, lay.TANGENTIAL] > 0.0 or most == 0.0:
                 diagonal, slope, miss = 1.0, 0.0, 0.0
@@ -290,8 +374,8 @@ def solve_block(
             for k in range(n):
                 block[i, k] = 0.0
                 if slope != 0.0 and sliders[b, lay.INVERSE_MASS] > 0.0 and indices[k, lay.OF_SLIDER] == b:
-                    block[i, k] = part * slope * dt * sliders[b, lay.INVERSE_MASS]
-                for j in range(shapes.shape[2] if two_way and slope != 0.0 else 0):
+                    block[i, k] = 0.5 * slope * dt * sliders[b, lay.INVERSE_MASS]
+                for j in range(shapes.shape[2] if slope != 0.0 else 0):
                     block[i, k] += slope * shapes[0, i, j] * shapes[2, k, j]
             block[i, i] = (block[i, i] + diagonal) * (1.0 + 1e-10)  # points that share one slider alone
             block[i, n] = -miss
@@ -306,15 +390,14 @@ def solve_block(
             b, more = indices[i, lay.OF_SLIDER], block[i, n] / block[i, i]
             contacts[i, lay.FRICTION] += more
             sliders[b, lay.GAINED] += dt * sliders[b, lay.INVERSE_MASS] * more
-            if two_way:
-                respond(i, 0, more, shapes, response)
+            respond(i, 0, more, shapes, response)
             changed = max(changed, abs(more))
         if changed == 0.0 or changed <= 1e-13 * abs(contacts[0, lay.FRICTION]):
             break
     for i in range(n):
         b = indices[i, lay.OF_SLIDER]
         contacts[i, lay.SLIP] = sliders[b, lay.V] + 0.5 * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
-        contacts[i, lay.SLIP] -= product(i, 0, shapes, response) if two_way else 0.0
+        contacts[i, lay.SLIP] -= product(i, 0, shapes, response)
     return changed
 
 
