@@ -194,8 +194,13 @@ def slide(b: int, dt: float, sliders: Array, points: Array, contacts: Array, ind
         if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
             most += contacts[i, lay.NORMAL] * mu_static
             total += contacts[i, lay.WAS_FRICTION]
+    gained, late = pulled + light * total, max(1.0 - 2.0 / (light * most * steepness + 1e-300), 0.0)
+    for i in range(points.shape[0]):  # a point at rest first: between the limits of friction it stays
+        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0 and contacts[i, lay.WAS_STUCK] > 0.0:
+            if points[i, lay.TANGENTIAL] == 0.0:
+                gained = contacts[i, lay.MEAN] + 0.5 * contacts[i, lay.RISE] - v
     low, high = pulled - 1.001 * light * most, pulled + 1.001 * light * most
-    gained, late = min(max(pulled + light * total, low), high), max(1.0 - 2.0 / (light * most * steepness + 1e-300), 0.0)
+    gained = min(max(gained, low), high)
     least, top, miss = 0.0, 0.0, 0.0
     for _ in range(SWEEPS):
         least, top, slope = 0.0, 0.0, 0.0

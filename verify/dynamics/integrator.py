@@ -272,7 +272,7 @@ def advance(
     for _ in range(n_steps if n_steps > 0 else 1):
         step = tally[lay.STEP]
         time, mark = step * dt, 4 * step
-        if not find_pieces(0.5 * dt if spring else 0.0, edges, sliders, points, indices):
+        if not find_pieces(0.5 * dt if spring and n_steps > 0 else 0.0, edges, sliders, points, indices):
             return lay.OFF_PIECES
         for when in range(0, last + 1 if n_steps > 0 else 0):
             if when == MIDDLE:
@@ -292,7 +292,7 @@ def advance(
             feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
             feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
         for when in range(last + 1):
-            if when == HALF or (spring and when != MIDDLE) or (n_steps == 0 and when != START):
+            if when == HALF or (spring and when != MIDDLE and n_steps > 0) or (n_steps == 0 and when != START):
                 continue
             ready = mark + 4 if when == END and not two_way else mark + when  # the start of the next step as well
             look(when, ready, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts,

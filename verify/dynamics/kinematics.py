@@ -177,7 +177,20 @@ def look(
             contacts[i, lay.TILT_END], contacts[i, lay.DRIFT_END] = tilt, drift
         on = v - slope * rise if codes[lay.FOLLOWING] > 0 else v
         climb = rise + slope * (on + lever * (turn + bend * on))
-        if when == START:
+        if spring:
+            image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
+            depth = image * level - feet[k, lay.HEIGHT] - points[i, lay.ARM] * feet[k, lay.PITCH]
+            contacts[i, lay.WAS_DEPTH] = contacts[i, lay.DEPTH]
+            if when == START:
+                contacts[i, lay.WAS_DEPTH] = points[i, lay.INSET] + face * depth
+                continue
+            v *= sliders[b, lay.FREE]
+            lift, ramp = image * (rise + slope * (v + lever * (turn + bend * v))), image * slope * (v + lever * bend * v)
+            contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope
+            contacts[i, lay.DEPTH], contacts[i, lay.MEAN] = points[i, lay.INSET] + face * depth, along
+            contacts[i, lay.LIFT], contacts[i, lay.RAMP], contacts[i, lay.RISE] = lift, ramp, along - contacts[i, lay.BEFORE]
+            contacts[i, lay.CLOSING] = face * (lift - feet[k, lay.CLIMB] - points[i, lay.ARM] * feet[k, lay.TURN])
+        elif when == START:
             contacts[i, lay.START], contacts[i, lay.MEAN], contacts[i, lay.LIFT] = along, share * along, share * lift
             if codes[lay.LAW] == lay.GIVEN:
                 contacts[i, lay.RISE_RATE] = climb
@@ -188,22 +201,9 @@ def look(
             contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
             contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
         elif when == MIDDLE:
-            image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
             contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope
-            if not spring:
-                contacts[i, lay.MEAN] += share * along
-                contacts[i, lay.LIFT] += share * lift
-            else:
-                v *= sliders[b, lay.FREE]
-                contacts[i, lay.MEAN] = along
-                lift = image * (rise + slope * (v + lever * (turn + bend * v)))
-                contacts[i, lay.LIFT] = lift
-                contacts[i, lay.RAMP] = image * slope * (v + lever * bend * v)
-                contacts[i, lay.WAS_DEPTH] = contacts[i, lay.DEPTH]
-                depth = image * level - feet[k, lay.HEIGHT] - points[i, lay.ARM] * feet[k, lay.PITCH]
-                contacts[i, lay.DEPTH] = points[i, lay.INSET] + face * depth
-                contacts[i, lay.CLOSING] = face * (lift - feet[k, lay.CLIMB] - points[i, lay.ARM] * feet[k, lay.TURN])
-                contacts[i, lay.RISE] = along - contacts[i, lay.BEFORE]
+            contacts[i, lay.MEAN] += share * along
+            contacts[i, lay.LIFT] += share * lift
 
 
 @inline(fastmath=FAST)

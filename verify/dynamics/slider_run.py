@@ -198,7 +198,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """One run through these stages. Raises InputError."""
         began, request, contacts = perf_counter(), self.request, self._contacts()
         z = self._initial(contacts)
-        kinetic, elastic = _kinetic(request.sliders, contacts), _elastic(contacts)
+        kinetic = _kinetic(request.sliders, contacts)
         beam = _beam_energy(self.basis, stages[0], z, 0.0)
         first = (
             stages[0].deflection(z, np.zeros(1), request.points),
@@ -211,7 +211,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         )
         gains = (
             _kinetic(request.sliders, contacts) - kinetic,
-            float(recorded.sums[:, lay.STORED].sum()) - elastic,
+            float(recorded.sums[:, lay.STORED].sum()),
             *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam).tolist(),
             float(beam.sum()),
         )
@@ -334,12 +334,6 @@ def _kinetic(sliders: tuple[Slider, ...], contacts: Contacts) -> float:
     across = inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2
     rise = contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2 if bilateral else 0.0
     return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum() + rise)
-
-
-def _elastic(contacts: Contacts) -> float:
-    """Of normal contact springs, J."""
-    depth = np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
-    return 0.5 * float(contacts.points[:, lay.STIFF] @ depth**2)
 
 
 def _beam_energy(basis: TimeBasis | None, stage: Stage, z: ComplexArray, t: float | None) -> Array:

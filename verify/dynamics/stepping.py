@@ -262,8 +262,10 @@ class _Run:
         self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
         self.first[:, lay.KEPT_TOUCH] = 1.0
         if self.contacts.law == lay.SPRING:
-            load = self.contacts.points[:, lay.STIFF] * np.maximum(contacts[:, lay.DEPTH], 0.0)
-            self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
+            depth, owner = np.maximum(contacts[:, lay.WAS_DEPTH], 0.0), self.contacts.indices[:, lay.OF_SLIDER]
+            load = self.contacts.points[:, lay.STIFF] * depth
+            self.first[:, lay.KEPT_NORMAL] = np.bincount(owner, load, len(sliders))
+            self.sums[:, lay.STORED] = -0.5 * np.bincount(owner, load * depth, len(sliders))
             self.first[:, lay.KEPT_SURFACE] = np.nan
             return
         load, slip, steepness = (
@@ -276,7 +278,7 @@ class _Run:
         self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
 
     def store(self, dt: float) -> None:
-        """Energy of the normal springs at the end of the last step, with the depths of its middle drawn on."""
+        """Add the energy of the normal springs at the end of the last step, with the depths of its middle drawn on."""
         p, c, feet = self.contacts.points, self.contacts.contacts, self.contacts.feet
         if len(feet):
             foot = feet[self.contacts.indices[:, lay.OF_FOOT]]
