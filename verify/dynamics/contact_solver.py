@@ -196,9 +196,9 @@ def slide(b: int, dt: float, sliders: Array, points: Array, contacts: Array, ind
             total += contacts[i, lay.WAS_FRICTION]
     gained, late = pulled + light * total, max(1.0 - 2.0 / (light * most * steepness + 1e-300), 0.0)
     for i in range(points.shape[0]):  # a point at rest first: between the limits of friction it stays
-        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0 and contacts[i, lay.WAS_STUCK] > 0.0:
-            if points[i, lay.TANGENTIAL] == 0.0:
-                gained = contacts[i, lay.MEAN] + 0.5 * contacts[i, lay.RISE] - v
+        rests = contacts[i, lay.WAS_STUCK] > 0.0 and points[i, lay.TANGENTIAL] == 0.0
+        if rests and indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
+            gained = contacts[i, lay.MEAN] + 0.5 * contacts[i, lay.RISE] - v
     low, high = pulled - 1.001 * light * most, pulled + 1.001 * light * most
     gained = min(max(gained, low), high)
     least, top, miss = 0.0, 0.0, 0.0
@@ -244,10 +244,10 @@ def slide(b: int, dt: float, sliders: Array, points: Array, contacts: Array, ind
         if not low < after < high:
             after = 0.5 * (low + high)
         for i in range(points.shape[0] if steepness == 0.0 else 0):  # to the first stop on the line
-            if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0 and points[i, lay.TANGENTIAL] == 0.0:
-                if min(gained, after) < spans[i, 6] < max(gained, after):
-                    after = spans[i, 6]
-        if after == gained or after == low or after == high:
+            rigid = contacts[i, lay.NORMAL] > 0.0 and points[i, lay.TANGENTIAL] == 0.0
+            if rigid and indices[i, lay.OF_SLIDER] == b and min(gained, after) < spans[i, 6] < max(gained, after):
+                after = spans[i, 6]
+        if (after - gained) * (after - low) * (after - high) == 0.0:
             break
         gained = after
     share, total = 0.5, 0.0

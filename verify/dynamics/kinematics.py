@@ -168,7 +168,7 @@ def look(
         along = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
         lift, share = rise + slope * lever * over, 4.0 / 6.0 if when == MIDDLE else 1.0 / 6.0  # Simpson's rule
         if codes[lay.FOLLOWING] > 0:
-            tilt, drift = rise * (over + bend * v) - gravity * slope, -slope * rise
+            tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise
             if when == START:
                 if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
                     sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
