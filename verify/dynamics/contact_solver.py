@@ -18,6 +18,8 @@ TOLERANCE = 1e-12
 """Change of a force in a sweep, of the largest normal force, at which sweeps have converged."""
 DAMPING = 0.1
 """Share of the slip at the end of a step in the condition of a sticking point."""
+START, STOP, LEAST, MOST = range(4, 8)
+"""Columns of `spans` in `slide`: relative speed at the start, gain that stops the point, bounds of its friction."""
 TRANSVERSE = 1
 """Row of `shapes` of the normal direction; responses are two rows further."""
 
@@ -180,100 +182,106 @@ def friction_force(
 
 
 @inline
-def slide(b: int, dt: float, sliders: Array, points: Array, contacts: Array, indices: Indices, spans: Array) -> float:
-    """Friction of all points on the feet of slider b that a beam does not respond to; what is left of its momentum, N.
+def slide(
+    last: int, dt: float, sliders: Array, points: Array, contacts: Array, indices: Indices, spans: Array
+) -> float:
+    """Friction of a slider, its last point this one, on feet without response of the beam; what its momentum lacks, N.
 
     The points are coupled by the slider's gain of speed alone, and friction falls with it: one root, by Newton's method
     between bounds. It may lie at a gain that stops a point, where what the other points leave is shared by the points
-    at rest as their limits go. Sets of `spans`: 1 or 0.5 (from an event in the step) of a point at rest, mean loss.
+    at rest as their limits go. Sets of `spans` 1 or 0.5 (from an event in the step) of a point at rest, and mean loss.
     """
-    light, v, steepness = dt * sliders[b, lay.INVERSE_MASS], sliders[b, lay.V], sliders[b, lay.STEEPNESS]
-    mu, mu_static, pulled = sliders[b, lay.MU], sliders[b, lay.MU_STATIC], sliders[b, lay.GAINED]
-    most, total = 0.0, 0.0
-    for i in range(points.shape[0]):
-        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
-            most += contacts[i, lay.NORMAL] * mu_static
-            total += contacts[i, lay.WAS_FRICTION]
-    gained, late = pulled + light * total, max(1.0 - 2.0 / (light * most * steepness + 1e-300), 0.0)
-    for i in range(points.shape[0]):  # a point at rest first: between the limits of friction it stays
-        rests = contacts[i, lay.WAS_STUCK] > 0.0 and points[i, lay.TANGENTIAL] == 0.0
-        if rests and indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
-            gained = contacts[i, lay.MEAN] + 0.5 * contacts[i, lay.RISE] - v
+    slider, first = sliders[indices[last, lay.OF_SLIDER]], last
+    while first > 0 and indices[first - 1, lay.OF_SLIDER] == indices[last, lay.OF_SLIDER]:
+        first -= 1
+    light, v, steepness, pulled = (
+        dt * slider[lay.INVERSE_MASS],
+        slider[lay.V],
+        slider[lay.STEEPNESS],
+        slider[lay.GAINED],
+    )
+    most, gained, rest, resting = 0.0, pulled, 0.0, False
+    for i in range(first, last + 1):
+        touch, work = contacts[i], spans[i]
+        most += touch[lay.NORMAL] * slider[lay.MU_STATIC]
+        gained += light * touch[lay.WAS_FRICTION]
+        work[START] = v - touch[lay.MEAN] + 0.5 * touch[lay.RISE]
+        if touch[lay.WAS_STUCK] > 0.0 and touch[lay.NORMAL] > 0.0:
+            rest, resting = touch[lay.RISE] - work[START], True
     low, high = pulled - 1.001 * light * most, pulled + 1.001 * light * most
-    gained = min(max(gained, low), high)
-    least, top, miss = 0.0, 0.0, 0.0
-    for _ in range(SWEEPS):
+    gained = min(max(rest if resting else gained, low), high)  # between the limits of friction a point at rest stays
+    late = max(1.0 - 2.0 / (light * most * steepness + 1e-300), 0.0)
+    least, top, miss, exact = 0.0, 0.0, 0.0, steepness > 0.0 and first == last and points[last, lay.TANGENTIAL] == 0.0
+    if exact:
+        kinetic, rise, late = slider[lay.MU] * contacts[last, lay.NORMAL], contacts[last, lay.RISE], 0.0
+        least = tanh_force(spans[last, START], rise - pulled, light, kinetic, steepness)
+        spans[last, 0], spans[last, LEAST], spans[last, MOST], gained = 0.0, least, least, pulled + light * least
+    for _ in range(0 if exact else SWEEPS):
         least, top, slope = 0.0, 0.0, 0.0
-        for i in range(points.shape[0]):
-            if indices[i, lay.OF_SLIDER] != b or contacts[i, lay.NORMAL] <= 0.0:
-                continue
-            kinetic, static = mu * contacts[i, lay.NORMAL], mu_static * contacts[i, lay.NORMAL]
-            mean, rise, stuck = contacts[i, lay.MEAN], contacts[i, lay.RISE], contacts[i, lay.WAS_STUCK] > 0.0
-            start = v - mean + 0.5 * rise
-            rounding = 1e-13 * (abs(v) + abs(mean) + abs(rise) + light * kinetic)
-            if points[i, lay.TANGENTIAL] > 0.0:
-                stiff, depth, was = points[i, lay.TANGENTIAL], contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH]
-                stiff *= 0.5 * dt if was > 0.0 else dt * depth / (depth - was)
-                trial = points[i, lay.TANGENTIAL] * contacts[i, lay.STRETCH] - stiff * (v + 0.5 * gained - mean)
-                force, spans[i, 0] = elastic_force(trial, stiff, static if stuck else kinetic, kinetic, steepness)
-                soft = spans[i, 0]
+        for i in range(first, last + 1):
+            touch, work, stiff = contacts[i], spans[i], points[i, lay.TANGENTIAL]
+            kinetic, static = slider[lay.MU] * touch[lay.NORMAL], slider[lay.MU_STATIC] * touch[lay.NORMAL]
+            stuck, start, rise, work[STOP] = touch[lay.WAS_STUCK] > 0.0, work[START], touch[lay.RISE], gained
+            if stiff > 0.0:
+                depth, was = touch[lay.DEPTH], touch[lay.WAS_DEPTH]
+                since = 0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was)
+                trial = stiff * (touch[lay.STRETCH] - since * (v + 0.5 * gained - touch[lay.MEAN]))
+                force, soft = elastic_force(trial, stiff * since, static if stuck else kinetic, kinetic, steepness)
+                work[0], work[LEAST], work[MOST] = soft, force, force
                 if steepness > 0.0:
-                    soft = steepness * (kinetic - force * force / kinetic)
-                    soft /= soft + stiff
-                spans[i, 4], spans[i, 5], slope = force, force, slope - 0.5 * stiff * soft
+                    soft = steepness * (kinetic - force * force / (kinetic + 1e-300))
+                    soft /= soft + stiff * since
+                slope -= 0.5 * stiff * since * soft
             else:
-                end = start + gained - rise
-                spans[i, 4], spans[i, 5], fall = line_force(
+                rounding, end = 1e-13 * (abs(v) + abs(start) + abs(rise) + light * kinetic), start + gained - rise
+                work[LEAST], work[MOST], fall = line_force(
                     start, end, light, kinetic, static, steepness, late, stuck, rounding
                 )
-                rests = 1.0 if stuck or abs(start) <= rounding else 0.5
-                spans[i, 0], slope = rests if spans[i, 4] < spans[i, 5] else 0.0, slope + fall
-                # where the point stops, if the line to there is steep enough
-                stops = steepness == 0.0 and abs(start) < light * (static + kinetic) and abs(end) > rounding
-                spans[i, 6] = rise - start if stops else gained
-            least, top = least + spans[i, 4], top + spans[i, 5]
+                slope += fall
+                work[0] = 0.0
+                if work[LEAST] < work[MOST]:
+                    work[0] = 1.0 if stuck or abs(start) <= rounding else 0.5
+                elif steepness == 0.0 and abs(start) < light * (static + kinetic) and abs(end) > rounding:
+                    work[STOP] = rise - start
+            least, top = least + work[LEAST], top + work[MOST]
         miss = gained - pulled - light * top
         if miss > 0.0:
             high = gained
         else:
-            miss = min(gained - pulled - light * least, 0.0)
-            low = gained
-        if abs(miss) <= 1e-14 * light * most:
-            break
+            miss, low = min(gained - pulled - light * least, 0.0), gained
         after = gained - miss / (1.0 - light * slope)
         if not low < after < high:
             after = 0.5 * (low + high)
-        for i in range(points.shape[0] if steepness == 0.0 else 0):  # to the first stop on the line
-            rigid = contacts[i, lay.NORMAL] > 0.0 and points[i, lay.TANGENTIAL] == 0.0
-            if rigid and indices[i, lay.OF_SLIDER] == b and min(gained, after) < spans[i, 6] < max(gained, after):
-                after = spans[i, 6]
-        if (after - gained) * (after - low) * (after - high) == 0.0:
+        for i in range(first, last + 1):  # to the first stop on the line
+            if min(gained, after) < spans[i, STOP] < max(gained, after):
+                after = spans[i, STOP]
+        if abs(miss) <= 1e-14 * light * most or (after - gained) * (after - low) * (after - high) == 0.0:
             break
         gained = after
     share, total = 0.5, 0.0
     if light > 0.0 and top > least:
         share = min(max(((gained - pulled) / light - least) / (top - least), 0.0), 1.0)
-    for i in range(points.shape[0]):
-        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
-            contacts[i, lay.FRICTION] = spans[i, 4] + share * (spans[i, 5] - spans[i, 4])
-            total += contacts[i, lay.FRICTION]
-    sliders[b, lay.GAINED] = pulled + light * total
-    for i in range(points.shape[0]):
-        if indices[i, lay.OF_SLIDER] == b and contacts[i, lay.NORMAL] > 0.0:
-            force, kinetic = contacts[i, lay.FRICTION], mu * contacts[i, lay.NORMAL]
-            contacts[i, lay.SLIP] = v + 0.5 * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
-            start = v - contacts[i, lay.MEAN] + 0.5 * contacts[i, lay.RISE]
-            end, spans[i, 1] = start + gained - contacts[i, lay.RISE], -force * contacts[i, lay.SLIP]
-            if points[i, lay.TANGENTIAL] > 0.0:
-                continue
-            if steepness > 0.0:
-                t = kinetic * np.tanh(steepness * end)
-                spans[i, 1] += late * t * (end - contacts[i, lay.SLIP])
-            elif start * end <= 0.0 or spans[i, 0] > 0.0:  # on both sides of the reversal
-                side = -1.0 if start < 0.0 else 1.0
-                before = abs(start) / (light * (kinetic + side * force) + abs(start - end) + 1e-300)
-                spans[i, 1] = 0.5 * kinetic * (abs(start) * before + abs(end) * (1.0 - before))
-    return abs(gained - sliders[b, lay.GAINED]) / light if light > 0.0 else 0.0
+    for i in range(first, last + 1):
+        contacts[i, lay.FRICTION] = spans[i, LEAST] + share * (spans[i, MOST] - spans[i, LEAST])
+        total += contacts[i, lay.FRICTION]
+    slider[lay.GAINED] = pulled + light * total
+    for i in range(first, last + 1):
+        touch, work, force = contacts[i], spans[i], contacts[i, lay.FRICTION]
+        kinetic, start, slip = (
+            slider[lay.MU] * touch[lay.NORMAL],
+            work[START],
+            v + 0.5 * slider[lay.GAINED] - touch[lay.MEAN],
+        )
+        end, touch[lay.SLIP], work[1] = start + gained - touch[lay.RISE], slip, -force * slip
+        if points[i, lay.TANGENTIAL] == 0.0 and steepness > 0.0:
+            work[1] += late * kinetic * np.tanh(steepness * end) * (end - slip)
+        elif points[i, lay.TANGENTIAL] == 0.0 and (
+            start * end <= 0.0 or work[0] > 0.0
+        ):  # before and after the reversal
+            side = -1.0 if start < 0.0 else 1.0
+            before = abs(start) / (max(light * (kinetic + side * force), 0.0) + abs(start - end) + 1e-300)
+            work[1] = 0.5 * kinetic * (abs(start) * before + abs(end) * (1.0 - before))
+    return abs(gained - slider[lay.GAINED]) / light if light > 0.0 else 0.0
 
 
 @inline
@@ -335,8 +343,9 @@ def solve(
             changed = 0.0
             break
     balance[lay.SWEEPS] += sweeps
-    for b in range(sliders.shape[0] if alone else 0):
-        changed = max(changed, slide(b, dt, sliders, points, contacts, indices, spans))
+    for i in range(points.shape[0] if alone else 0):
+        if i + 1 == points.shape[0] or indices[i + 1, lay.OF_SLIDER] != indices[i, lay.OF_SLIDER]:
+            changed = max(changed, slide(i, dt, sliders, points, contacts, indices, spans))
     if changed > TOLERANCE * largest and two_way:
         changed = solve_block(dt, sliders, points, contacts, indices, shapes, response, spans, block)
         balance[lay.BLOCKS] += 1.0
