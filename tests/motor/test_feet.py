@@ -235,3 +235,24 @@ def test_a_slider_between_two_beams_stays_in_the_middle_and_is_pressed_alike_fro
     assert found.pressures[:, :points] == pytest.approx(found.pressures[:, points:], rel=1e-9, abs=1e-9)
     assert found.pressures[5:].sum(axis=1).min() > 0.0
     assert np.sign(found.speed[-1]) == np.sign(moved(SLIDER).speed[-1])
+
+
+LAWS = [{"mass": 40.0}, {"mass": 1e-3}, {"mass": 1e-2, "mu_static": 0.4}, {"mass": 1e-3, "law": "tanh", "slope": 1e4}]
+
+
+@pytest.mark.parametrize("own", LAWS)
+def test_points_of_one_slider_take_its_momentum_and_create_no_energy(own):
+    """Light sliders are at rest on single points of the wave in most steps; a stopped one on all of them."""
+    load = 2.0 * KAPPA * HEIGHT * layer.normal_integral(1.0, 1.0) / WAVE.k
+    feet = (Foot(length=LENGTH, points=61, pitches=False, mass=0.05),)
+    slider = put(preload=load, contact=Contact(layer_stiffness=KAPPA), foot=feet, speed=-0.03 * CRESTS, **own)
+    for height in (HEIGHT, 0.0):
+        run = on_strip(slider, height, 0.0, 12, 61, samples=13)
+        energy, gained = run.energy, slider.mass * (run.speed[-1] - slider.speed)
+        assert run.statistics.unconverged == 0
+        assert energy.created <= 1e-15 * energy.friction_loss
+        assert energy.friction_loss > 0.0
+        assert run.mean_friction * run.times[-1] == pytest.approx(gained, rel=1e-10)
+        assert run.friction_loss.sum() - run.tangential_work.sum() == pytest.approx(
+            0.5 * slider.mass * (slider.speed**2 - run.speed[-1] ** 2), rel=1e-8
+        )

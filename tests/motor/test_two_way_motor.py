@@ -270,10 +270,10 @@ def test_running_feet_work_on_the_beam_what_the_beam_gains(face):
     balance, gained = found.energy, last - first
     work = balance.friction_on_beam + balance.normal_on_beam
     assert gained > 0.01
-    assert work == pytest.approx(gained, rel=2e-5)
+    assert work == pytest.approx(gained, rel=1e-10)
     assert work == pytest.approx(-balance.normal_work - balance.tangential_work, rel=1e-9)
     assert abs(balance.slope_work) > 0.5 * gained
-    assert abs(balance.residual) < 2e-5 * gained
+    assert abs(balance.residual) < 1e-6 * gained
 
 
 HARD = replace(SPRUNG, coupling="one-way", contact=Contact(restitution=0.3), foot=())

@@ -211,6 +211,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             np.array([STALE + 1]), places, run.samples, run.heights, run.pressures, run.deflections, run.events,
             run.tally, run.sums, run.before, run.balance,
         )  # fmt: skip
+        contacts.contacts[:, lay.WAS_DEPTH] = contacts.contacts[:, lay.DEPTH]
         run.sample_first()
         deflection = (places[:, :count] @ self._rises(contacts))[None]
         run.set_up_s, began = thread_time() - began, thread_time()

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
-from verify.dynamics.friction import coulomb_force, elastic_force, held_force, tanh_force
+from verify.dynamics.friction import coulomb_force, elastic_force, held_force, line_force, tanh_force
 from verify.jit import FAST, inline
 
 SWEEPS = 100
@@ -18,6 +18,8 @@ TOLERANCE = 1e-12
 """Change of a force in a sweep, of the largest normal force, at which sweeps have converged."""
 DAMPING = 0.1
 """Share of the slip at the end of a step in the condition of a sticking point."""
+START, STOP, LEAST, MOST = range(4, 8)
+"""Columns of `spans` in `slide`: relative speed at the start, gain that stops the point, bounds of its friction."""
 TRANSVERSE = 1
 """Row of `shapes` of the normal direction; responses are two rows further."""
 
@@ -180,6 +182,109 @@ def friction_force(
 
 
 @inline
+def slide(
+    last: int, dt: float, sliders: Array, points: Array, contacts: Array, indices: Indices, spans: Array
+) -> float:
+    """Friction of a slider, its last point this one, on feet without response of the beam; what its momentum lacks, N.
+
+    The points are coupled by the slider's gain of speed alone, and friction falls with it: one root, by Newton's method
+    between bounds. It may lie at a gain that stops a point, where what the other points leave is shared by the points
+    at rest as their limits go. Sets of `spans` 1 or 0.5 (from an event in the step) of a point at rest, and mean loss.
+    """
+    slider, first = sliders[indices[last, lay.OF_SLIDER]], last
+    while first > 0 and indices[first - 1, lay.OF_SLIDER] == indices[last, lay.OF_SLIDER]:
+        first -= 1
+    light, v, steepness, pulled = (
+        dt * slider[lay.INVERSE_MASS],
+        slider[lay.V],
+        slider[lay.STEEPNESS],
+        slider[lay.GAINED],
+    )
+    most, gained, rest, resting = 0.0, pulled, 0.0, False
+    for i in range(first, last + 1):
+        touch, work = contacts[i], spans[i]
+        most += touch[lay.NORMAL] * slider[lay.MU_STATIC]
+        gained += light * touch[lay.WAS_FRICTION]
+        work[START] = v - touch[lay.MEAN] + 0.5 * touch[lay.RISE]
+        if touch[lay.WAS_STUCK] > 0.0 and touch[lay.NORMAL] > 0.0:
+            rest, resting = touch[lay.RISE] - work[START], True
+    low, high = pulled - 1.001 * light * most, pulled + 1.001 * light * most
+    gained = min(max(rest if resting else gained, low), high)  # between the limits of friction a point at rest stays
+    late = max(1.0 - 2.0 / (light * most * steepness + 1e-300), 0.0)
+    least, top, miss, exact = 0.0, 0.0, 0.0, steepness > 0.0 and first == last and points[last, lay.TANGENTIAL] == 0.0
+    if exact:
+        kinetic, rise, late = slider[lay.MU] * contacts[last, lay.NORMAL], contacts[last, lay.RISE], 0.0
+        least = tanh_force(spans[last, START], rise - pulled, light, kinetic, steepness)
+        spans[last, 0], spans[last, LEAST], spans[last, MOST], gained = 0.0, least, least, pulled + light * least
+    for _ in range(0 if exact else SWEEPS):
+        least, top, slope = 0.0, 0.0, 0.0
+        for i in range(first, last + 1):
+            touch, work, stiff = contacts[i], spans[i], points[i, lay.TANGENTIAL]
+            kinetic, static = slider[lay.MU] * touch[lay.NORMAL], slider[lay.MU_STATIC] * touch[lay.NORMAL]
+            stuck, start, rise, work[STOP] = touch[lay.WAS_STUCK] > 0.0, work[START], touch[lay.RISE], gained
+            if stiff > 0.0:
+                depth, was = touch[lay.DEPTH], touch[lay.WAS_DEPTH]
+                since = 0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was)
+                trial = stiff * (touch[lay.STRETCH] - since * (v + 0.5 * gained - touch[lay.MEAN]))
+                force, soft = elastic_force(trial, stiff * since, static if stuck else kinetic, kinetic, steepness)
+                work[0], work[LEAST], work[MOST] = soft, force, force
+                if steepness > 0.0:
+                    soft = steepness * (kinetic - force * force / (kinetic + 1e-300))
+                    soft /= soft + stiff * since
+                slope -= 0.5 * stiff * since * soft
+            else:
+                rounding, end = 1e-13 * (abs(v) + abs(start) + abs(rise) + light * kinetic), start + gained - rise
+                work[LEAST], work[MOST], fall = line_force(
+                    start, end, light, kinetic, static, steepness, late, stuck, rounding
+                )
+                slope += fall
+                work[0] = 0.0
+                if work[LEAST] < work[MOST]:
+                    work[0] = 1.0 if stuck or abs(start) <= rounding else 0.5
+                elif steepness == 0.0 and abs(start) < light * (static + kinetic) and abs(end) > rounding:
+                    work[STOP] = rise - start
+            least, top = least + work[LEAST], top + work[MOST]
+        miss = gained - pulled - light * top
+        if miss > 0.0:
+            high = gained
+        else:
+            miss, low = min(gained - pulled - light * least, 0.0), gained
+        after = gained - miss / (1.0 - light * slope)
+        if not low < after < high:
+            after = 0.5 * (low + high)
+        for i in range(first, last + 1):  # to the first stop on the line
+            if min(gained, after) < spans[i, STOP] < max(gained, after):
+                after = spans[i, STOP]
+        if abs(miss) <= 1e-14 * light * most or (after - gained) * (after - low) * (after - high) == 0.0:
+            break
+        gained = after
+    share, total = 0.5, 0.0
+    if light > 0.0 and top > least:
+        share = min(max(((gained - pulled) / light - least) / (top - least), 0.0), 1.0)
+    for i in range(first, last + 1):
+        contacts[i, lay.FRICTION] = spans[i, LEAST] + share * (spans[i, MOST] - spans[i, LEAST])
+        total += contacts[i, lay.FRICTION]
+    slider[lay.GAINED] = pulled + light * total
+    for i in range(first, last + 1):
+        touch, work, force = contacts[i], spans[i], contacts[i, lay.FRICTION]
+        kinetic, start, slip = (
+            slider[lay.MU] * touch[lay.NORMAL],
+            work[START],
+            v + 0.5 * slider[lay.GAINED] - touch[lay.MEAN],
+        )
+        end, touch[lay.SLIP], work[1] = start + gained - touch[lay.RISE], slip, -force * slip
+        if points[i, lay.TANGENTIAL] == 0.0 and steepness > 0.0:
+            work[1] += late * kinetic * np.tanh(steepness * end) * (end - slip)
+        elif points[i, lay.TANGENTIAL] == 0.0 and (
+            start * end <= 0.0 or work[0] > 0.0
+        ):  # before and after the reversal
+            side = -1.0 if start < 0.0 else 1.0
+            before = abs(start) / (max(light * (kinetic + side * force), 0.0) + abs(start - end) + 1e-300)
+            work[1] = 0.5 * kinetic * (abs(start) * before + abs(end) * (1.0 - before))
+    return abs(gained - slider[lay.GAINED]) / light if light > 0.0 else 0.0
+
+
+@inline
 def solve(
     dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
     shapes: Array, response: Array, couplings: Array, spans: Array, block: Array, balance: Array,
@@ -196,16 +301,13 @@ def solve(
         feet[k, lay.LIFTED], feet[k, lay.TURNED] = dt * feet[k, lay.INVERSE_FOOT_MASS] * press, 0.0
     for j in range(len(response)):
         response[j] = 0.0
-    coupled, largest, pressing = law == lay.BILATERAL, 0.0, False
+    alone, coupled, largest = law == lay.SPRING and not two_way, law == lay.BILATERAL, 0.0
     for i in range(points.shape[0]):
-        b = indices[i, lay.OF_SLIDER]
         contacts[i, lay.WAS_FRICTION] = contacts[i, lay.FRICTION]
         contacts[i, lay.NORMAL], contacts[i, lay.FRICTION], contacts[i, lay.SLIP] = 0.0, 0.0, 0.0
         contacts[i, lay.WAS_STUCK], contacts[i, lay.STUCK] = contacts[i, lay.STUCK], 0.0
         contacts[i, lay.OWN] = own_product(i, 0, shapes) if two_way else 0.0
-        many = points.shape[0] > 1 and (two_way or sliders[b, lay.INVERSE_MASS] > 0.0)
-        coupled = coupled or many or (points[i, lay.DASHPOT] > 0.0 and two_way)
-        pressing = pressing or (points[i, lay.DASHPOT] > 0.0 and not two_way)  # normal forces come first, by themselves
+        coupled = coupled or (points.shape[0] > 1 and two_way) or points[i, lay.DASHPOT] > 0.0
     sweeps, changed = 0, 0.0
     while sweeps < SWEEPS:
         changed = 0.0
@@ -214,7 +316,7 @@ def solve(
             if law == lay.SPRING and contacts[i, lay.DEPTH] <= 0.0:
                 continue
             b, k = indices[i, lay.OF_SLIDER], indices[i, lay.OF_FOOT]
-            if sweeps == 1 or law == lay.BILATERAL or (points[i, lay.DASHPOT] > 0.0 and (two_way or pressing)):
+            if sweeps == 1 or law == lay.BILATERAL or points[i, lay.DASHPOT] > 0.0:
                 normal = normal_force(
                     i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
                 )
@@ -227,7 +329,7 @@ def solve(
                     feet[k, lay.LIFTED] += push * feet[k, lay.INVERSE_FOOT_MASS]
                     feet[k, lay.TURNED] += push * points[i, lay.ARM] * feet[k, lay.INVERSE_INERTIA]
                 changed, largest = max(changed, abs(more)), max(largest, normal)
-            if pressing:
+            if alone:  # normal forces do not depend on friction
                 continue
             force = friction_force(i, dt, codes, sliders, points, contacts, indices, shapes, response, spans)
             more = force - contacts[i, lay.FRICTION]
@@ -237,16 +339,17 @@ def solve(
                 if two_way:
                     respond(i, 0, more, shapes, response)
                 changed = max(changed, abs(more))
-        if pressing:
-            pressing = changed > TOLERANCE * largest and sweeps < SWEEPS - 1
-        elif changed <= TOLERANCE * largest or not coupled:
+        if changed <= TOLERANCE * largest or not coupled:
             changed = 0.0
             break
     balance[lay.SWEEPS] += sweeps
-    if sweeps == SWEEPS and changed > TOLERANCE * largest:
-        changed = solve_block(dt, codes, sliders, points, contacts, indices, shapes, response, spans, block)
+    for i in range(points.shape[0] if alone else 0):
+        if i + 1 == points.shape[0] or indices[i + 1, lay.OF_SLIDER] != indices[i, lay.OF_SLIDER]:
+            changed = max(changed, slide(i, dt, sliders, points, contacts, indices, spans))
+    if changed > TOLERANCE * largest and two_way:
+        changed = solve_block(dt, sliders, points, contacts, indices, shapes, response, spans, block)
         balance[lay.BLOCKS] += 1.0
-        balance[lay.UNCONVERGED] += 1.0 if changed > 1e-9 * largest else 0.0
+    balance[lay.UNCONVERGED] += 1.0 if changed > 1e-9 * largest else 0.0
     balance[lay.RESIDUAL] = max(balance[lay.RESIDUAL], changed)
     for i in range(points.shape[0]):
         contacts[i, lay.STUCK] = spans[i, 0] if contacts[i, lay.NORMAL] > 0.0 else 0.0
@@ -261,23 +364,18 @@ def solve(
 
 @inline
 def solve_block(
-    dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array,
-    response: Array, spans: Array, block: Array,
+    dt: float, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array, response: Array,
+    spans: Array, block: Array,
 ) -> float:  # fmt: skip
-    """Friction of all rigid points together: Newton's method on active sets; last change.
-
-    By their mean slips where the beam responds, else by those at the end of the step: no mean slip reverses the speed
-    of a slider without a beam's response in every step.
-    """
-    n, two_way, changed = points.shape[0], codes[lay.TWO_WAY] > 0, 0.0
-    part = 0.5 if two_way or codes[lay.LAW] != lay.SPRING else 1.0
+    """Friction of all rigid points together, which a beam responds to: Newton's method on active sets; last change."""
+    n, changed = points.shape[0], 0.0
     for _ in range(4 * n + 20):
         for i in range(n):  # row i: what the law asks of all changes of force
             b, force = indices[i, lay.OF_SLIDER], contacts[i, lay.FRICTION]
             most = sliders[b, lay.MU] * max(contacts[i, lay.NORMAL], 0.0)
-            slip = sliders[b, lay.V] + part * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
-            slip -= product(i, 0, shapes, response) if two_way else (part - 0.5) * contacts[i, lay.RISE]
-            own = part * dt * sliders[b, lay.INVERSE_MASS] + contacts[i, lay.OWN] + 1e-300
+            slip = sliders[b, lay.V] + 0.5 * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
+            slip -= product(i, 0, shapes, response)
+            own = 0.5 * dt * sliders[b, lay.INVERSE_MASS] + contacts[i, lay.OWN] + 1e-300
             diagonal, slope, miss = 0.0, 1.0, slip
             if points[i, lay.TANGENTIAL] > 0.0 or most == 0.0:
                 diagonal, slope, miss = 1.0, 0.0, 0.0
@@ -290,8 +388,8 @@ def solve_block(
             for k in range(n):
                 block[i, k] = 0.0
                 if slope != 0.0 and sliders[b, lay.INVERSE_MASS] > 0.0 and indices[k, lay.OF_SLIDER] == b:
-                    block[i, k] = part * slope * dt * sliders[b, lay.INVERSE_MASS]
-                for j in range(shapes.shape[2] if two_way and slope != 0.0 else 0):
+                    block[i, k] = 0.5 * slope * dt * sliders[b, lay.INVERSE_MASS]
+                for j in range(shapes.shape[2] if slope != 0.0 else 0):
                     block[i, k] += slope * shapes[0, i, j] * shapes[2, k, j]
             block[i, i] = (block[i, i] + diagonal) * (1.0 + 1e-10)  # points that share one slider alone
             block[i, n] = -miss
@@ -306,15 +404,14 @@ def solve_block(
             b, more = indices[i, lay.OF_SLIDER], block[i, n] / block[i, i]
             contacts[i, lay.FRICTION] += more
             sliders[b, lay.GAINED] += dt * sliders[b, lay.INVERSE_MASS] * more
-            if two_way:
-                respond(i, 0, more, shapes, response)
+            respond(i, 0, more, shapes, response)
             changed = max(changed, abs(more))
         if changed == 0.0 or changed <= 1e-13 * abs(contacts[0, lay.FRICTION]):
             break
     for i in range(n):
         b = indices[i, lay.OF_SLIDER]
         contacts[i, lay.SLIP] = sliders[b, lay.V] + 0.5 * sliders[b, lay.GAINED] - contacts[i, lay.MEAN]
-        contacts[i, lay.SLIP] -= product(i, 0, shapes, response) if two_way else 0.0
+        contacts[i, lay.SLIP] -= product(i, 0, shapes, response)
     return changed
 
 

@@ -191,6 +191,45 @@ def held_force(i: int, needed: float, kinetic: float, static: float, last: float
 
 
 @inline
+def line_force(
+    r: float, end: float, light: float, kinetic: float, static: float, steepness: float, late: float, stuck: bool,
+    rounding: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """(Least, largest mean friction, its derivative) of a point whose relative speed goes from r to `end` in the step.
+
+    Both forces differ where the point is at rest at the end: they bound what sticking takes. `light` = dt/m bends the
+    line at a reversal by the point's own force, so that r' = light f - a as in `coulomb_span`. Tanh: the mean over the
+    line; a share `late` of the force at its end damps a slider that friction stops within a step.
+    """
+    if steepness > 0.0:
+        t, half, middle = np.tanh(steepness * end), 0.5 * steepness * (end - r), 0.5 * steepness * (end + r)
+        if abs(half) < 0.1:
+            mean = np.tanh(middle)
+            left = 1.0 - mean * mean
+            mean, rate = mean - half * half / 3.0 * mean * left, (0.5 - half / 3.0 * mean) * left
+        else:
+            mean = (ln_cosh(middle + half) - ln_cosh(middle - half)) / (2.0 * half)
+            rate = (t - mean) / (2.0 * half)
+        force = -kinetic * (mean + late * (t - mean))
+        return force, force, -kinetic * steepness * (rate + late * (1.0 - t * t - rate))
+    rests = abs(end) <= rounding
+    if stuck or abs(r) <= rounding:
+        return (-static, static, 0.0) if rests else (-np.sign(end) * kinetic, -np.sign(end) * kinetic, 0.0)
+    side = np.sign(r)
+    r, end = side * r, side * end
+    if rests and r < light * (static + kinetic):
+        top = static - r / light
+        return (-kinetic, top, 0.0) if side > 0.0 else (-top, kinetic, 0.0)
+    if end >= 0.0:
+        return -side * kinetic, -side * kinetic, 0.0
+    change, own = r - end, light * kinetic
+    # it reverses: a = change + light force satisfies (own + a) (end + a - own) = r (a - own), piecewise linear
+    root = np.sqrt(change * change - 4.0 * own * (r + end - own))
+    force = -2.0 * kinetic * (r + end - own) / (change + root)
+    return side * force, side * force, (force - kinetic) / root
+
+
+@inline
 def elastic_force(
     trial: float, stiffness: float, limit: float, kinetic: float, steepness: float
 ) -> tuple[float, float]:

@@ -109,7 +109,7 @@ def move(
 @inline
 def add_sums(
     dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
-    feet_of: Indices, shapes: Array, response: Array, sums: Array, balance: Array,
+    feet_of: Indices, shapes: Array, response: Array, spans: Array, sums: Array, balance: Array,
 ) -> None:  # fmt: skip
     """Works, losses and integrals of the step; sliders and feet are still at its start."""
     spring = codes[lay.LAW] == lay.SPRING
@@ -145,10 +145,11 @@ def add_sums(
                 surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0),
             )
             sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
-            sums[b, lay.ALONG] += dt * force * contacts[i, lay.SURFACE]
-            sums[b, lay.DISSIPATED] -= dt * force * contacts[i, lay.SLIP]
+            loss = spans[i, 1] if spring and codes[lay.TWO_WAY] == 0 else -force * contacts[i, lay.SLIP]
+            sums[b, lay.DISSIPATED] += dt * loss
+            sums[b, lay.ALONG] += dt * (loss + force * mean)
             if points[i, lay.TANGENTIAL] == 0.0:
-                balance[lay.GAINED_ENERGY] += max(dt * force * contacts[i, lay.SLIP], 0.0)
+                balance[lay.GAINED_ENERGY] += max(-dt * loss, 0.0)
             if codes[lay.TWO_WAY] > 0:
                 sums[b, lay.ON_BEAM] -= dt * points[i, lay.WEIGHT] * force * contacts[i, lay.SURFACE]
             if codes[lay.PRESSES] > 0 or spring:
@@ -271,7 +272,7 @@ def advance(
     for _ in range(n_steps if n_steps > 0 else 1):
         step = tally[lay.STEP]
         time, mark = step * dt, 4 * step
-        if not find_pieces(0.5 * dt if spring else 0.0, edges, sliders, points, indices):
+        if not find_pieces(0.5 * dt if spring and n_steps > 0 else 0.0, edges, sliders, points, indices):
             return lay.OFF_PIECES
         for when in range(0, last + 1 if n_steps > 0 else 0):
             if when == MIDDLE:
@@ -291,7 +292,7 @@ def advance(
             feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
             feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
         for when in range(last + 1):
-            if when == HALF or (spring and when != MIDDLE) or (n_steps == 0 and when != START):
+            if when == HALF or (spring and when != MIDDLE and n_steps > 0) or (n_steps == 0 and when != START):
                 continue
             ready = mark + 4 if when == END and not two_way else mark + when  # the start of the next step as well
             look(when, ready, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts,
@@ -305,7 +306,7 @@ def advance(
         solve(dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings, spans, block, balance)
         if two_way:
             apply_forces(codes, rows, points, contacts, shapes)
-        add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, sums, balance)
+        add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, spans, sums, balance)
         move(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(drive[lay.ORIGIN] + time, dt, codes, sliders, points, contacts, indices, spans, events, tally)
         tally[lay.STEP] += 1

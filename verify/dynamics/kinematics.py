@@ -105,24 +105,26 @@ def set_polynomials(when: int, piece: int, table: Array, factors: Array, local: 
 @inline
 def touch(
     piece: int, xi: float, length: float, lever: float, local: Array
-) -> tuple[float, float, float, float, float, float]:
-    """Material under a point at xi: (its own xi, w, w', w'', dw/dt, dw'/dt), by metres and seconds.
+) -> tuple[float, float, float, float, float, float, float]:
+    """Material under a point at xi: (its own xi, w, w', dw/dt, dw'/dt), by metres and seconds; w'' and dw'/dt at xi.
 
-    The material over x is at X = x + lever w'(X) of the mid-line and moves with (-lever dw'/dt, dw/dt).
+    The material over x is at X = x + lever w'(x) of the mid-line and moves with (-lever dw'/dt, dw/dt).
     """
-    value, first = 0.0, 0.0
+    value, first, bend, rise, over = 0.0, 0.0, 0.0, 0.0, 0.0
     for d in range(local.shape[2] - 1, 0, -1):
+        bend = bend * xi + first
         value = value * xi + local[piece, VALUE, d]
         first = first * xi + value
+        rise = rise * xi + local[piece, RATE, d]
+        over = over * xi + rise
     at = xi + lever * first / (length * length)
-    level, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    level, slope, rise, turn = 0.0, 0.0, 0.0, 0.0
     for d in range(local.shape[2] - 1, -1, -1):
-        bend = bend * at + slope
         slope = slope * at + level
         level = level * at + local[piece, VALUE, d]
         turn = turn * at + rise
         rise = rise * at + local[piece, RATE, d]
-    return at, level, slope / length, 2.0 * bend / (length * length), rise, turn / length
+    return at, level, slope / length, rise, turn / length, 2.0 * bend / (length * length), over / length
 
 
 @inline
@@ -162,9 +164,9 @@ def look(
             if codes[lay.FOLLOWING] > 0:
                 x += ahead * contacts[i, lay.DRIFT_END]
         above = (x - edges[piece]) / length
-        at, level, slope, bend, rise, turn = touch(piece, above, length, lever, local)
+        at, level, slope, rise, turn, bend, over = touch(piece, above, length, lever, local)
         along = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
-        lift, share = rise + slope * lever * turn, 4.0 / 6.0 if when == MIDDLE else 1.0 / 6.0  # Simpson's rule
+        lift, share = rise + slope * lever * over, 4.0 / 6.0 if when == MIDDLE else 1.0 / 6.0  # Simpson's rule
         if codes[lay.FOLLOWING] > 0:
             tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise * sliders[b, lay.FREE]
             tilt = tilt if sliders[b, lay.INVERSE_MASS] > 0.0 else 0.0  # what prescribes a speed takes it
@@ -177,8 +179,23 @@ def look(
             sliders[b, lay.DRIFT] += share * drift
             contacts[i, lay.TILT_END], contacts[i, lay.DRIFT_END] = tilt, drift
         on = sliders[b, lay.FREE] * (v - slope * rise if codes[lay.FOLLOWING] > 0 else v)
-        climb = rise + slope * (on + lever * (turn + bend * on))
-        if when == START:
+        climb = rise + slope * (on + lever * (over + bend * on))
+        if spring:
+            image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
+            depth = image * level - feet[k, lay.HEIGHT] - points[i, lay.ARM] * feet[k, lay.PITCH]
+            contacts[i, lay.WAS_DEPTH] = contacts[i, lay.DEPTH]
+            if when == START:
+                contacts[i, lay.WAS_DEPTH] = points[i, lay.INSET] + face * depth
+                continue
+            v *= sliders[b, lay.FREE]
+            ramp = image * slope * (v + lever * bend * v)
+            lift = image * lift + ramp
+            contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope
+            contacts[i, lay.DEPTH], contacts[i, lay.MEAN] = points[i, lay.INSET] + face * depth, along
+            contacts[i, lay.LIFT], contacts[i, lay.RAMP] = lift, ramp
+            contacts[i, lay.RISE] = along - contacts[i, lay.BEFORE]
+            contacts[i, lay.CLOSING] = face * (lift - feet[k, lay.CLIMB] - points[i, lay.ARM] * feet[k, lay.TURN])
+        elif when == START:
             contacts[i, lay.START], contacts[i, lay.MEAN], contacts[i, lay.LIFT] = along, share * along, share * lift
             if codes[lay.LAW] == lay.GIVEN:
                 contacts[i, lay.RISE_RATE] = climb
@@ -190,22 +207,9 @@ def look(
             ramp = sliders[b, lay.FREE] * slope * (1.0 + lever * bend)
             contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = ramp, climb
         elif when == MIDDLE:
-            image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
             contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope
-            if not spring:
-                contacts[i, lay.MEAN] += share * along
-                contacts[i, lay.LIFT] += share * lift
-            else:
-                v *= sliders[b, lay.FREE]
-                contacts[i, lay.MEAN] = along
-                lift = image * (rise + slope * (v + lever * (turn + bend * v)))
-                contacts[i, lay.LIFT] = lift
-                contacts[i, lay.RAMP] = image * slope * (v + lever * bend * v)
-                contacts[i, lay.WAS_DEPTH] = contacts[i, lay.DEPTH]
-                depth = image * level - feet[k, lay.HEIGHT] - points[i, lay.ARM] * feet[k, lay.PITCH]
-                contacts[i, lay.DEPTH] = points[i, lay.INSET] + face * depth
-                contacts[i, lay.CLOSING] = face * (lift - feet[k, lay.CLIMB] - points[i, lay.ARM] * feet[k, lay.TURN])
-                contacts[i, lay.RISE] = along - contacts[i, lay.BEFORE]
+            contacts[i, lay.MEAN] += share * along
+            contacts[i, lay.LIFT] += share * lift
 
 
 @inline(fastmath=FAST)
@@ -222,19 +226,10 @@ def set_shapes(
     """
     n = rows.shape[1]
     for i in range(points.shape[0]):
-        piece, at, above, slope = (
-            indices[i, lay.PIECE],
-            contacts[i, lay.AT],
-            contacts[i, lay.ABOVE],
-            contacts[i, lay.SLOPE],
-        )
-        length = edges[piece + 1] - edges[piece]
-        lever, stretch, side = (
-            points[i, lay.LEVER],
-            np.sqrt(1.0 + slope * slope),
-            points[i, lay.FACE] * points[i, lay.IMAGE],
-        )
-        lean, weight = slope * lever / length, points[i, lay.WEIGHT] / dt
+        piece, at, above = indices[i, lay.PIECE], contacts[i, lay.AT], contacts[i, lay.ABOVE]
+        slope, side = contacts[i, lay.SLOPE], points[i, lay.FACE] * points[i, lay.IMAGE]
+        lever, weight = points[i, lay.LEVER] / (edges[piece + 1] - edges[piece]), points[i, lay.WEIGHT] / dt
+        stretch, lean = np.sqrt(1.0 + slope * slope), slope * lever
         for j in range(n + n_complex):
             value, first, here, turn = 0.0, 0.0, 0.0, 0.0
             for d in range(table.shape[1] - 1, -1, -1):
@@ -242,7 +237,7 @@ def set_shapes(
                 value = value * at + table[piece, d, j]
                 turn = turn * above + here
                 here = here * above + table[piece, d, j]
-            shapes[0, i, j] = (slope * value - lever * first / length) / stretch
+            shapes[0, i, j] = (slope * value - lever * first) / stretch
             shapes[1, i, j] = side * (value + lean * turn)
         for s in range(2):
             for j in range(n - n_complex):

@@ -63,7 +63,7 @@ SUMS = 17
 on the slider, of the pull and what prescribes a speed, of what presses; friction loss; loss in dashpots and impacts;
 work on the beam of friction, of normal forces. Integrals over time: friction (on the slider, N s), normal force, share
 of points in contact and sticking, displacement of the surface under the points in contact (mean of points). The largest
-friction, N; the largest downward acceleration of the surface, m/s^2; energy in the springs now, J."""
+friction, N; the largest downward acceleration of the surface, m/s^2; energy that the springs have gained, J."""
 BALANCE = 7
 DRIVEN, LOST, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL, BLOCKS = range(BALANCE)
 """Balance (BALANCE,): work of the drive and loss in the modes, J (with ACCOUNTS); energy that friction created, the sum

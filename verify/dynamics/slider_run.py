@@ -197,10 +197,10 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         began, request, contacts = perf_counter(), self.request, self._contacts()
         z = self._initial(contacts)
         p, depth = contacts.points, np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
-        kinetic, stored = self._kinetic(contacts), 0.5 * float(p[:, lay.STIFF] @ depth**2)
+        kinetic = self._kinetic(contacts)
         heights, pressures = contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(), (p[:, lay.STIFF] * depth)[None]
         recorded, deflection, beam, accounts = self._marched(stages, z, contacts, progress)
-        gains = self._kinetic(contacts) - kinetic, float(recorded.sums[:, lay.STORED].sum()) - stored, *beam
+        gains = self._kinetic(contacts) - kinetic, float(recorded.sums[:, lay.STORED].sum()), *beam
         n, kept = len(recorded.samples), np.concatenate([recorded.first[None], recorded.samples])
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])

@@ -109,7 +109,7 @@ class Run:
     def recorded(self, z: ComplexArray, dt: float, stopped: str) -> "Run":
         """The run that ended with all of the motion z, in steps of dt: its samples and events so far.
 
-        Energy of the normal springs is that at the end of the last step, with the depths of its middle drawn on.
+        Energy of the normal springs is added, that at the end of the last step, with the depths of its middle drawn on.
         """
         p, c, feet, indices = self.contacts.points, self.contacts.contacts, self.contacts.feet, self.contacts.indices
         if len(feet):
@@ -213,8 +213,10 @@ class Run:
         self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
         self.first[:, lay.KEPT_TOUCH] = 1.0
         if self.contacts.law == lay.SPRING:
-            load = self.contacts.points[:, lay.STIFF] * np.maximum(contacts[:, lay.DEPTH], 0.0)
-            self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
+            depth, owner = np.maximum(contacts[:, lay.WAS_DEPTH], 0.0), self.contacts.indices[:, lay.OF_SLIDER]
+            load = self.contacts.points[:, lay.STIFF] * depth
+            self.first[:, lay.KEPT_NORMAL] = np.bincount(owner, load, len(sliders))
+            self.sums[:, lay.STORED] = -0.5 * np.bincount(owner, load * depth, len(sliders))
             self.first[:, lay.KEPT_SURFACE] = np.nan
             return
         load, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.STEEPNESS]
