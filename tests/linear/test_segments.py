@@ -1,7 +1,7 @@
 """Chains of rigid links: dispersion, leading errors, buckling, shapes, driven fields, close attachments."""
 
 from itertools import combinations_with_replacement, product
-from math import pi, sqrt
+from math import pi
 
 import mpmath as mp
 import numpy as np
@@ -44,7 +44,7 @@ def discrete_hz(mode, count, theory="euler-bernoulli", tension=0.0, foundation=0
         return float(mp.sqrt(square) / (2 * mp.pi))
 
 
-@pytest.mark.parametrize("count", [3, 8, 49, 300, 2000])
+@pytest.mark.parametrize("count", [2, 8, 49, 300, 2000])
 @pytest.mark.parametrize(
     ("theory", "added"),
     [
@@ -64,49 +64,22 @@ def test_pinned_links_have_the_frequencies_of_their_dispersion(theory, added, co
     assert found[:5] == pytest.approx(exact[:5], rel=3e-14 if added else 2e-14)
 
 
-def test_two_links_have_the_frequency_of_one_degree_of_freedom(titanium_strip):
-    """Spring (2 y / l)^2 k, kinetic energy 2 m y'^2 / 3: omega^2 = 6 EI / (rho A l^4)."""
-    omega = sqrt(6) * titanium_strip.wave_constant / (titanium_strip.length / 2) ** 2
-    assert SegmentModel(titanium_strip, 2).modes(1).frequencies_hz[0] == pytest.approx(omega / (2 * pi), rel=1e-15)
-
-
 BETA = 2 * pi / L
 
 
 @pytest.mark.parametrize(
-    ("theory", "tension", "mode", "count", "leading", "rel"),
+    ("added", "expected"),
     [
-        ("euler-bernoulli", 0.0, 2, 60, -((2 * pi / 60) ** 4) / 1440, 6e-3),
-        *(("euler-bernoulli", t, 2, 60, t / (EI * BETA**2 + t) * (2 * pi / 60) ** 2 / 24, 0.03) for t in (50.0, -30.0)),
-        *(
-            (theory, 0.0, 1, 160, -((pi / L * pi / 160) ** 2) * RHO_I / RHO_A / 24, 0.02)
-            for theory in ("rayleigh", "timoshenko")
-        ),
+        ({"mass": mass(ABSTRACT, 0.375, 0.4)}, {1: 5.8e-11, 3: 1.26e-8}),
+        ({"spring": spring(ABSTRACT, 0.375, 200.0)}, {1: 2.8e-10}),
+        ({"mass": mass(ABSTRACT, 0.375, rotary=0.01)}, {1: -1.8e-9, 3: -4.45e-6}),
+        ({"spring": spring(ABSTRACT, 0.375, rotational=8.0)}, {1: 5.8e-8, 3: 8.5e-7}),
     ],
 )
-def test_leading_errors_are_mu4_over_1440_and_mu2_over_24_of_axial_force_and_rotary_inertia(
-    theory, tension, mode, count, leading, rel
-):
-    """Axial force: its share of the stiffness; rotary inertia: (beta r)^2, r^2 = rho I / rho A."""
-    found = errors(replace(ABSTRACT, tension=tension), count, mode, theory)[-1]
-    assert found == pytest.approx(leading, rel=rel)
-
-
-@pytest.mark.parametrize(
-    ("letters", "added", "count", "expected", "rel"),
-    [
-        ("CF", {}, 40, {1: 5.2e-9, 5: -8.3e-6, 10: -6.0e-4}, 0.02),
-        ("CC", {}, 40, {1: 3.8e-7, 5: -3.4e-5, 10: -1.6e-3}, 0.02),
-        ("CF", {"mass": mass(ABSTRACT, 0.375, 0.4)}, 80, {1: 5.8e-11, 3: 1.26e-8}, 0.06),
-        ("CF", {"spring": spring(ABSTRACT, 0.375, 200.0)}, 80, {1: 2.8e-10}, 0.06),
-        ("CF", {"mass": mass(ABSTRACT, 0.375, rotary=0.01)}, 80, {1: -1.8e-9, 3: -4.45e-6}, 0.06),
-        ("CF", {"spring": spring(ABSTRACT, 0.375, rotational=8.0)}, 80, {1: 5.8e-8, 3: 8.5e-7}, 0.06),
-    ],
-)
-def test_errors_of_gregorys_clamp_at_forty_and_eighty_links(letters, added, count, expected, rel):
-    found = errors(on(letters, **added), count, max(expected))
+def test_errors_of_a_cantilever_of_eighty_links_with_an_attachment(added, expected):
+    found = errors(on("CF", **added), 80, max(expected))
     for mode, error in expected.items():
-        assert found[mode - 1] == pytest.approx(error, rel=rel)
+        assert found[mode - 1] == pytest.approx(error, rel=0.06)
 
 
 def test_eq_1_as_printed_is_corrected_joints_where_the_modulus_is_uniform(titanium_strip):

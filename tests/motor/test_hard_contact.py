@@ -168,8 +168,8 @@ def test_a_hard_point_that_stays_on_sticks_and_slips_as_the_ode_says(law, slope)
     amplitude, mu, load = 1e-6, 0.03, MASS * 1e-6 * OMEGA**2 / 0.7
     times = np.arange(1, 4) * PERIOD
     surface = by.OneWay(drive(amplitude, 0.1)[1].at, HALF)
-    known = by.Resting(by.Point(MASS, MASS, load, 1.0, mu=mu, slope=slope, half=HALF), surface)
-    known = known.run(by.body(x=MIDDLE), times[-1], times, PERIOD).states[:, by.V]
+    known = by.Resting(by.Point(MASS, load, 1.0, mu=mu, slope=slope), surface)
+    known = known.run(by.body(MIDDLE), times, PERIOD)[0][:, by.V]
     slider = point(Contact(), mu=mu, law=law, slope=slope, gravity=0.0, preload=load)
 
     def error(steps):
@@ -199,7 +199,7 @@ def test_friction_of_a_hard_point_reverses_within_the_step(speed, steps):
     """Mean of sign(u - v) (g + w_tt)/g by quadrature over a period."""
     amplitude, gravity, back = 3.7e-8, 100.0, 0.2
     times = np.arange(200_000) * PERIOD / 200_000
-    _, rise, _, along = by.felt(drive(amplitude, back)[1].at, MIDDLE, times, HALF)
+    _, rise, _, along = by.surface(drive(amplitude, back)[1].at, MIDDLE, times, HALF)
     wanted = np.mean(np.sign(along - speed) * (1.0 + np.gradient(rise, times) / gravity))
     slider = point(Contact(), gravity=gravity)
     run = on_strip(

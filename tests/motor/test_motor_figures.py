@@ -13,7 +13,7 @@ from verify import Beam, Contact, Foot, InputError, PointForce, Slider, simulate
 from verify.exact.contact import layer
 from verify.motor.curves import no_load, phase_portrait, reversal, stop, transient
 from verify.motor.periodic_orbit import periodic_orbit
-from verify.motor.steady_state import FIRST, MotorCase, batch_error, crest_speed, presliding_speed, steady_state
+from verify.motor.steady_state import MotorCase, batch_error, crest_speed, steady_state
 from verify.motor.travelling_wave import foot_on_wave
 
 HEIGHT, KAPPA, MU = 1e-8, 2e9, 0.2
@@ -94,15 +94,6 @@ def test_a_motor_of_one_point_gives_the_same_in_the_default_steps_and_in_many(la
     forces = [steady_state(one, 0.0).means.force for one in (few, many)]
     assert forces[0] == pytest.approx(forces[1], rel=0.01)
     assert speeds[0] == pytest.approx(speeds[1], abs=0.006)
-
-
-def test_friction_that_the_beam_feels_is_that_of_many_steps_in_the_default_ones():
-    coarse, fine = (
-        steady_state(one_point(steps_per_period=n, model="fem", count=9, slider={"coupling": "two-way"}), 0.0)
-        for n in (61, 900)
-    )
-    assert coarse.means.force == pytest.approx(fine.means.force, abs=2e-4 * 0.25 * 8.0)
-    assert abs(fine.means.force) > 0.02 * 0.25 * 8.0
 
 
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
@@ -376,15 +367,6 @@ def test_a_creeping_slider_has_the_force_of_one_that_slips(speed):
     found = steady_state(CREEPING, speed)
     assert found.converged()
     assert found.means.force == pytest.approx(played(speed), rel=4e-3)
-
-
-def test_the_first_window_is_run_until_the_softest_of_unlike_points_slips():
-    """Under one force a foot of 0.4 mm of a layer is stretched 17 times as far as a third of one of 20 mm."""
-    feet = (Foot(length=0.02, points=3), Foot(length=4e-4, offset=0.017))
-    contact = Contact(layer_stiffness=3.1e6, layer_tangential_stiffness=1.65e7)
-    seconds, full = FIRST / HERTZ, 0.0713 / (1.65e7 * 4e-4)
-    speed = presliding_speed(replace(CREEPING.slider, contact=contact, foot=feet), seconds)
-    assert 2.0 * full < speed * seconds < 20.0 * full
 
 
 # --- refusals

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.linalg import eigh, null_space
+from scipy.linalg import eigh
 
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Piece
@@ -229,40 +229,3 @@ class ReciprocalLinks(Links):
         for end, inner, support in ((0, 1, self.beam.supports[0]), (-1, -2, self.beam.supports[1])):
             bends[end] = 2.0 * (solution[inner] - solution[end]) if support == "guided" else 0.0
         return super().values_at(solution + bends / 12.0, x, derivative)
-
-
-class TimoshenkoElements(DenseModel):
-    """Elements of cubic deflection and linear shear strain without attachments, tied at their ends."""
-
-    def __init__(self, beam: Beam, nodes: Array) -> None:
-        super().__init__(beam, nodes)
-        count = len(self.lengths)
-        bent, rest, mass = np.zeros((3, 6 * count, 6 * count))
-        points, weights = np.polynomial.legendre.leggauss(5)
-        ties: list[Array] = []
-        for i, (piece, length) in enumerate(zip(self.pieces, self.lengths, strict=True)):
-            shear, turning = float(piece.shear_stiffness or 0.0), float(piece.rotary_inertia or 0.0)
-            for z, weight in zip(0.5 + 0.5 * points, 0.5 * length * weights, strict=True):
-                w, turn, bend, strain = self._rows(i, float(z))
-                bent += weight * (piece.bending_stiffness * np.outer(bend, bend) + shear * np.outer(strain, strain))
-                rest += weight * beam.foundation * np.outer(w, w)
-                mass += weight * (piece.mass_per_length * np.outer(w, w) + turning * np.outer(turn, turn))
-            ties += (
-                [a - b for a, b in zip(self._rows(i, 0.0)[:2], self._rows(i - 1, 1.0)[:2], strict=True)] if i else []
-            )
-        for end, z, support in ((0, 0.0, beam.supports[0]), (count - 1, 1.0, beam.supports[1])):
-            ties += [self._rows(end, z)[k] for k in HELD[support]]
-        basis = null_space(np.array(ties))
-        self.bending, self.rest, self.mass = (basis.T @ one @ basis for one in (bent, rest, mass))
-        self.free = list(range(len(self.mass)))
-
-    def _rows(self, i: int, z: float) -> tuple[Array, Array, Array, Array]:
-        """Of deflection, turn, bend and shear strain at a share of an element, over all coefficients."""
-        length = float(self.lengths[i])
-        w, slope, bend, strain = np.zeros((4, 6 * len(self.lengths)))
-        at = slice(6 * i, 6 * i + 4)
-        w[at], slope[at] = (1.0, z, z**2, z**3), np.array([0.0, 1.0, 2.0 * z, 3.0 * z**2]) / length
-        bend[at] = np.array([0.0, 0.0, 2.0, 6.0 * z]) / length**2
-        strain[6 * i + 4 : 6 * i + 6] = 1.0, z
-        bend[6 * i + 5] -= 1.0 / length
-        return w, slope - strain, bend, strain
