@@ -14,13 +14,6 @@ from verify.problem.point_attachments import PointMass, PointSpring
 SIZES = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
 
 
-def test_stiffness_and_mass_follow_from_the_rectangle(titanium_strip):
-    assert titanium_strip.bending_stiffness == pytest.approx(113e9 * 0.031 * 0.0023**3 / 12, rel=1e-15)
-    assert titanium_strip.mass_per_length == pytest.approx(4470 * 0.031 * 0.0023, rel=1e-15)
-    ratio = titanium_strip.bending_stiffness / titanium_strip.mass_per_length
-    assert titanium_strip.wave_constant == pytest.approx(math.sqrt(ratio), rel=4e-16)
-
-
 def test_the_papers_beam_has_the_constants_of_its_own_figures(paper_beam):
     assert paper_beam.bending_stiffness == pytest.approx(0.11666667, rel=1e-7)
     assert paper_beam.mass_per_length == pytest.approx(0.054, rel=1e-14)

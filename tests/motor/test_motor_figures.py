@@ -146,10 +146,12 @@ def test_a_motor_starts_by_the_layers_force_over_its_mass():
 def test_a_motor_stops_by_friction_alone():
     """1/e of the speed is left after (1 - 1/e) m v/(mu N)."""
     case, load = motor(1.0, mass=40.0)
-    before = transient(replace(case, slider=replace(case.slider, speed=-0.8 * CRESTS)), 2)
+    feet = (replace(case.slider.foot[0], points=9),)
+    case = replace(case, slider=replace(case.slider, speed=-0.8 * CRESTS, foot=feet))
+    before = transient(case, 2)
     found = stop(case, before, 200)
     wanted = (1.0 - exp(-1.0)) * 40.0 * abs(before.run.speed[-1]) / (MU * load)
-    assert found.time_constant(0.0) == pytest.approx(wanted, rel=2e-2)
+    assert found.time_constant(0.0) == pytest.approx(wanted, rel=5e-3)
     assert abs(found.speed) < 1e-6 * CRESTS
 
 
@@ -314,16 +316,6 @@ def test_a_free_run_in_flight_at_its_end_has_come_to_no_speed():
     assert float(found.run.normal_force[-found.last :].mean()) == 0.0
     assert not found.converged
     assert transient(bouncing(0.4, contact=SPRING), 60).converged
-
-
-@pytest.mark.parametrize("feet", [(Foot(face="lower"),), (Foot(), Foot(face="lower"))], ids=["below", "clasp"])
-def test_a_free_run_on_the_lower_face_carries_the_preload_less_the_weight(feet):
-    case = bouncing(0.4, contact=SPRING, gravity=0.1 * PRELOAD / MASS, foot=feet)
-    run = case.run(200, 201)
-    presses = (0.9 if len(feet) == 1 else 1.0) * PRELOAD
-    assert case.slider.normal_force == pytest.approx(presses, rel=1e-12)
-    assert run.normal_force[0] == pytest.approx(presses, rel=1e-12)
-    assert float(run.normal_force[-20:].mean()) == pytest.approx(presses, rel=0.01)
 
 
 # --- a slider held at a speed so small that what gives way under it takes long to slip

@@ -47,20 +47,23 @@ def run(name, steps):
 
 
 def errors(name, steps):
-    """Of place over 1 um, speed over 1 cm/s, height over 10 um, N over the load."""
+    """Errors of place over 1 um, speed over 1 cm/s, height over 10 um, N over the load, and of the share that sticks."""
     states, found = reference(name), run(name, steps)
     motion = np.stack([found.travelled[1:] + START, found.speed[1:], found.height[1:, 0]], axis=1)
     motion = np.abs(motion - states[:, [by.X, by.V, by.Z]]).max(axis=0) / (1e-6, 1e-2, 1e-5)
-    return *motion, abs(found.normal_force[1:].mean() - states[-1, by.PRESSED] / (TURNS * TURN)) / LOAD
+    pressed, stuck = states[-1, [by.PRESSED, by.STUCK]] / (TURNS * TURN)
+    assert stuck > 0.0 or name != "coulomb"
+    return *motion, abs(found.normal_force[1:].mean() - pressed) / LOAD, abs(found.stuck_share[1:].mean() - stuck)
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_beam_and_motor_are_one_system_of_equations_of_second_order_in_the_step(name):
-    way, speed, height, pressed = errors(name, 8000)
+    way, speed, height, pressed, stuck = errors(name, 8000)
     assert way < 5e-4
     assert speed < 5e-4
     assert height < 1e-5
     assert pressed < 3e-7
+    assert stuck < 2e-4
     coarse, fine = (np.mean([errors(name, one)[2] for one in steps]) for steps in ((125, 133), (8000, 8512)))
     assert 1.6 < np.log2(coarse / fine) / 6.0 < 2.4
 

@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from tests.beams import BAR, BEAMS, DEVICES, FORCES, HELD, LADEN, MODELS, STRIP, close, over
 from tests.reference.dense import phasor
-from verify import Device, ExactModel, PointForce, PointMass, PointSpring, SegmentModel
+from verify import Device, PointForce, PointMass, PointSpring, SegmentModel
 from verify.errors import InputError, ResonanceError
 
 X = np.array([0.13, 0.37, 0.58, 0.81])  # fractions of the length
@@ -71,20 +71,6 @@ def test_forces_of_imposed_displacements_impose_them(name, loss_factor, devices)
     for one in (field, by_forces):
         assert one.deflection([0.17, 0.53]) == pytest.approx([2e-6, 3e-6 * np.exp(1j * np.deg2rad(71.0))], rel=1e-8)
     close(by_forces.deflection(PLACES), field.deflection(PLACES))
-
-
-@over(MODELS)
-def test_forces_of_devices_act_with_imposed_displacements(name):
-    device, beam = replace(DEVICE, amplitude=0.13, phase_deg=-19.0), LADEN["stepped"]
-    drives = [PointForce(position=0.17, amplitude=2e-6, phase_deg=13.0)]
-    model = ExactModel(beam) if name == "exact" else MODELS[name](beam, {"segment": 400, "fem": 60}[name])
-    field, exact = (one.imposed(drives, HERTZ, devices=device) for one in (model, ExactModel(beam)))
-    without = model.imposed(drives, HERTZ, devices=DEVICE).deflection(PLACES[1])
-    assert field.deflection(0.17) == pytest.approx(2e-6 * np.exp(1j * np.deg2rad(13.0)), rel=1e-9)
-    assert field.deflection(PLACES[1]) == pytest.approx(exact.deflection(PLACES[1]), rel=3e-3)
-    assert abs(field.deflection(PLACES[1]) / without - 1.0) > 0.1
-    assert [one.position for one in field.forces] == [0.17, 0.21, 0.21]
-    assert field.forces[1].amplitude == 0.13
 
 
 # --- Damping and resonance -------------------------------------------------------------------------------------------
