@@ -78,10 +78,7 @@ def test_a_plain_section_needs_no_sizes_and_says_what_it_does_not_know():
 
 
 def test_a_section_takes_from_its_beam_what_it_does_not_say():
-    steps = (
-        Section(length=0.3),
-        Section(length=0.43, thickness=0.0031),
-    )
+    steps = (Section(length=0.3), Section(length=0.43, thickness=0.0031))
     beam = Beam(**SIZES, section=steps)
     assert [piece.second_moment for piece in beam.pieces] == pytest.approx([0.031 * h**3 / 12 for h in (23e-4, 31e-4)])
     glued = Beam(**SIZES, section=(Section(length=0.3, bending_stiffness=9.1), Section(length=0.43)))
