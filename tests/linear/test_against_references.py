@@ -151,16 +151,6 @@ def test_links_are_springs_and_masses(name, wall):
         assert modes.frequencies_hz == pytest.approx(written.frequencies_hz(len(modes.frequencies_hz)), rel=1e-10)
 
 
-@pytest.mark.parametrize("damping", [0.0, 0.021])
-@over(["pinned-pinned", "clamped-free", "guided-pinned", "tension", "foundation"])
-def test_driven_links_share_forces_on_four_joints(name, damping):
-    beam = BEAMS[name]
-    field = SegmentModel(beam, 23).harmonic(FORCES, HERTZ, modal_damping=damping)
-    written = dense.ReciprocalLinks(beam, np.linspace(0.0, beam.length, 24))
-    vector = written.harmonic(written.load(FORCES), HERTZ, damping)
-    close(field.deflection(X * beam.length), written.values_at(vector, X * beam.length, 0))
-
-
 @over(["clamped-free", "clamped-pinned", "stepped", "foundation"])
 def test_links_buckle_as_their_joints(name):
     beam = replace(BEAMS[name], tension=0.0)

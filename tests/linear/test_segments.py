@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from tests.beams import ABSTRACT, mass, spring, supported
+from tests.beams import ABSTRACT, supported
 from tests.reference.transfer import state
 from verify import Beam, ExactModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 from verify.errors import InputError, NoFigureError
@@ -65,21 +65,6 @@ def test_pinned_links_have_the_frequencies_of_their_dispersion(theory, added, co
 
 
 BETA = 2 * pi / L
-
-
-@pytest.mark.parametrize(
-    ("added", "expected"),
-    [
-        ({"mass": mass(ABSTRACT, 0.375, 0.4)}, {1: 5.8e-11, 3: 1.26e-8}),
-        ({"spring": spring(ABSTRACT, 0.375, 200.0)}, {1: 2.8e-10}),
-        ({"mass": mass(ABSTRACT, 0.375, rotary=0.01)}, {1: -1.8e-9, 3: -4.45e-6}),
-        ({"spring": spring(ABSTRACT, 0.375, rotational=8.0)}, {1: 5.8e-8, 3: 8.5e-7}),
-    ],
-)
-def test_errors_of_a_cantilever_of_eighty_links_with_an_attachment(added, expected):
-    found = errors(on("CF", **added), 80, max(expected))
-    for mode, error in expected.items():
-        assert found[mode - 1] == pytest.approx(error, rel=0.06)
 
 
 def test_eq_1_as_printed_is_corrected_joints_where_the_modulus_is_uniform(titanium_strip):
@@ -229,13 +214,15 @@ def test_driven_fields_with_body_spring_foundation_and_loss_have_the_order_of_th
     [("lever", "raw", 2.0), ("reciprocal", "raw", 2.0), ("reciprocal", "links", 2.0), ("reciprocal", "corrected", 4.0)],
 )
 def test_orders_of_loads_and_readings(titanium_strip, load, reading, expected):
-    forces = (PointForce(position=0.73 / 8, amplitude=0.7), PointForce(position=0.73 * 5 / 6))
+    """Within half a link of a guided end, and within two of a pinned one."""
+    beam = replace(titanium_strip, supports=("guided", "pinned"))
+    forces = (PointForce(position=0.0037, amplitude=0.7), PointForce(position=0.73 * 5 / 6), PointForce(position=0.711))
     x, off = np.linspace(0.01, 0.72, 57), []
-    exact = ExactModel(titanium_strip).harmonic(forces, 123.0).deflection(x)
+    exact = ExactModel(beam).harmonic(forces, 123.0).deflection(x)
     for n in (60, 480):
-        found = SegmentModel(titanium_strip, n, load=load, reading=reading).harmonic(forces, 123.0).deflection(x)
+        found = SegmentModel(beam, n, load=load, reading=reading).harmonic(forces, 123.0).deflection(x)
         off.append(abs(found - exact).max() / abs(exact).max())
-    assert np.log2(off[0] / off[1]) / 3 == pytest.approx(expected, abs=0.2)
+    assert np.log2(off[0] / off[1]) / 3 == pytest.approx(expected, abs=0.3)
 
 
 @pytest.mark.parametrize("change", [{}, {"tension": 900.0}, {"foundation": 3e5}, {"tension": -70.0, "foundation": 3e4}])

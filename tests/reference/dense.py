@@ -25,7 +25,7 @@ def phasor(force: PointForce) -> complex:
 
 HELD = {"pinned": (0,), "clamped": (0, 1), "guided": (1,), "free": ()}
 """Deflection 0 and slope 1 that an end prescribes."""
-WALLS, MIRRORS = ("clamped", "guided"), ("pinned", "guided")
+WALLS = ("clamped", "guided")
 GREGORY = np.array([3.0 / 8.0, 7.0 / 6.0, 23.0 / 24.0])
 """Compliance of the joints next to a clamp over that of inner joints."""
 CUBICS = np.array([[1.0, 0.0, -3.0, 2.0], [0.0, 1.0, -2.0, 1.0], [0.0, 0.0, 3.0, -2.0], [0.0, 0.0, -1.0, 1.0]])
@@ -202,30 +202,3 @@ class Links(DenseModel):
         still = np.zeros(solution.shape[1:])
         ends = tuple((1 if support in WALLS else 2, still) for support in self.beam.supports)
         return np.asarray(CubicSpline(self.nodes, solution, bc_type=ends)(x, derivative))
-
-
-class ReciprocalLinks(Links):
-    """Equal links: loads on four joints, and a line through corrected joints, mirrored at ends."""
-
-    def row(self, x: float) -> Array:
-        """Cubic Lagrange shares of the four joints around a place and a twelfth of their second derivative."""
-        n, (left, right) = len(self.lengths), self.beam.supports
-        first = int(np.clip(self._link(x) - 1, -(left in MIRRORS), n - 3 + (right in MIRRORS)))
-        z, row = x / float(self.lengths[0]) - first, np.zeros(n + 1)
-        for j in range(4):
-            others = [k for k in range(4) if k != j]
-            lagrange = np.polynomial.Polynomial.fromroots(others) / float(np.prod([j - k for k in others]))
-            share, at, sign = lagrange(z) + lagrange.deriv(2)(z) / 12.0, first + j, 1.0
-            if at < 0 or at > n:
-                support = left if at < 0 else right
-                at, sign = (-at if at < 0 else 2 * n - at), -1.0 if support == "pinned" else 1.0
-            row[at] += sign * share
-        return row
-
-    def values_at(self, solution: Any, x: Array, derivative: int) -> Any:
-        """At places of the same spline through y + delta^2 y / 12, the joint of a guided end next to its image."""
-        bends = np.zeros(solution.shape, dtype=solution.dtype)
-        bends[1:-1] = np.diff(solution, 2, axis=0)
-        for end, inner, support in ((0, 1, self.beam.supports[0]), (-1, -2, self.beam.supports[1])):
-            bends[end] = 2.0 * (solution[inner] - solution[end]) if support == "guided" else 0.0
-        return super().values_at(solution + bends / 12.0, x, derivative)

@@ -175,20 +175,6 @@ def test_the_reflection_of_a_device_is_that_of_six_waves(hertz, d, resistance, r
     assert found == pytest.approx(wave_reflection(beam, hertz, d, impedance, support, turning), abs=3e-7)
 
 
-def test_matched_impedances_of_free_and_pinned_ends():
-    """Free: a dashpot EI k^3/(2 omega) and a spring EI k^3/2. Pinned, rotational: EI k/omega and EI k/omega^2."""
-    hertz, ei = 1873.0, STRIP.bending_stiffness
-    omega = 2.0 * np.pi * hertz
-    k = (STRIP.mass_per_length * omega**2 / ei) ** 0.25
-    across, turning = matched_device(PINNED_FREE, hertz, L), matched_device(STRIP, hertz, L, turning=True)
-    assert across.dashpot == pytest.approx(ei * k**3 / (2 * omega), rel=1e-12)
-    assert (across.stiffness, across.mass) == (pytest.approx(ei * k**3 / 2, rel=1e-12), 0.0)
-    assert turning.rotational_dashpot == pytest.approx(ei * k / omega, rel=1e-12)
-    assert (turning.rotary_inertia, turning.rotational) == (pytest.approx(ei * k / omega**2, rel=1e-12), 0.0)
-    for end in (ending(PINNED_FREE, hertz, 0.0, "free"), ending(STRIP, hertz, 0.0, turning=True)):
-        assert reflection(complex(abs(end.own)), end) == pytest.approx(np.sqrt(2) - 1, rel=1e-12)
-
-
 @pytest.mark.parametrize(("ratio", "loss"), [(1.0, 0.1), (1.3, 0.02), (1.3, 0.1)])
 @pytest.mark.parametrize("turning", [False, True])
 def test_the_exact_beam_with_loss_has_the_reflection_of_its_device(ratio, loss, turning):
