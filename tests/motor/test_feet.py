@@ -6,10 +6,10 @@ from math import cos, pi
 import numpy as np
 import pytest
 import reference.motor as by
-from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive, on_strip
+from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PAIR, PERIOD, STRIP, drive, on_strip
 from msgspec.structs import replace
 
-from verify import Contact, Foot, PointForce, Slider, simulate
+from verify import Contact, Foot, Slider, simulate
 from verify.exact.contact import foot as short
 from verify.exact.contact import layer
 
@@ -139,8 +139,7 @@ def test_epsilon_is_that_of_the_foot_which_slips_least_before_it_gives_way():
         assert run.margins.presliding == pytest.approx(expected * 91.0 * 0.0013 / (k * thickness), rel=1e-12)
 
 
-FORCES = [PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0)]
-STILL = [replace(one, amplitude=1e-9) for one in FORCES]
+STILL = [replace(one, amplitude=1e-9) for one in PAIR]
 SLIDER = Slider(
     mass=0.21,
     mu=0.17,
@@ -153,7 +152,7 @@ SLIDER = Slider(
 )
 
 
-def moved(slider, seconds=4e-3, forces=FORCES, beam=STRIP, **given):
+def moved(slider, seconds=4e-3, forces=PAIR, beam=STRIP, **given):
     kept = {"model": "segment", "count": 49, "samples": 18, **given}
     return simulate(beam, forces, HERTZ, seconds, slider=slider, **kept)
 

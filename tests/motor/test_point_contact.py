@@ -5,29 +5,27 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
+from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip, slider_of
 from reference.motor import DRAGGED, FREE, PRESSED, STUCK, TOUCHED, OneWay, Point, Rider, V, X, Z, body
 
 from verify.dynamics.layout import LANDS
 from verify.exact.contact.impact import lift_off_ratio
-from verify.problem.slider import Contact, Slider
 
 AMPLITUDE, BACK, MASS, LOAD, STIFFNESS, PERIODS = 1e-6, 0.1, 2e-3, 2.0, 5e6, 5
 SPAN = PERIODS * PERIOD
 CASES = {
-    "sticks and slips": {},
-    "tanh": {"slope": 300.0},
-    "gives way": {"give": 2e5},
-    "prescribed, gives way, damped": {"give": 2e5, "prescribed": -2e-4, "damping": 0.5},
-    "pulled, on a preload spring": {"pull": -0.05, "load_stiffness": 2e5, "damping": 1.0},
+    "sticks and slips": Point(MASS, LOAD, STIFFNESS),
+    "tanh": Point(MASS, LOAD, STIFFNESS, slope=300.0),
+    "gives way": Point(MASS, LOAD, STIFFNESS, give=2e5),
+    "prescribed, gives way, damped": Point(MASS, LOAD, STIFFNESS, give=2e5, prescribed=-2e-4, damping=0.5),
+    "pulled, on a preload spring": Point(MASS, LOAD, STIFFNESS, pull=-0.05, load_stiffness=2e5, damping=1.0),
 }
 
 
 @cache
 def reference(name):
     """(states at every period, events)."""
-    wave = drive(AMPLITUDE, BACK)[1]
-    point = Point(MASS, LOAD, STIFFNESS, **CASES[name])
+    wave, point = drive(AMPLITUDE, BACK)[1], CASES[name]
     level = float(wave.at(MIDDLE + HALF * wave.at(MIDDLE, 0.0)[2], 0.0)[0])
     rest = (level * STIFFNESS - LOAD) / (STIFFNESS + point.load_stiffness)
     start, times = body(MIDDLE, z=rest, v=point.prescribed or 0.0), np.arange(1, PERIODS + 1) * PERIOD
@@ -36,23 +34,8 @@ def reference(name):
 
 @cache
 def run(name, steps):
-    given = CASES[name]
-    contact = Contact(stiffness=STIFFNESS, damping=given.get("damping", 0.0), tangential_stiffness=given.get("give"))
-    slider = Slider(
-        mass=MASS,
-        mu=0.2,
-        law="tanh" if "slope" in given else "coulomb",
-        slope=given.get("slope"),
-        gravity=0.0,
-        preload=LOAD,
-        preload_stiffness=given.get("load_stiffness", 0.0),
-        pull=given.get("pull", 0.0),
-        coupling="one-way",
-        contact=contact,
-    )
-    return on_strip(
-        slider, AMPLITUDE, BACK, PERIODS, steps, prescribed_speed=given.get("prescribed"), samples=PERIODS + 1
-    )
+    asked = {"prescribed_speed": CASES[name].prescribed, "samples": PERIODS + 1}
+    return on_strip(slider_of(CASES[name]), AMPLITUDE, BACK, PERIODS, steps, **asked)
 
 
 def motion_error(name, steps):
@@ -96,9 +79,9 @@ def test_height_converges_and_the_energy_balance_closes_with_the_square_of_the_s
 def test_the_least_normal_force_below_lift_off_is_the_closed_form(ratio, zeta):
     """N falls to 1 - share of the load where the acceleration is this share of |1 - r^2/(1 + 2 i zeta r)|."""
     stiffness = MASS * (OMEGA / ratio) ** 2
-    contact = Contact(stiffness=stiffness, damping=2.0 * zeta * np.sqrt(stiffness * MASS))
+    damping = 2.0 * zeta * np.sqrt(stiffness * MASS)
     for share in (0.5, 0.9, 1.1):
         load = MASS * AMPLITUDE * OMEGA**2 / (share * lift_off_ratio(ratio, zeta))
-        slider = Slider(mass=MASS, mu=0.2, gravity=0.0, preload=load, coupling="one-way", contact=contact)
+        slider = slider_of(Point(MASS, load, stiffness, damping))
         found = on_strip(slider, periods=40, steps=400, prescribed_speed=0.0, samples=16001)
         assert found.pressures[-2000:].min() / load == pytest.approx(max(1.0 - share, 0.0), abs=2e-3)

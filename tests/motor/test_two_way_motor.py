@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import reference.motor as by
 from driven_strip import HERTZ as STRIP_HERTZ
-from driven_strip import MIDDLE, PERIOD, STRIP, drive, on_strip
+from driven_strip import MIDDLE, PAIR, PERIOD, STRIP, drive, on_strip, slider_of
 from msgspec.structs import replace
 from reference.slider import hermite_modes
 
@@ -33,10 +33,8 @@ def reference(name):
 
 
 def put(given, **own):
-    contact = Contact(stiffness=STIFFNESS, damping=given.get("damping", 0.0), tangential_stiffness=given.get("give"))
-    law = {"law": "tanh" if "slope" in given else "coulomb", "slope": given.get("slope")}
-    own = {"mass": MASS, "mu": 0.3, "gravity": 0.0, "preload": LOAD, "position": START, "contact": contact, **own}
-    return Slider(coupling="two-way", **law, **own)
+    point = by.Point(MASS, LOAD, STIFFNESS, mu=0.3, **given)
+    return slider_of(point, **{"coupling": "two-way", "position": START, **own})
 
 
 @cache
@@ -228,7 +226,6 @@ def test_a_slider_kept_at_its_place_goes_up_no_slope_at_any_speed(coupling):
 
 # --- several sliders, and sliders between two beams
 
-PAIR = [PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0)]
 LIGHT = Slider(
     mass=0.01, mu=0.17, law="coulomb", preload=0.3, position=0.237, coupling="two-way", contact=Contact(stiffness=4e5)
 )

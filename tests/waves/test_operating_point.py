@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from tests.beams import PAPER
 from verify import Beam, PointForce, PointMass
 from verify.analytic_modes import ExactModel
 from verify.errors import InputError, NoFigureError, ResonanceError
@@ -186,7 +187,6 @@ def test_near_a_resonance_the_unit_waves_are_proportional_and_at_it_no_ratio_exi
 
 SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
 STRIP = Beam(**SIZES)
-PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 TWO = [PointForce(position=0.0116), PointForce(position=0.5 - 0.0116, phase_deg=90.0)]
 
 

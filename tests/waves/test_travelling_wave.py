@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from tests.beams import MODELS
+from tests.beams import PAPER as BEAM
 from tests.reference import transfer
 from verify import Beam, PointForce, Section
 from verify.analytic_modes import ExactModel
@@ -30,7 +31,6 @@ from verify.waves.two_waves import Waveguide, fitted_wavenumber
 
 # --- Travelling wave ---
 
-BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 WINDOW = (0.125, 0.375)
 
 
