@@ -1,8 +1,8 @@
 """Contact of a motor by other means than the engine: exact parabolas, DOP853 from event to event. Nothing of verify.
 
 A mid-line moves as w(x, t); a body above it has the place x and the speed v along it, the height z across. Below it is
-the material X = x + (h/2) w'(x), whose surface is at w(X) and runs along with u = (w_t w' - (h/2) w_t') / sqrt(1 + w'^2)
-there. The body is pressed by `load`, its contact pushes back with k pen + c pen' while both are positive, pen = w(X) - z,
+the material X = x + (h/2) w'(x), whose surface is at w(X) and runs along with u = (w_t w' - (h/2) w_t') / sqrt(1 + w'^2).
+The body is pressed by `load`, its contact pushes back with k pen + c pen' while both are positive, pen = w(X) - z,
 and friction drags it by u - v.
 """
 
@@ -87,8 +87,8 @@ def waves_of(shapes, k, omega, near, half_length=0.02):
     """Waves fitted to a complex field around `near`, x of the field."""
     x = np.linspace(near - half_length, near + half_length, 41)
     rows = np.stack([np.exp(-1j * k * x), np.exp(1j * k * x)], axis=1)
-    found, *_ = np.linalg.lstsq(rows, shapes(x), rcond=None)
-    return Waves(complex(found[0]), complex(found[1]), k, omega)
+    waves, *_ = np.linalg.lstsq(rows, shapes(x), rcond=None)
+    return Waves(complex(waves[0]), complex(waves[1]), k, omega)
 
 
 def surface(at, x, t, half):
@@ -181,7 +181,7 @@ class Point(NamedTuple):
 X, V, Z, ZD, Y, PRESSED, DRAGGED, TOUCHED, STUCK = range(9)
 """Entries of the state of a body: motion, stretch along, impulses, times."""
 FREE, STICKS = None, 0
-"""Modes beside +1 and -1, which are the direction of friction on the body while it slips."""
+"""Modes; while the body slips, the mode is +1 or -1, the direction of friction on it."""
 
 
 def body(x, v=0.0, z=0.0, q=()):
