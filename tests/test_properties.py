@@ -1,4 +1,4 @@
-"""What holds for every beam: scaling, symmetry, monotony, orthogonality, traces; and no tracebacks."""
+"""What holds for every beam: scaling and symmetry."""
 
 import pytest
 from hypothesis import assume, given, settings
@@ -48,17 +48,3 @@ def test_a_stepped_beam_and_its_mirror_image_have_the_same_frequencies(beam, cou
     here = MODELS[model](beam, count, grading=grading).modes(3).frequencies_hz
     there = MODELS[model](beam.mirrored(), count, grading=1.0 / grading).modes(3).frequencies_hz
     assert there == pytest.approx(here, rel=1e-11)
-
-
-@settings(max_examples=40, deadline=None)
-@given(stepped_beams(), st.integers(6, 24), st.sampled_from(sorted(MODELS)), st.integers(0, 1), st.floats(1.01, 3.0))
-def test_stiffer_is_never_lower_and_heavier_never_higher(beam, count, model, which, factor):
-    def changed(**fields):
-        sections = list(beam.section)
-        sections[which] = replace(sections[which], **fields)
-        return MODELS[model](replace(beam, section=tuple(sections)), count).modes(4).frequencies_hz
-
-    section = beam.section[which]
-    here = MODELS[model](beam, count).modes(4).frequencies_hz
-    assert (changed(youngs_modulus=section.youngs_modulus * factor) >= here * (1 - 1e-12)).all()
-    assert (changed(density=section.density * factor) <= here * (1 + 1e-12)).all()
