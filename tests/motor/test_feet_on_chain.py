@@ -11,7 +11,10 @@ WIDE = (Foot(length=0.02, points=3),)
 
 
 def loads(size):
-    return [PointForce(position=0.04, amplitude=size), PointForce(position=0.45, amplitude=0.7 * size, phase_deg=80.0)]
+    return [
+        PointForce(position=0.04, amplitude=size),
+        PointForce(position=0.45, amplitude=0.7 * size, phase_deg=80.0),
+    ]
 
 
 def pressed(size, place=0.23, foot=WIDE):
