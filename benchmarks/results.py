@@ -15,7 +15,7 @@ MARKER = "<!-- results: written by python -m benchmarks.results -->\n"
 COMMANDS = {
     "paper": ["bench", "--seconds", "3", "--json"],
     "steel-cantilever": ["bench", "modes", "--scene", "steel-cantilever", "--mode", "8", "--json"],
-    "stress": ["stress", "--slow", "--jobs", "2", "--json"],
+    "stress": ["stress", "--slow", "--json"],
 }
 
 

@@ -9,7 +9,7 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "verify"
 MODELS = {"exact", "elements", "segments"}
-NUMERICS = MODELS | {"problem", "linear", "waves", "motion", "chain", "motor", "analysis"}
+NUMERICS = MODELS | {"problem", "linear", "waves", "dynamics", "chain", "motor", "analysis"}
 DOORS = {"scene", "quantities", "studies", "report", "io", "commands", "compare", "bench", "engines", "stress", "cli"}
 
 
@@ -37,12 +37,12 @@ def test_numerics_know_nothing_of_scenes_and_reports(room):
 @pytest.mark.parametrize(
     ("words", "unloaded"),
     [
-        (["--help"], {"numpy", "scipy", "numba", "matplotlib", "skfem", "rich", "pyvista"}),
+        (["--help"], {"numpy", "scipy", "numba", "matplotlib", "skfem", "rich"}),
         (
             ["measure", "paper", "mode.frequency", "model=analytic", "mode=3"],
-            {"numba", "matplotlib", "skfem", "pyvista"},
+            {"numba", "matplotlib", "skfem"},
         ),
-        (["scenes", "list"], {"scipy", "numba", "matplotlib", "skfem", "pyvista"}),
+        (["scenes"], {"scipy", "numba", "matplotlib", "skfem"}),
     ],
 )
 def test_a_command_loads_only_what_it_uses(words, unloaded):

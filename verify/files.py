@@ -5,8 +5,6 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from errno import EEXIST, ENOTEMPTY
-from glob import escape
 from pathlib import Path
 
 from verify.errors import InputError, shown
@@ -64,28 +62,15 @@ def whole(path: Path, field: str = "file") -> Iterator[Path]:
         os.replace(part, path)
 
 
-def write_folder(folder: Path, texts: Mapping[str, str], field: str = "folder") -> Path:
-    """Write text files by their names into a new folder, whole or not at all; returns its path.
-
-    Where names begin with that of `folder`, a number after theirs is appended. Raises InputError.
-    """
+def write_folder(folder: Path, texts: Mapping[str, str], field: str = "folder") -> None:
+    """Write text files by their names into a new folder, whole or not at all. Raises InputError."""
     with _written(folder.parent, field), _scratch(folder.parent) as scratch:
         part = scratch / folder.name
         part.mkdir()
         for name, text in texts.items():
             (part / name).write_text(text, encoding="utf-8", errors="backslashreplace")
-        while True:
-            folder.parent.mkdir(exist_ok=True)
-            taken = (one.name.removeprefix(folder.name) for one in folder.parent.glob(f"{escape(folder.name)}*"))
-            numbers = [int(one[1:]) if one[1:].isdecimal() else 1 for one in taken]
-            path = folder.with_name(f"{folder.name}-{max(numbers) + 1}") if numbers else folder
-            try:
-                os.replace(part, path)
-            except OSError as error:
-                if error.errno not in (EEXIST, ENOTEMPTY):  # another run has taken the name
-                    raise
-            else:
-                return path
+        folder.parent.mkdir(exist_ok=True)
+        os.replace(part, folder)
 
 
 @contextmanager

@@ -19,7 +19,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
 _ENGINE = ("layout", "kinematics", "friction", "contact_solver", "integrator", "impact")
 _NAMES = (
-    *("*/*kernels.py", "*/*records.py", "chain/*_links.py", "chain/runge_kutta.py"),
+    *("*/*kernels.py", "chain/*_links.py", "chain/runge_kutta.py"),
     *(f"dynamics/{name}.py" for name in _ENGINE),
 )
 _SOURCES = sorted({Path(__file__), *(source for name in _NAMES for source in _PACKAGE.glob(name))})

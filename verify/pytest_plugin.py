@@ -71,17 +71,17 @@ class GateItem(pytest.Item):
 
     def runtest(self) -> None:
         """Evaluate the gate; its values become JUnit properties whether it passes or not."""
+        from verify.report.summary import expected
         from verify.scene.gates import run_gate
 
         result = run_gate(self.gate, self.scene, self.cache)
-        values = {"measured": result.value, "expected": result.expected, "unit": result.unit}
+        band = expected(self.gate)
+        values = {"measured": result.value, "expected": band, "unit": result.unit}
         values["fraction"] = "" if result.fraction is None else f"{result.fraction:.6g}"
         values["seconds"] = f"{result.seconds:.6g}"
         self.user_properties += [(name, str(value)) for name, value in values.items()]
         if not result.passed:
-            raise GateFailedError(
-                f"gate {result.id}: {result.reason} (expected {result.expected} {result.unit}; {result.gate.why})"
-            )
+            raise GateFailedError(f"gate {result.id}: {result.reason} (expected {band} {result.unit}; {self.gate.why})")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """The gate's sentence instead of a traceback into this file."""

@@ -62,7 +62,7 @@ def gates():
     """Every packaged scene with its drawing and its gates."""
     from verify.report.beam_drawing import beam_figure
     from verify.report.plotting import figure_svg
-    from verify.scene.gates import GateResult
+    from verify.report.summary import expected
     from verify.scene.load import load_scene, packaged_scenes
 
     yield GATES
@@ -70,7 +70,7 @@ def gates():
         svg = "".join(figure_svg(replace(beam_figure(scene), id=scene.name)).splitlines())
         arguments = [" ".join(f"{key}={value}" for key, value in gate.arguments.items()) for gate in scene.gate]
         rows = [
-            (f"`{one.id}`", f"{one.quantity} {words}", GateResult(gate=one).expected, f"{one.reference}: {one.why}")
+            (f"`{one.id}`", f"{one.quantity} {words}", expected(one), f"{one.reference}: {one.why}")
             for one, words in zip(scene.gate, arguments, strict=True)
         ]
         yield f'## {scene.name}\n\n{scene.title}. {scene.description}\n\n<div class="beam-drawing">{svg}</div>\n'

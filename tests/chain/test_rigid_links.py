@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from reference.multibody import by_multipliers, rigid_motion
 
 from verify.chain.benchmarks import transient
-from verify.chain.kinematics import at_rest, hub, positions, project
+from verify.chain.kinematics import at_rest, positions, project
 from verify.chain.motion import simulate, step_limit
-from verify.chain.rigid_links import accelerations, delassus
+from verify.chain.rigid_links import accelerations
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
@@ -55,31 +55,6 @@ def test_accelerations_equal_the_multiplier_equations(seed, n, tip, axial):
         assume(False)
     expected = by_multipliers(system, state.time, state.angles, state.rates)
     assert abs(accelerations(system, state) - expected).max() <= 1e-9 * max(abs(expected).max(), 1e-3)
-
-
-@pytest.mark.parametrize("tip", ["free", "roller"])
-def test_the_response_to_forces_at_points_is_that_of_the_multiplier_equations_and_reciprocal(tip):
-    system = odd_chain(5, 8, tip=tip)
-    state, points, step = some_state(system, 5), [(3, 0.013), (7, 0.001)], 1e-3
-    operator, columns = delassus(system, state, points), []
-
-    def spins(force, link, at):
-        load = LinkLoad(link=link, at=at, force=force)
-        changed = replace(system, loads=(*system.loads, load))
-        return np.cumsum(by_multipliers(changed, state.time, state.angles, state.rates))
-
-    theta = hub(system.rotation, state.time)[0] + np.cumsum(state.angles)
-    for link, at in points:
-        for force in ((step, 0.0), (0.0, step)):
-            change = (spins(force, link, at) - spins((0.0, 0.0), link, at)) / step
-            column = []
-            for to, place in points:
-                reach = np.append(system.lengths[: to - 1], place)
-                column += [-reach @ (change * np.sin(theta))[:to], reach @ (change * np.cos(theta))[:to]]
-            columns.append(column)
-    assert operator == pytest.approx(np.array(columns).T, abs=1e-7 * abs(operator).max())
-    assert operator == pytest.approx(operator.T, rel=1e-12, abs=1e-13 * abs(operator).max())
-    assert np.linalg.eigvalsh(operator).min() > 0.0
 
 
 @pytest.mark.parametrize("method", [{"tolerance": 1e-10}, {"method": "rk4", "step": 2e-6}])

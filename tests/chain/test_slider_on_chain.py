@@ -1,14 +1,15 @@
-"""Links that stretch and a slider on the chain: against dense equations."""
+"""Links that stretch, sliders and feet on the chain: against dense equations and the linear chain."""
 
-from dataclasses import replace
+from dataclasses import replace as changed
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from reference.multibody import ridden, rigid_motion, stretching_motion
 
-from verify import simulate
+from verify import Contact, Foot, bend, simulate
 from verify.chain.motion import elastic_step_limit, simulate_elastic
-from verify.chain.ride import half_steps, ride, ride_from_rest
+from verify.chain.slider_on_chain import slide_on_chain
 from verify.chain.system import axial_stiffness, build_system
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
@@ -17,6 +18,7 @@ from verify.problem.slider import Slider
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 HERTZ, STEP = 4276.0, 4e-6
 SLIDER = Slider(mass=1e-3, mu=0.23, slope=120.0, position=0.231, coupling="one-way")
+FEET = (Foot(length=0.03, points=3),)
 
 
 def forces(amplitude):
@@ -38,7 +40,7 @@ def test_stretching_links_move_as_dense_equations():
 
 
 def test_energy_of_free_stretching_links_drifts_with_order_five():
-    system = replace(build_system(STRIP, 6), gravity=(1.0, -9.81))
+    system = changed(build_system(STRIP, 6), gravity=(1.0, -9.81))
     bent = 0.01 * np.sin(np.pi * system.nodes / 0.5) + 0.004 * np.sin(2 * np.pi * system.nodes / 0.5)
     axial = 1e-4 * STRIP.youngs_modulus * STRIP.own.area
     limit, drifts = elastic_step_limit(system, axial), []
@@ -51,65 +53,167 @@ def test_energy_of_free_stretching_links_drifts_with_order_five():
         simulate_elastic(system, axial, [0.0, 0.02], step=1.01 * limit)
 
 
+def slider(**more):
+    return replace(SLIDER, **more)
+
+
 @pytest.mark.parametrize("kinematics", ["tangential", "following"])
 @pytest.mark.parametrize("links", ["rigid", "stretching"])
-def test_a_slider_rides_as_dense_equations_state(links, kinematics):
-    n, duration, slider = 7, 2.4e-4, replace_slider(kinematics=kinematics, speed=0.011)
-    found = ride_from_rest(STRIP, forces(20.0), HERTZ, slider, n, duration, step=1e-6, links=links)
+def test_a_slider_moves_as_dense_equations_state(links, kinematics):
+    n, duration, one = 7, 2.4e-4, slider(kinematics=kinematics, speed=0.011)
+    found = slide_on_chain(STRIP, forces(20.0), HERTZ, duration, slider=one, count=n, step=1e-6, links=links)
     system = build_system(STRIP, n, forces(20.0), HERTZ, load="reciprocal")
     seen = (
         rigid_motion(system, duration)
         if links == "rigid"
         else stretching_motion(system, axial_stiffness(STRIP, n), duration)
     )
-    way, speed, _ = ridden(system, seen, slider, 0.5 * STRIP.thickness, duration)
+    way, speed, _ = ridden(system, seen, one, 0.5 * STRIP.thickness, duration)
     assert found.displacement == pytest.approx(way, rel=2e-5)
     assert found.speed[-1] == pytest.approx(speed, rel=2e-5)
+    assert abs(found.energy.slider_residual) < 1e-12 * found.energy.friction_loss
 
 
-def replace_slider(**more):
-    from msgspec.structs import replace as changed
+PRESSED = {"contact": Contact(stiffness=1.1e6, damping=17.0), "kinematics": "tangential", "gravity": 0.0}
+FACES = (Foot(offset=-0.02, length=0.02, points=3), Foot(offset=0.03, face="lower"))
+YIELDS = Contact(stiffness=1.1e6, damping=17.0, tangential_stiffness=4e5)
+KINDS = {
+    "tanh": {"coupling": "one-way"},
+    "tanh two-way": {"mass": 5.0, "mu": 0.4, "coupling": "two-way", "normal": "massless"},
+    "coulomb two-way": {"mass": 5.0, "mu": 0.4, "coupling": "two-way", "normal": "massless", "law": "coulomb"},
+    "feet": {"coupling": "one-way", "mass": 0.021, "foot": FEET, **PRESSED},
+    "feet two-way": {"coupling": "two-way", "mass": 0.021, "foot": FEET, **PRESSED},
+    "faces two-way": {"coupling": "two-way", "mass": 0.021, "foot": FACES, **PRESSED, "contact": YIELDS},
+}
+"""Sliders whose friction grows with the motion."""
 
-    return changed(SLIDER, **more)
+
+def scaled(kind, size):
+    own = dict(KINDS[kind])
+    own |= {"preload": 0.3 * size} if "contact" in own else {"gravity": 9.81 * size}
+    return slider(slope=None if own.get("law") == "coulomb" else 200.0 / size, **own)
 
 
-@pytest.mark.parametrize("kinematics", ["tangential", "following"])
-def test_the_sliders_energy_balance_closes_with_order_four(kinematics):
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_slider_departs_from_that_on_the_linear_chain_in_proportion_to_the_motion(kind):
+    apart = []
+    for size in (0.02, 0.005):
+        asked = {"slider": scaled(kind, size), "count": 25, "step": STEP, "samples": 41}
+        bent = slide_on_chain(STRIP, forces(size), HERTZ, 4e-4, **asked)
+        straight = simulate(STRIP, forces(size), HERTZ, 4e-4, start="rest", **asked)
+        largest = abs(straight.surface_speed[1:]).max()
+        apart.append(abs(bent.surface_speed - straight.surface_speed)[1:].max() / largest)
+        assert bent.statistics.unconverged == 0
+    assert apart[1] < 0.04
+    assert np.log2(apart[0] / apart[1]) / 2.0 == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("kind", ["tanh two-way", "feet two-way"])
+def test_contact_takes_from_a_damped_chain_what_it_gives_and_dissipates(kind):
     parts = []
     for step in (4e-6, 2e-6):
-        found = ride_from_rest(
-            STRIP, forces(8.0), HERTZ, replace_slider(kinematics=kinematics), 17, 4e-4, step=step
-        ).ledger
-        parts.append(abs(found.residual) / found.rubbed)
-    assert parts[1] < 1e-4
-    assert np.log2(parts[0] / parts[1]) == pytest.approx(4.0, abs=0.3)
+        found = slide_on_chain(
+            STRIP, forces(1.0), HERTZ, 4e-4, slider=scaled(kind, 1.0), count=25, step=step, samples=11,
+            joint_dashpot=1e-4,
+        ).energy  # fmt: skip
+        assert found.damping_loss > 0.3 * found.drive_work > 0.0
+        parts.append(abs(found.residual) / found.friction_loss)
+    assert parts[1] < 2e-2
+    assert parts[0] > 2.0 * parts[1]
 
 
-def test_small_waves_carry_a_slider_as_on_the_linear_chain():
-    found = ride_from_rest(STRIP, forces(1e-3), HERTZ, SLIDER, 25, 8e-4, step=STEP)
-    linear = simulate(STRIP, forces(1e-3), HERTZ, 8e-4, count=25, slider=SLIDER, step=STEP)
-    assert found.displacement == pytest.approx(linear.displacement, rel=1e-4)
-    steady = simulate(STRIP, forces(1e-3), HERTZ, 1e-4, count=25, slider=SLIDER, start="steady", step=STEP)
-    assert found.coupling.friction_size == pytest.approx(steady.coupling.friction_size, rel=1e-9)
+def test_a_slider_crosses_links_as_on_the_linear_chain():
+    own = {"mass": 1.0, "position": 0.2355, "speed": 20.0, "slope": 500.0, "gravity": 0.3924}
+    one = slider(**{**KINDS["tanh two-way"], **own})
+    asked = {"slider": one, "count": 25, "step": STEP, "samples": 401}
+    found = slide_on_chain(STRIP, forces(0.04), HERTZ, 1.6e-3, **asked)
+    linear = simulate(STRIP, forces(0.04), HERTZ, 1.6e-3, **asked)
+    assert found.displacement > STRIP.length / 25  # more than a link
+    assert found.surface_speed == pytest.approx(linear.surface_speed, abs=0.01 * abs(linear.surface_speed).max())
+
+
+def test_friction_drives_axial_waves_of_links_that_stretch():
+    """The surface moves along by F / (2 sqrt(EA rho A)) in addition, until a wave returns from an end."""
+    one = slider(**KINDS["tanh two-way"] | {"slope": 1e6, "gravity": 1e-4})
+    asked = {"slider": one, "count": 60, "step": 1e-6, "samples": 21, "prescribed_speed": 0.1}
+    rigid, stretching = (
+        slide_on_chain(STRIP, (), HERTZ, 4e-5, links=links, **asked).surface_speed for links in ("rigid", "stretching")
+    )
+    impedance = 2.0 * np.sqrt(STRIP.own.axial_stiffness * STRIP.mass_per_length)
+    along = (stretching - rigid)[5:]
+    assert along.mean() == pytest.approx(0.4 * one.normal_force / impedance, rel=0.01)
+    assert np.ptp(along) < 0.1 * along.mean()
+
+
+def test_a_foot_at_rest_bends_the_chain_as_its_load_and_stays():
+    arm = replace(STRIP, supports=("clamped", "free"))
+    load, position = 0.3 * arm.bending_stiffness / arm.length**2, arm.length * 19 / 20
+    own = {"mass": 0.021, "preload": load, "position": position, "coupling": "two-way", **PRESSED}
+    found = slide_on_chain(arm, (), HERTZ, 1e-3, slider=slider(**own), count=20, at=position)
+    short = replace(arm, length=position)
+    assert found.deflection[0, 0] == pytest.approx(-bend(short, 190, load).deflection, rel=2e-3)
+    assert found.normal_force == pytest.approx(load, rel=1e-4)
+    assert found.height == pytest.approx(found.height[0, 0], rel=1e-4)
+    assert abs(found.speed).max() < 1e-6
+
+
+def test_joint_dashpots_damp_the_surface_under_feet():
+    asked = {"slider": slider(**KINDS["feet"] | {"preload": 0.3, "slope": 200.0}), "count": 9, "samples": 101}
+    free, damped = (slide_on_chain(STRIP, forces(1.0), HERTZ, 2e-3, joint_dashpot=c, **asked) for c in (0.0, 1e-2))
+    assert free.energy.damping_loss == 0.0
+    assert damped.energy.damping_loss == pytest.approx(
+        damped.energy.drive_work - damped.energy.kinetic - damped.energy.elastic, rel=1e-6
+    )
+    late = slice(60, None)
+    assert np.std(damped.surface_speed[late]) < 0.7 * np.std(free.surface_speed[late])
+
+
+@pytest.mark.parametrize("links", ["rigid", "stretching"])
+def test_the_surface_of_a_chain_is_continuous_at_a_joint(links):
+    joint, own = 3 * STRIP.length / 9, KINDS["feet"] | {"foot": (), "preload": 9.0}
+    left, right = (
+        slide_on_chain(
+            STRIP, forces(30.0), HERTZ, 5e-4, slider=slider(**own, position=place), count=9, samples=9, links=links,
+            prescribed_speed=0.0, fixed_position=True,
+        ).surface_speed[1:]
+        for place in (joint - 1e-9, joint + 1e-9)
+    )  # fmt: skip
+    assert left == pytest.approx(right, abs=1e-6 * np.nanmax(abs(left)))
+
+
+def test_sliders_on_one_chain_move_as_each_by_itself_one_way():
+    pair, asked = [slider(position=0.231), slider(position=0.317, mu=0.31)], {"count": 9, "step": STEP}
+    both = slide_on_chain(STRIP, forces(3.0), HERTZ, 3e-4, slider=pair, **asked)
+    for i, one in enumerate(pair):
+        alone = slide_on_chain(STRIP, forces(3.0), HERTZ, 3e-4, slider=one, **asked)
+        assert both.travelled[:, i] == pytest.approx(alone.travelled, rel=1e-9, abs=1e-18)
+
+
+def test_a_slider_that_leaves_the_chain_ends_the_run():
+    found = slide_on_chain(STRIP, forces(2.0), HERTZ, 2e-4, slider=slider(speed=2000.0), count=10, step=STEP)
+    assert found.statistics.stopped.startswith("left")
+    assert 0.0 < found.end.time < 2e-4
+
+
+@pytest.mark.parametrize("links", ["rigid", "stretching"])
+def test_a_chain_whose_motion_is_not_resolved_is_refused(links):
+    with pytest.raises(InputError, match=r"tolerance|step"):
+        slide_on_chain(
+            STRIP, forces(1e5), 900.0, 3e-3, slider=slider(**KINDS["feet"], preload=0.3), links=links, count=9
+        )
 
 
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"coupling": "two-way"}, "coupling"),
-        ({"coupling": "auto", "mass": 0.3}, "auto"),
+        ({"coupling": "two-way"}, "normal"),
         ({"line": "raw"}, "line"),
-        ({"speed": 400.0}, "position"),
-        ({"position": 0.25, "speed": -0.5}, "number of segments"),
+        ({"contact": Contact(restitution=0.3)}, "stiffness"),
+        ({"contact": Contact(stiffness=1e5), "coupling": "two-way"}, "rigid"),
+        ({**KINDS["feet two-way"], "preload": 0.3, "preload_stiffness": 200.0, "links": "rigid"}, "preload"),
     ],
 )
-def test_sliders_that_a_chain_does_not_carry_are_refused(change, field):
+def test_sliders_that_a_chain_does_not_support_are_refused(change, field):
+    links = change.pop("links", "stretching")
     with pytest.raises(InputError, match=field):
-        ride_from_rest(STRIP, forces(2.0), HERTZ, replace_slider(**change), 10, 2e-4, step=STEP)
-
-
-def test_states_that_do_not_stand_twice_in_a_step_are_refused():
-    system = build_system(STRIP, 9, forces(1.0), HERTZ)
-    motion = simulate_elastic(system, axial_stiffness(STRIP, 9), half_steps(4e-5, STEP)[:-1])
-    with pytest.raises(InputError, match="times"):
-        ride(motion, STRIP, SLIDER)
+        slide_on_chain(STRIP, forces(2.0), HERTZ, 2e-4, slider=slider(**change), count=10, links=links)

@@ -102,7 +102,6 @@ REFUSED = [
     ("run bare.toml --set spectrum.modes=x", "spectrum.modes"),
     ("sweep bare.toml", "sweep"),
     ("sweep bare.toml count=4,8", "QUANTITY is missing"),
-    ("sweep bare.toml mode.frequency model=fem mode=1 count=4:12:4", "write a range of whole numbers as 4-12:4"),
     ("sweep bare.toml mode.frequency model=fem mode=1 cuont=4,8", "did you mean 'count'"),
 ]
 
@@ -144,16 +143,15 @@ def test_plan_lists_parts(data, bare):
 def test_scenes_in_every_format(call, data):
     names = [row["scene"] for row in data("scenes")["tables"][0]["rows"]]
     assert {"paper", "steel-cantilever"} <= set(names)
-    assert call("scenes list --csv")[1].splitlines()[0] == "scene,title,gates"
+    assert call("scenes --csv")[1].splitlines()[0] == "scene,title,gates"
     assert call("scenes --markdown")[1].count("\n") == len(names) + 2
     assert all(name in call("scenes")[1] for name in names)
 
 
-def test_scenes_show_the_file_or_the_values(call, data, bare):
+def test_scenes_show_the_file_or_the_values(call, bare):
     assert call("scenes show bare.toml")[1] == BARE
     _, out, _ = call("scenes show bare.toml --set beam.length=0.86")
     assert "length = 0.86" in out
-    assert data("scenes show bare.toml", "--set", "spectrum.modes=2")["spectrum"] == {"modes": 2, "count": 9}
 
 
 def test_new_scenes_are_valid(call, bare):
@@ -190,7 +188,7 @@ def test_table_of_another_study(data, bare):
 def test_charts_are_written(call, bare):
     assert call("table bare.toml --study spectrum --charts charts")[0] == 0
     assert any(one.read_text().startswith("<svg") for one in Path("charts").glob("*.svg"))
-    assert len(list(Path("charts").glob("*.png"))) == len(list(Path("charts").glob("*.csv"))) > 0
+    assert len(list(Path("charts").glob("*.png"))) == len(list(Path("charts").glob("*.svg"))) > 0
 
 
 def test_choose_is_sufficient(data, bare):

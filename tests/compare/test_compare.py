@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from reference.discrete_beams import links_without_inertia, lumped_elements, lumped_rod, printed_chain, rigid_links
-from shared_lists import CANTILEVER, FREE, HELD, PAPER, PROPPED, STEPPED, STRIP, compared, exudyn, recorded, table
+from shared_lists import CANTILEVER, FREE, HELD, PROPPED, STEPPED, STRIP, compared, exudyn, recorded, table
 
+from tests.beams import PAPER
 from verify.compare.candidates import EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.clamp import softened
 from verify.compare.compare import Options, compare

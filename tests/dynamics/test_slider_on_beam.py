@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from verify import HermiteModel, simulate
-from verify.dynamics.coupling import couple
 from verify.dynamics.result import Motion
+from verify.dynamics.validity import couple
 from verify.errors import InputError
 from verify.motor.travelling_wave import terminal_speed
 from verify.problem.beam import Beam, PointForce

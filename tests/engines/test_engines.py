@@ -1,4 +1,4 @@
-"""The chain that engines get, its exact references, and each engine where it is installed."""
+"""The chain that engines get, and each engine where it is installed, against the linear chain."""
 
 import numpy as np
 import pytest
@@ -8,10 +8,9 @@ from verify import SegmentModel
 from verify.chain.benchmarks import linear_deflection
 from verify.chain.motion import step_limit
 from verify.chain.system import build_system
-from verify.engines import ENGINES, chain_of, missing, references, rider_of
+from verify.engines import ENGINES, chain_of, missing
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
-from verify.problem.slider import Slider, changed
 
 FORCES = (
     PointForce(position=0.0731, amplitude=0.013, phase_deg=-37.0),
@@ -20,9 +19,8 @@ FORCES = (
 )
 """The first and the last on one link of 13, none on a joint."""
 FREQUENCY, END = 1234.5, 2e-3
-SLIDER = Slider(mass=2.3e-3, mu=0.31, slope=3e3, position=0.297, speed=1.7e-4, coupling="one-way")
-STEPS = {"Exudyn": 500, "MuJoCo": 50, "Pinocchio": 50}
-ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2), "Pinocchio": (3.7, 5.2)}
+STEPS = {"Exudyn": 500, "MuJoCo": 50}
+ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2)}
 
 
 @pytest.fixture
@@ -36,8 +34,8 @@ def chain(titanium_strip):
 
 
 @pytest.fixture
-def rider(titanium_strip):
-    return rider_of(titanium_strip, SLIDER)
+def system(titanium_strip):
+    return build_system(titanium_strip, 13, list(FORCES), FREQUENCY)
 
 
 @pytest.fixture(params=ENGINES.built_in)
@@ -67,46 +65,12 @@ def test_chain_has_the_mass_and_stiffness_of_the_beam(titanium_strip, chain):
         ({"tension": 3.0}, 13, "beam.tension"),
         ({"loss_factor": 0.01}, 13, "beam.loss_factor = 0.01"),
         ({"length": 0.5}, 13, r"force\[1\].position"),
-        ({}, 5, "count = 5"),
+        ({}, 1, "count = 1"),
     ],
 )
 def test_other_beams_are_rejected(titanium_strip, change, count, message):
     with pytest.raises(InputError, match=message):
         chain_of(replace(titanium_strip, **change), count, FORCES, FREQUENCY)
-
-
-@pytest.mark.parametrize("change", [{"law": "coulomb"}, {"kinematics": "following"}, {"coupling": "auto"}])
-def test_other_sliders_are_rejected(titanium_strip, change):
-    ((name, value),) = change.items()
-    with pytest.raises(InputError, match=f"slider.{name} = '{value}'"):
-        rider_of(titanium_strip, changed(SLIDER, **change))
-
-
-def test_surface_speed_is_exact_for_parabolic_spins(chain, rider):
-    middles = (np.arange(13) + 0.5) * chain.link
-    spins, x = 3.0 - 2.0 * middles + 7.0 * middles**2, 0.2573
-    joints = 3.0 - 2.0 * x + 7.0 * (x**2 + 0.25 * chain.link**2)  # means of two links
-    assert rider.surface_speed(chain, spins, x) == pytest.approx(-rider.half_thickness * joints, rel=1e-12)
-    assert rider.surface_speed(chain, spins[2:7], x, 2) == rider.surface_speed(chain, spins, x)
-
-
-def test_references_agree_with_the_package(titanium_strip, chain):
-    modes = SegmentModel(titanium_strip, 13).modes(12)
-    assert references.frequencies(chain) == pytest.approx(modes.frequencies_hz, rel=1e-13)
-    system = build_system(titanium_strip, 13, list(FORCES), FREQUENCY)
-    times = np.linspace(1e-5, 7e-3, 141)
-    for x in (0.31, 0.365):
-        own = linear_deflection(system, times, x)
-        assert np.abs(references.deflection(chain, times, x) - own).max() < 1e-10 * np.abs(own).max()
-    assert references.stability_limit(chain) == pytest.approx(step_limit(system), rel=1e-3)
-
-
-def test_slider_on_a_still_chain_decays_exactly(titanium_strip, rider):
-    still = chain_of(titanium_strip, 13, [PointForce(position=0.2, amplitude=0.0)], FREQUENCY)
-    times, _, speed = references.ride(still, rider, 3e-4, 600)
-    rate = rider.friction * rider.slope / rider.mass
-    exact = np.arcsinh(np.sinh(rider.slope * rider.speed) * np.exp(-rate * times)) / rider.slope
-    assert speed == pytest.approx(exact, rel=1e-9)
 
 
 def test_missing_engine_is_named(monkeypatch):
@@ -116,14 +80,15 @@ def test_missing_engine_is_named(monkeypatch):
             engine.adapter()
 
 
-def test_engine_frequencies_are_the_chains(engine, chain):
-    assert engine.adapter().frequencies(chain) == pytest.approx(references.frequencies(chain), rel=1e-9)
+def test_engine_frequencies_are_the_chains(engine, chain, titanium_strip):
+    exact = SegmentModel(titanium_strip, 13).modes(12).frequencies_hz
+    assert engine.adapter().frequencies(chain) == pytest.approx(exact, rel=1e-9)
 
 
-def test_engine_converges_at_its_order(engine, chain):
+def test_engine_converges_at_its_order(engine, chain, system):
     steps = STEPS[engine.name]
     runs = [engine.adapter().run(chain, n, END) for n in (steps, 2 * steps)]
-    errors = [relative_rms(run.deflection, references.deflection(chain, run.times)) for run in runs]
+    errors = [relative_rms(run.deflection, linear_deflection(system, run.times, 0.365)) for run in runs]
     low, high = ORDERS[engine.name]
     assert low < np.log2(errors[0] / errors[1]) < high
     assert errors[1] < 1e-3
@@ -131,17 +96,10 @@ def test_engine_converges_at_its_order(engine, chain):
     assert runs[1].steps == pytest.approx(2 * steps, abs=1)
 
 
-def test_engine_moves_the_slider(engine, chain, rider):
-    times, distance, speed = references.ride(chain, rider, END, 8000)
-    run = engine.adapter().run(chain, 2 * STEPS[engine.name], END, rider)
-    assert relative_rms(run.distance, np.interp(run.times, times, distance)) < 1e-3
-    assert relative_rms(run.speed, np.interp(run.times, times, speed)) < 1e-3
-
-
-def test_unstable_step_is_reported(engine, chain, capfd):
+def test_unstable_step_is_reported(engine, chain, system, capfd):
     if engine.implicit:
         pytest.skip("it has no stability limit")
-    run = engine.adapter().run(chain, round(2e-2 / (1.5 * references.stability_limit(chain))), 2e-2)
+    run = engine.adapter().run(chain, round(2e-2 / (1.5 * step_limit(system))), 2e-2)
     assert "at t = 0.0" in run.failure
     assert run.times[-1] < 2e-2
     assert capfd.readouterr() == ("", "")

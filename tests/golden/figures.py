@@ -32,7 +32,7 @@ from verify import (
     simulate,
     travelling_wave,
 )
-from verify.motor.on_chain import run_on_chain
+from verify.chain.slider_on_chain import slide_on_chain
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 ENDS = ("pinned", "clamped", "free", "guided")
@@ -215,7 +215,7 @@ def motors_of(beam: Beam) -> Iterator[tuple[str, Any]]:
     )
     yield "held-speed", [held.friction[1::40], held.normal_force[1::40]]
     plain = replace(beam, loss_factor=0.0)
-    chain = run_on_chain(plain, forces, DRIVEN_HZ, 3e-3, slider=sliders["springs"], count=19, samples=5)
+    chain = slide_on_chain(plain, forces, DRIVEN_HZ, 3e-3, slider=sliders["springs"], count=19, samples=5)
     yield "chain", [chain.travelled[1:], chain.normal_force[1:]]
 
 

@@ -10,7 +10,6 @@ from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PAIR, PERIOD, STRIP, drive,
 from msgspec.structs import replace
 
 from verify import Contact, Foot, Slider, simulate
-from verify.exact.contact import foot as short
 from verify.exact.contact import layer
 
 HEIGHT = 1e-8
@@ -122,7 +121,7 @@ def test_a_short_foot_drives_by_its_length(waves):
         run = on_strip(
             slider, HEIGHT, periods=2, steps=16000, prescribed_speed=-r * CRESTS, fixed_position=True, samples=3
         )
-        wanted = short.short_foot_force(span, r) if waves else 0.0
+        wanted = by.short_foot_force(span, r) if waves else 0.0
         assert -run.friction[-1] / (MU * 0.01) == pytest.approx(wanted, abs=0.02)
 
 

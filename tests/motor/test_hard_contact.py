@@ -82,7 +82,7 @@ def test_the_work_that_holds_a_speed_is_mu_n_times_the_way(ratio, restitution):
 
 def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
     """(phases of landings, the bounce, run) of a point that has left in step, but for `off` of its speed."""
-    amplitude, bounce = ratio * GRAVITY / OMEGA**2, impact.periodic_bounce(ratio, restitution)
+    amplitude, bounce = ratio * GRAVITY / OMEGA**2, by.periodic_bounce(ratio, restitution)
     slider = point(Contact(restitution=restitution), mu=mu)
     before = on_strip(slider, amplitude, periods=1, steps=64, prescribed_speed=0.0)
     lead = (0.5 * pi - drive(amplitude)[1].k * MIDDLE) % (2.0 * pi)
@@ -100,7 +100,7 @@ def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
 
 @pytest.mark.parametrize("restitution", [0.35, 0.6])
 def test_bouncing_in_step_is_stable_between_its_limits_alone(restitution):
-    low, high = impact.bouncing_limits(restitution)
+    low, high = by.bouncing_limits(restitution)
     phases, bounce, _ = thrown(0.4 * low + 0.6 * high, restitution, 1e-3, 60)
     assert np.diff(phases)[-12:] == pytest.approx(2.0 * pi, abs=1e-7)
     assert phases[-1] % (2.0 * pi) == pytest.approx(bounce.phase, abs=1e-7)
@@ -110,7 +110,7 @@ def test_bouncing_in_step_is_stable_between_its_limits_alone(restitution):
 
 
 def test_a_deviation_decays_by_the_larger_multiplier():
-    phases, bounce, _ = thrown(0.97 * impact.bouncing_limits(0.35)[1], 0.35, 1e-3, 20)
+    phases, bounce, _ = thrown(0.97 * by.bouncing_limits(0.35)[1], 0.35, 1e-3, 20)
     away, largest = phases % (2.0 * pi) - bounce.phase, max(bounce.multipliers, key=abs)
     assert largest.imag == 0.0
     assert away[6:12] / away[5:11] == pytest.approx(largest.real, abs=0.02)
@@ -119,7 +119,7 @@ def test_a_deviation_decays_by_the_larger_multiplier():
 def test_a_bouncing_point_gains_mu_of_every_impact_until_it_runs_as_the_surface_where_it_lands():
     """By mu (1 + e) times the speed of landing each time; then by what is left to u = -V sin(phase)."""
     restitution, mu = 0.35, 4e-4
-    low, high = impact.bouncing_limits(restitution)
+    low, high = by.bouncing_limits(restitution)
     ratio = 0.7 * low + 0.3 * high
     _, bounce, run = thrown(ratio, restitution, 0.0, 40, held=None, mu=mu)
     amplitude = ratio * GRAVITY / OMEGA**2
@@ -135,7 +135,7 @@ def test_a_bouncing_point_gains_mu_of_every_impact_until_it_runs_as_the_surface_
 @pytest.mark.parametrize("share", [0.2, 0.5])
 def test_a_stiff_spring_with_a_dashpot_tends_to_a_hard_contact_of_its_restitution(share):
     """It starts with an impact, at rest on a surface that rises, and lands later by its duration, of first order."""
-    zeta, ratio = impact.damping_ratio_for(share), 2.3
+    zeta, ratio = by.damping_ratio_for(share), 2.3
     lead = (0.5 * pi - drive(1e-9)[1].k * MIDDLE) % (2.0 * pi)
     wanted, off = by.bounces(ratio, share, 4, (lead, (1.0 + share) * cos(lead)))[0].phase, []
     for times in (50.0, 100.0, 200.0):

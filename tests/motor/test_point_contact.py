@@ -6,10 +6,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip, slider_of
-from reference.motor import DRAGGED, FREE, PRESSED, STUCK, TOUCHED, OneWay, Point, Rider, V, X, Z, body
+from reference.motor import DRAGGED, FREE, PRESSED, STUCK, TOUCHED, OneWay, Point, Rider, V, X, Z, body, lift_off_ratio
 
 from verify.dynamics.layout import LANDS
-from verify.exact.contact.impact import lift_off_ratio
 
 AMPLITUDE, BACK, MASS, LOAD, STIFFNESS, PERIODS = 1e-6, 0.1, 2e-3, 2.0, 5e6, 5
 SPAN = PERIODS * PERIOD

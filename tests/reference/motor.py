@@ -6,7 +6,7 @@ The body is pressed by `load`, its contact pushes back with k pen + c pen' while
 and friction drags it by u - v.
 """
 
-from math import asin, cos, inf, pi, sin, tanh
+from math import acos, asin, cos, exp, inf, pi, sin, sqrt, tanh
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +32,50 @@ def next_landing(ratio, theta, speed, after, steps=400):
         low, high = high, high + 2.0 * pi / steps
     phase = brentq(gap, low, high, xtol=1e-15, rtol=1e-15)
     return phase, speed - (phase - theta) / ratio
+
+
+class Bounce(NamedTuple):
+    """A periodic bounce: landing phase, take-off speed over A omega, Floquet multipliers from landing to landing."""
+
+    phase: float
+    speed: float
+    multipliers: tuple
+
+
+def bouncing_limits(restitution):
+    """Ratios A omega^2 / g between which a stable bounce of one period exists, P. J. Holmes (1982)."""
+    low = pi * (1.0 - restitution) / (1.0 + restitution)
+    return low, sqrt(low**2 + (2.0 * (1.0 + restitution**2) / (1.0 + restitution) ** 2) ** 2)
+
+
+def periodic_bounce(ratio, restitution):
+    """The bounce of one landing in a period: a map of determinant e^2."""
+    e, phase = restitution, acos(bouncing_limits(restitution)[0] / ratio)
+    half = 0.5 * (1.0 + e * e - (1.0 + e) ** 2 * ratio * sin(phase))
+    part = complex(half * half - e * e) ** 0.5
+    return Bounce(phase, pi / ratio, (half + part, half - part))
+
+
+def damping_ratio_for(restitution):
+    """Damping ratio below 1 of an impact of this restitution on spring and dashpot that only push."""
+
+    def lost(zeta):
+        return exp(-2.0 * zeta * acos(zeta) / sqrt(1.0 - zeta**2)) - restitution
+
+    return brentq(lost, 0.0, 0.99, xtol=1e-15)
+
+
+def lift_off_ratio(frequency_ratio, zeta):
+    """A omega^2 over the acceleration of the preload at which a mass on spring and dashpot first leaves."""
+    return abs(1.0 - frequency_ratio**2 / complex(1.0, 2.0 * zeta * frequency_ratio))
+
+
+def short_foot_force(span, r):
+    """Mean F/(mu N) on a short foot on rigid crests, `span` half its length times k, at r times the crest speed.
+
+    A crest below the foot drives it; otherwise its nearer edge touches the wave, whose surface moves at V cos s.
+    """
+    return -1.0 if r >= 1.0 else min(1.0, 2.0 * (span + acos(max(r, -1.0))) / pi - 1.0)
 
 
 class Landed(NamedTuple):

@@ -2,7 +2,6 @@
 
 from math import inf, nan
 
-import numpy as np
 import pytest
 from msgspec.structs import replace
 
@@ -117,16 +116,6 @@ def test_gate_without_a_clear_band_is_refused(band, message):
         convert({"id": "g", "quantity": "mode.frequency", "why": "test", **band}, Gate, "gate.g")
 
 
-def test_band_as_text():
-    def text(**band):
-        return judged(1.0, **band).expected
-
-    assert text(expect=-0.25, within=1e-3) == "-0.25 ± 0.001"
-    assert text(expect=Complex(1.5, -2.0), within=0.5) == "1.5 -2.0i ± 0.5"
-    assert text(expect=3.5) == "contains 3.5"
-    assert text(at_least=1.0, at_most=2.5) == "at least 1, at most 2.5"
-
-
 # --- Run ---
 
 SCENE_RUN = """
@@ -205,17 +194,6 @@ def test_studies_and_what_is_skipped(run, path):
     assert result.seconds > 0.0
 
 
-def test_frequency_and_deflection_are_exact(run):
-    result, _ = run
-    beam, constant = result.scene.beam, result.scene.beam.wave_constant
-    k = np.arange(1, 4000) * np.pi / beam.length
-    assert result.first_frequency_hz == pytest.approx(k[0] ** 2 * constant / 2.0 / np.pi, rel=1e-12)
-    stiffness = beam.mass_per_length * beam.length / 2.0 * ((k**2 * constant) ** 2 - (2.0 * np.pi * 311.0) ** 2)
-    x = np.linspace(0.0, beam.length, 201)
-    deflection = 2.5 * np.sin(np.outer(x, k)) @ (np.sin(0.62 * k) / stiffness)
-    assert result.largest_deflection == pytest.approx(abs(deflection).max(), rel=1e-6)
-
-
 def test_skipped_gate_neither_passes_nor_fails(path):
     result = run_scene(path, overrides=("beam.length=0.8",))
     assert [gate.passed for gate in result.gates] == [None, None, None]
@@ -229,11 +207,10 @@ def test_scene_value_runs_like_its_file(path):
     assert [gate.passed for gate in result.gates] == [True, False, False]
 
 
-def test_beam_without_a_drive_has_no_deflection(path):
+def test_beam_alone_runs(path):
     scene = load_scene(path)
     result = run_scene(replace(scene.bare, drive=None))
     assert result.passed
-    assert result.largest_deflection is None
     assert result.results == {}
 
 

@@ -9,7 +9,7 @@ from verify.convert import literal
 from verify.errors import InputError
 from verify.scene.load import STARTER, copy_with_name, packaged_scenes, read_text, scene_from, tables_of, toml_text
 from verify.scene.model import Claim
-from verify.scene.run import effective_overrides, plan, skipped_gates
+from verify.scene.run import plan, skipped_gates
 from verify.scene.schema import scene_schema, sections
 from verify.scene.warnings import unit_warnings
 
@@ -350,7 +350,7 @@ def test_tables_with_overrides_are_written_as_toml(path, tmp_path):
 
 
 def skipped(path, *overrides):
-    return skipped_gates(load_scene(path, overrides), effective_overrides(path, overrides))
+    return skipped_gates(load_scene(path, overrides), overrides)
 
 
 def test_gate_of_another_system_is_skipped(path):
@@ -363,8 +363,7 @@ def test_gate_of_another_system_is_skipped(path):
     }
 
 
-def test_gate_applies_to_the_same_system_and_to_a_new_band(path):
-    assert skipped(path, "beam.length=0.73", "beam.tension=0") == {}
+def test_gate_applies_to_a_new_band(path):
     assert list(skipped(path, "beam.length=0.8", "gate.frequency.expect=80")) == ["wave"]
     assert list(skipped(path, "beam.length=0.8", "gate.frequency.within=0.5")) == ["frequency", "wave"]
     assert list(skipped(path, "beam.length=0.8", "gate.0.expect=96.0")) == ["wave"]

@@ -10,9 +10,9 @@ from verify.stress import run, select
 from verify.stress.engine import Check, registry
 from verify.stress.report import result
 
-BUSY = {"size-segments", "size-elements", "buckling-soft-ground", "near-buckling", "stick-slip"}
+BUSY = {"size-segments", "size-elements", "near-buckling"}
 """Checks of 5 to 15 s: `verify stress` runs them."""
-QUICK = [one for one in select() if not one.rounds and one.id not in BUSY]
+QUICK = [one for one in select() if one.id not in BUSY]
 
 
 @pytest.mark.parametrize("check", QUICK, ids=lambda check: check.id)

@@ -82,18 +82,23 @@ def modes(problem: Problem) -> Iterator[Question]:
     yield Question("modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, methods)
 
 
+def by_model(problem: Problem, solver: Callable[[str], Callable[[int], Any]], exact: str) -> list[Method]:
+    """Segments and elements over their sizes (`solver(model)(N)`), and the exact beam under its name."""
+    methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
+    return [*methods, Method(exact, solver("analytic"), (0,), "", "analytic")]
+
+
 def field(problem: Problem) -> Iterator[Question]:
     """The steady field over the number of parts."""
     x = np.linspace(0.0, problem.beam.length, 8 * max(problem.sizes) + 1)
 
-    def solver(model: str, shift: float = 0.0) -> Callable[[Any], Any]:
+    def solver(model: str, shift: float = 0.0) -> Callable[[int], Any]:
         hertz = problem.frequency_hz * (1.0 + shift)
         return lambda n: MODELS[model].build(problem.beam, n or None).harmonic(problem.forces, hertz).deflection(x)
 
-    exact = solver("analytic")(None)
-    rounding = rms(solver("analytic", 1e-7)(None), exact) * 1e7 * 8 * np.finfo(float).eps
-    methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
-    methods.append(Method("exact", solver("analytic"), (0,), "", "analytic"))
+    exact = solver("analytic")(0)
+    rounding = rms(solver("analytic", 1e-7)(0), exact) * 1e7 * 8 * np.finfo(float).eps
+    methods = by_model(problem, solver, "exact")
     title = f"deflection at {problem.frequency_hz:g} Hz, rms over the beam"
     yield Question("field", title, "exact field", rounding, lambda found: rms(found, exact), methods)
 
@@ -113,13 +118,12 @@ def transient(problem: Problem) -> Iterator[Question]:
     """The deflection of one place over time, over the number of parts."""
     more: dict[str, Any] = {"at": [0.37 * problem.beam.length], "samples": 201}
 
-    def solver(model: str) -> Callable[[Any], Any]:
+    def solver(model: str) -> Callable[[int], Any]:
         return lambda n: moved(problem, model, n or None, **more).deflection[:, 0]
 
     exact = moved(problem, "analytic", None, modes=800, **more).deflection[:, 0]
-    uncertainty = max(rms(solver("analytic")(None), exact), 1e-13)
-    methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
-    methods.append(Method("exact, 400 modes", solver("analytic"), (0,), "", "analytic"))
+    uncertainty = max(rms(solver("analytic")(0), exact), 1e-13)
+    methods = by_model(problem, solver, "exact, 400 modes")
     title = f"deflection at 0.37 L, rms over time, {problem.name}"
     yield Question("transient", title, "exact beam, 800 modes", uncertainty, lambda found: rms(found, exact), methods)
 
@@ -128,12 +132,11 @@ def slider(problem: Problem) -> Iterator[Question]:
     """The displacement of the slider over the number of parts, at equal time steps."""
     one = replace(problem.slider, coupling="one-way")
 
-    def solver(model: str) -> Callable[[Any], float]:
+    def solver(model: str) -> Callable[[int], float]:
         return lambda n: float(moved(problem, model, n or None, slider=one, samples=2).travelled[-1])
 
-    exact = solver("analytic")(None)
-    methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
-    methods.append(Method("exact, 400 modes", solver("analytic"), (0,), "", "analytic"))
+    exact = solver("analytic")(0)
+    methods = by_model(problem, solver, "exact, 400 modes")
     title = f"displacement, one-way, {problem.name}"
     yield Question("slider", title, "exact beam at the same time step", 1e-12, lambda d: d / exact - 1.0, methods)
 
@@ -207,12 +210,12 @@ def chain(problem: Problem) -> Iterator[Question]:
 
 
 def engines(problem: Problem) -> Iterator[Question]:
-    """Modes, the nonlinear chain, and the slider in other engines beside segments."""
-    from verify.engines import ENGINES, chain_of, missing, references, rider_of
+    """Modes and the nonlinear chain in other engines beside segments."""
+    from verify.engines import ENGINES, chain_of, missing
 
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
     if not adapters:
-        raise InputError("engines: none is installed: pip install exudyn mujoco pin, or leave this set out")
+        raise InputError("engines: none is installed: pip install exudyn mujoco, or leave this set out")
     beam, mode, hertz, end = problem.beam, problem.mode, problem.frequency_hz, problem.duration
     exact = ExactModel(beam).frequency_hz(mode)
 
@@ -229,18 +232,18 @@ def engines(problem: Problem) -> Iterator[Question]:
     yield Question("engines-modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, [ours, *theirs])
 
     links = chain_of(beam, LINKS, problem.forces, hertz)
-    limit = references.stability_limit(links)
+    _, limit = chain_solver(problem)
 
     def steps(name: str) -> list[int]:
         longest = 0.01 / hertz if ENGINES[name].implicit else min(1.0 / (12.0 * hertz), 0.99 * limit)
         return [ceil(end / longest) * 2**k for k in range(6)]
 
-    def motion(adapter: Any, rider: Any = None) -> Callable[[int], Any]:
+    def motion(adapter: Any) -> Callable[[int], Any]:
         def run(count: int) -> Any:
-            found = adapter.run(links, count, end, rider)
+            found = adapter.run(links, count, end)
             if found.failure:
                 raise InputError(f"engines: {found.failure}")
-            return (found.times, found.deflection) if rider is None else (found.times, found.distance)
+            return found.times, found.deflection
 
         return run
 
@@ -249,33 +252,6 @@ def engines(problem: Problem) -> Iterator[Question]:
     methods += [Method(name, motion(adapter), steps(name), "steps") for name, adapter in adapters.items()]
     title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}"
     yield Question("engines-chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
-
-    one = replace(problem.slider, coupling="one-way")
-    rider = rider_of(beam, one)
-    times, distance, _ = references.ride(links, rider, end)
-    departure = error((times[1::20], references.deflection(links, times[1::20])))
-
-    def displaced(count: int) -> float:
-        from verify.dynamics.simulate import simulate
-
-        given = (beam, problem.forces, hertz, end)
-        run = simulate(*given, count=LINKS, slider=one, step=end / count * (1.0 + 1e-9), samples=2)
-        return float(run.travelled[-1])
-
-    finest = displaced(2**16)
-    methods = [
-        Method("segments", displaced, [2**k for k in range(7, 13)], "steps", "segment", lambda d: d / finest - 1.0),
-        *(Method(name, motion(adapter, rider), steps(name), "steps") for name, adapter in adapters.items()),
-    ]
-    title = f"displacement, rms over time, {LINKS} links, step load, {problem.name}"
-    yield Question(
-        "engines-slider",
-        title,
-        "engines: slider on the exact linear chain; segments: 65536 steps",
-        departure,
-        lambda found: rms(found[1], np.interp(found[0], times, distance)),
-        methods,
-    )
 
 
 SETS: dict[str, Callable[[Problem], Iterator[Question]]] = {

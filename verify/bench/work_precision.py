@@ -3,8 +3,7 @@
 Times are processor seconds of one thread, medians over the rounds, from the beam to the answer.
 """
 
-import platform
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from math import exp, isfinite, log
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.report.result import Column, Figure, Result, Table
+from verify.report.summary import environment
 from verify.timing import forget, spread
 
 if TYPE_CHECKING:
@@ -175,8 +175,8 @@ RATIO_NOTE = (
 )
 
 
-def result(measured: Sequence[tuple[Question, Sequence[Row]]], against: Mapping[str, Any] | None = None) -> Result:
-    """Tables, one log-log chart for each question, and data that `against` of a later run takes."""
+def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
+    """Tables, one log-log chart for each question, and data."""
     rows = [(q.id, *_cells(row)) for q, found in measured for row in found]
     compared = {q.id: ratios(q, found) for q, found in measured}
     tables = [
@@ -185,15 +185,13 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]], against: Mapping[
             "Time ratio", RATIO_COLUMNS, [(t, m, *r) for t, c in compared.items() for m, r in c.items()], [RATIO_NOTE]
         ),
     ]
-    if against is not None:
-        tables.append(_changes(compared, against))
     references = Table(
         "References",
         (Column("set"), Column("quantity"), Column("reference"), Column("uncertainty", format=".1g")),
         [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured],
     )
     data = {
-        "machine": machine(),
+        "machine": {"processor": processor(), **environment()},
         "questions": [
             {"id": q.id, "title": q.title, "reference": q.reference, "uncertainty": q.uncertainty}
             | {"rows": [asdict(row) for row in found], "ratios": compared[q.id]}
@@ -207,28 +205,6 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]], against: Mapping[
 def _cells(row: Row) -> tuple[Any, ...]:
     size = f"{row.size_name} = {row.size:.3g}" if row.size_name else ""
     return row.method, size, row.error, row.order, row.seconds, row.spread
-
-
-def _changes(compared: Mapping[str, Any], against: Mapping[str, Any]) -> Table:
-    """Ratios then and now at the first error that both runs have."""
-    rows = []
-    for name, earlier in ((one["id"], one["ratios"]) for one in against["questions"]):
-        for method, now in compared.get(name, {}).items():
-            pairs = [
-                (error, then, new)
-                for error, then, new in zip(ERRORS, earlier.get(method, ()), now, strict=False)
-                if then and new
-            ]
-            rows += [(name, method, *pairs[0], pairs[0][2] / pairs[0][1])] if pairs else []
-    columns = (
-        Column("set"),
-        Column("method"),
-        Column("at error"),
-        Column("ratio then", format=".3g"),
-        Column("ratio now", format=".3g"),
-        Column("now / then", format=".3g"),
-    )
-    return Table("Change of the time ratios", columns, rows)
 
 
 def _figure(question: Question, rows: Sequence[Row]) -> Figure:
@@ -248,20 +224,12 @@ def _figure(question: Question, rows: Sequence[Row]) -> Figure:
     return Figure(f"bench-{question.id}", question.title, caption, draw)
 
 
-def machine() -> dict[str, str]:
-    """Processor, system and versions."""
-    from datetime import date
-    from importlib.metadata import PackageNotFoundError, version
+def processor() -> str:
+    """Its name."""
+    import platform
     from pathlib import Path
 
     info = Path("/proc/cpuinfo")
     lines = info.read_text("utf-8").splitlines() if info.exists() else []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    found = {"date": str(date.today()), "processor": names[0] if names else platform.processor()}
-    found |= {"system": f"{platform.system()} {platform.machine()}", "python": platform.python_version()}
-    for package in ("numpy", "scipy", "scikit-fem", "numba", "exudyn", "mujoco", "pin"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found
+    return names[0] if names else platform.processor()

@@ -16,7 +16,16 @@ from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.motion import ChainMotion, ElasticMotion, Method, Progress, check_moved, from_rest, simulate
 from verify.chain.statics import Bent, bend
-from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, axial_stiffness, build_system, link_at
+from verify.chain.system import (
+    ChainState,
+    ChainSystem,
+    LinkLoad,
+    Rotation,
+    axial_stiffness,
+    build_system,
+    link_at,
+    straight_chain,
+)
 from verify.errors import InputError
 from verify.options import Inertia, Links, Tip, Wall
 from verify.problem.beam import Beam, PointForce
@@ -152,19 +161,19 @@ def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progr
 def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
     """Largest error of the surface slope of a chain in one of its modes on the piece at x, over the largest slope.
 
-    The mode is a millionth of the length high; the exact mode is the reference. Order 3, at a clamped wall 1.
+    The exact mode is the reference. Order 3, at a clamped wall 1.
     """
     from verify.analytic_modes import ExactModel
-    from verify.chain.ride import touched
     from verify.segment_model import SegmentModel
+    from verify.segments.reading import contact_piece
 
     check_whole("segments", count, 2)
     system, exact = build_system(beam, count), ExactModel(beam)
     joints = SegmentModel(beam, count).modes(mode).readings["raw"]()[mode - 1]
-    size = 1e-6 * beam.length / float(abs(joints).max())
-    pieces, edges = touched(system, size * np.diff(joints), x)
-    xi = np.linspace(0.0, 1.0, 17)
-    slope = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(pieces)) / (size * np.ptp(edges))
+    link, _ = link_at(system, x)
+    edges, xi = system.nodes[link - 1 : link + 1], np.linspace(0.0, 1.0, 17)
+    piece = contact_piece(straight_chain(system), joints[None], link - 1)[0]
+    slope = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(piece)) / np.ptp(edges)
     error = slope - exact.mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
     return float(abs(error).max()) / float(abs(exact.mode_shape(mode, system.nodes, 1)).max())
 

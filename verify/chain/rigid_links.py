@@ -9,8 +9,6 @@ y_N = 0 is met in every stage by one dependent joint angle, that with the longes
 one (R. A. Wehage and E. J. Haug, J. Mech. Design 104 (1982) 247, the paper's ref. 6).
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from verify.arrays import Array
@@ -171,45 +169,8 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
     out[2 * n], out[2 * n + 1] = lost, power
 
 
-@jit(fastmath=FAST)
-def respond(link: int, arm: float, fx: float, fy: float, links: Array, numbers: Array, w: Array, out: Array) -> None:
-    """Angular accelerations, (N,), that a force at a point of a link adds at the state of the last `accelerate`.
-
-    `link` from 0, `arm` from its middle, m; per newton a column of the Delassus operator by `point_acceleration`.
-    """
-    n = out.size
-    f1, f2, a1, a2 = 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
-        out[i] = 0.0
-    for i in range(link, -1, -1):
-        reach, p1, p2 = (links[i, HALF] + arm, fx, fy) if i == link else (2.0 * links[i, HALF], -f1, -f2)
-        torque = reach * (w[i, COS] * p2 - w[i, SIN] * p1)
-        out[i] = w[i, MOBILITY] * torque
-        f1, f2 = w[i, GAIN_X] * torque - p1, w[i, GAIN_Y] * torque - p2
-    for i in range(n):
-        out[i] -= w[i, GAIN_X] * a1 + w[i, GAIN_Y] * a2
-        swing = 2.0 * links[i, HALF] * out[i]
-        a1, a2 = a1 - swing * w[i, SIN], a2 + swing * w[i, COS]
-    if numbers[ROLLER] > 0.0:
-        for i in range(n):
-            out[i] -= a2 / w[n, UNIT] * w[i, UNIT]
-
-
-@jit(fastmath=FAST)
-def point_acceleration(link: int, arm: float, alpha: Array, links: Array, w: Array) -> tuple[float, float]:
-    """Acceleration of a point, m/s^2, by angular accelerations of the links, without that of their rates."""
-    x, y = 0.0, 0.0
-    for i in range(link + 1):
-        swing = (2.0 * links[i, HALF] if i < link else links[i, HALF] + arm) * alpha[i]
-        x, y = x - swing * w[i, SIN], y + swing * w[i, COS]
-    return x, y
-
-
-def flatten(system: ChainSystem, spare: int = 0) -> tuple[Array, Array, Array, Array]:
-    """(links, loads, numbers, scratch) of a chain, the data of `accelerate`; `spare` rows of loads stay empty.
-
-    A spare row (arm, F_x, F_y, 0, 0, 0, link from 0) is a force that is constant over a piece of a march.
-    """
+def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
+    """(links, loads, numbers, scratch) of a chain, the data of `accelerate`."""
     half, turn, masses, n = system.lengths / 2.0, system.rotation, system.masses, system.n_links
     weights = [component * masses for component in system.gravity]
     along = masses * system.axial_inertia
@@ -223,7 +184,7 @@ def flatten(system: ChainSystem, spare: int = 0) -> tuple[Array, Array, Array, A
     numbers = (turn.offset, turn.rate, *swing, system.tip == "roller", system.axial_spring, 0.0, system.length)
     return (
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
-        np.concatenate([np.array(loads, dtype=float).reshape(len(loads), 7), np.zeros((spare, 7))]),
+        np.array(loads, dtype=float).reshape(len(loads), 7),
         np.array(numbers, dtype=float),
         np.zeros((n + 1, UNIT + 1)),
     )
@@ -245,20 +206,3 @@ def accelerations(system: ChainSystem, state: ChainState) -> Array:
     omega = circular(turn.frequency_hz)
     base = -turn.amplitude * omega**2 * np.sin(omega * state.time + np.deg2rad(turn.phase_deg))
     return np.diff(out[system.n_links : -2], prepend=base)
-
-
-def delassus(system: ChainSystem, state: ChainState, points: Sequence[tuple[int, float]]) -> Array:
-    """Accelerations of points per force at them, (2 m, 2 m), 1/kg; x and y of each point, symmetric.
-
-    A point is its link, 1..N, and metres from the link's near joint.
-    """
-    links, _, numbers, w = model = flatten(system)
-    y = begin(system, state, numbers)
-    accelerate(state.time, y, np.zeros_like(y), *model)
-    places = [(link - 1, at - float(links[link - 1, HALF])) for link, at in points]
-    alpha, columns = np.zeros(system.n_links), []
-    for link, arm in places:
-        for force in ((1.0, 0.0), (0.0, 1.0)):
-            respond(link, arm, *force, links, numbers, w, alpha)
-            columns.append([part for to in places for part in point_acceleration(*to, alpha, links, w)])
-    return np.array(columns).T

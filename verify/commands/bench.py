@@ -1,7 +1,5 @@
 """The work-precision benchmarks."""
 
-from pathlib import Path
-
 import click
 
 from verify.commands.shared import charts_option, format_options, progress, save_charts, show
@@ -13,7 +11,6 @@ from verify.commands.shared import charts_option, format_options, progress, save
 @click.option("--mode", type=click.IntRange(1), help="Mode of the sets modes and engines. Default: 22.")
 @click.option("--sizes", metavar="LIST", help="Segments and elements. Default: 24,49,98,196,392.")
 @click.option("--seconds", type=float, default=5.0, show_default=True, help="Time limit of a method and of the rounds.")
-@click.option("--against", type=click.Path(path_type=Path, dir_okay=False), help="JSON of an earlier run to compare.")
 @charts_option
 @format_options
 def bench(
@@ -22,38 +19,27 @@ def bench(
     mode: int | None,
     sizes: str | None,
     seconds: float,
-    against: Path | None,
     charts: str | None,
     **formats: bool,
 ) -> None:
     """Measure run time over error of all methods: modes, field, transient, slider, ride, chain, engines.
 
-    Times are processor seconds, medians of interleaved rounds. Example: `verify bench modes chain --json > before.json`
+    Times are processor seconds, medians of interleaved rounds. Example: `verify bench modes chain --sizes 49,98`
     """
-    import json
     from dataclasses import replace
 
     from verify.bench import measure, result
     from verify.bench.methods import SETS, Problem, problem_of, questions
-    from verify.errors import InputError, shown
+    from verify.convert import convert, typed
+    from verify.errors import InputError
 
     problem = Problem()
     if scene:
         from verify.scene.load import load_scene
 
         problem = problem_of(load_scene(scene))
-    try:
-        counts = tuple(sorted({int(text) for text in sizes.split(",")})) if sizes else problem.sizes
-    except ValueError:
-        raise InputError(f"--sizes = {shown(sizes)}: give whole numbers, for instance 24,49,98") from None
-    problem = replace(problem, sizes=counts, mode=mode or problem.mode)
-    earlier = None
-    if against:
-        try:
-            earlier = json.loads(against.read_text("utf-8"))
-            earlier["questions"]
-        except (OSError, ValueError, KeyError, TypeError):
-            raise InputError(f"--against = {shown(str(against))}: give a file by `verify bench --json`") from None
+    counts = convert(typed(sizes, tuple[int, ...], "--sizes"), tuple[int, ...], "--sizes") if sizes else problem.sizes
+    problem = replace(problem, sizes=sorted(set(counts)), mode=mode or problem.mode)
     measured = []
     with progress(quiet=any(formats.values())) as step:
         for name in sets or SETS:
@@ -64,6 +50,6 @@ def bench(
                 if sets:
                     raise
                 click.echo(f"verify: {error}", err=True)  # one of all sets, which this beam or machine does not have
-    found = result(measured, earlier)
+    found = result(measured)
     show(found, **formats)
     save_charts(found, charts)

@@ -66,12 +66,11 @@ def _modes(text: str) -> int | range:
 
 def _error(text: str) -> float:
     """A relative error. A plain number of 0.1 or more is refused: most who write it mean per cent."""
-    number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
-    try:
-        value = float(number) / (100.0 if percent else 1.0)
-    except ValueError:
-        value = 0.0
-    if not 1e-12 <= value < (1.0 if percent else 0.1):
+    from verify.convert import typed
+    from verify.validation import Relative
+
+    value = typed(text, Relative, "error")
+    if not isinstance(value, float | int) or not 1e-12 <= value < (1.0 if text.endswith("%") else 0.1):
         raise InputError(f"error = {text!r}: give a relative error from 1e-12, below 0.1 or with a per cent sign: 1%")
     return value
 

@@ -93,9 +93,11 @@ def _number(word: str) -> float | None:
 
 def _ratio(text: str | None) -> float | None:
     """A relative error such as 1% or 0.01. Raises InputError."""
+    from verify.convert import typed
     from verify.errors import InputError
+    from verify.validation import Relative
 
-    value = None if text is None else _number(text.removesuffix("%"))
-    if text is not None and (value is None or not 0.0 < value < float("inf")):
+    value = None if text is None else typed(text, Relative, "within")
+    if value is not None and not (isinstance(value, float | int) and value > 0.0):
         raise InputError(f"within = {text!r}: give a relative error such as 1% or 0.01")
-    return None if value is None or text is None else value / (100.0 if text.endswith("%") else 1.0)
+    return value

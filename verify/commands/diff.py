@@ -15,7 +15,7 @@ def diff(before: str, after: str, **formats: bool) -> None:
     """Show gates, inputs and versions that differ between A and B; exit 1 where a gate that passed does not any more.
 
     Each is a run.json, the folder of a run, of a scene's runs (the newest) or of all reports (the newest of each).
-    Example: `verify diff reports/paper/2026-03-01_14-05-09 reports/paper`
+    Example: `verify diff reports/paper/2026-03-01_14-05-09-271828 reports/paper`
     """
     from verify.report.archive import read_runs
     from verify.report.diff import compare_runs

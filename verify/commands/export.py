@@ -11,7 +11,7 @@ from verify.errors import printable
 @click.command()
 @scene_argument
 @overrides_option
-@click.option("--what", metavar="WHAT", help="modes, wave, motion or tables. Default: what the file type holds.")
+@click.option("--what", metavar="WHAT", help="modes, wave or motion. Default: what the file type holds.")
 @click.option("--to", "path", required=True, metavar="FILE", help="The suffix is the file type.")
 @click.option("--model", default="segment", show_default=True, metavar="NAME", help="segment, fem or analytic.")
 @click.option(
@@ -21,7 +21,6 @@ from verify.errors import printable
     "--mode", type=click.IntRange(min=1), metavar="N", help="The mode of a picture, the number of modes of data."
 )
 @click.option("--samples", type=click.IntRange(min=2), metavar="N", help="Instants of a period or of a motion.")
-@click.option("--solid", is_flag=True, help="Picture of a solid beam by pyvista.")
 def export(
     scene: str,
     overrides: tuple[str, ...],
@@ -31,18 +30,17 @@ def export(
     count: int | None,
     mode: int | None,
     samples: int | None,
-    solid: bool,
 ) -> None:
-    """Write modes, the driven wave, the motion or the tables of SCENE to FILE.
+    """Write modes, the driven wave or the motion of SCENE to FILE.
 
-    vtu, pvd and xdmf for ParaView; csv, json and npz for data; tex for tables; png, gif, webp and mp4 for pictures.
+    vtu and xdmf (a series) for ParaView; csv, json and npz for data; png, gif and webp for pictures.
     Example: `verify export paper --what modes --to modes.vtu`
     """
     from verify.io.data import Request
     from verify.io.export import write
     from verify.scene.load import load_scene
 
-    request = Request(what=what, model=model, count=count, mode=mode, samples=samples, solid=solid)
+    request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     loaded = load_scene(scene, overrides)
     with progress() as step:
         summary = write(loaded, Path(path), request, step)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import format_options, overrides_option, print_json, scene_argument, show
+from verify.commands.shared import format_options, overrides_option, scene_argument, show
 from verify.errors import InputError, printable
 
 
@@ -12,15 +12,9 @@ from verify.errors import InputError, printable
 @format_options
 @click.pass_context
 def scenes(context: click.Context, /, **formats: bool) -> None:
-    """List the packaged scenes, show one, or write a new one."""
-    if context.invoked_subcommand is None:
-        context.invoke(list_scenes, **formats)
-
-
-@scenes.command("list")
-@format_options
-def list_scenes(**formats: bool) -> None:
-    """List the packaged scenes."""
+    """List the packaged scenes; show one, or write a new one."""
+    if context.invoked_subcommand is not None:
+        return
     from verify.report.result import Column, Result, Table
     from verify.scene.load import load_scene, packaged_scenes
 
@@ -32,8 +26,7 @@ def list_scenes(**formats: bool) -> None:
 @scenes.command("show")
 @scene_argument
 @overrides_option
-@click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
-def show_scene(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+def show_scene(scene: str, overrides: tuple[str, ...]) -> None:
     """Print the TOML of SCENE: the file itself or, with --set, the values that result.
 
     Example: `verify scenes show paper --set beam.length=0.4`
@@ -41,11 +34,8 @@ def show_scene(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     from verify.scene.load import load_scene, read_text, scene_path, tables_of, toml_text
 
     load_scene(scene, overrides)
-    if as_json:
-        print_json(tables_of(scene, overrides))
-    else:
-        text = toml_text(tables_of(scene, overrides)) if overrides else read_text(scene_path(scene))
-        click.echo(text, nl=not text.endswith("\n"))
+    text = toml_text(tables_of(scene, overrides)) if overrides else read_text(scene_path(scene))
+    click.echo(text, nl=not text.endswith("\n"))
 
 
 @scenes.command()

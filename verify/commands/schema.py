@@ -1,34 +1,26 @@
 """`verify schema`: the keys of a scene file."""
 
-from pathlib import Path
-
 import click
 
 from verify.commands.shared import console, print_json
-from verify.errors import printable
 
 _LIMITS = (("exclusiveMinimum", ">"), ("minimum", ">="), ("exclusiveMaximum", "<"), ("maximum", "<="))
 
 
 @click.command()
 @click.argument("section", required=False)
-@click.option("--json", "as_json", is_flag=True, help="Print the JSON Schema.")
-@click.option("--to", "path", metavar="FILE", help="Write the JSON Schema to FILE, for TOML editors.")
-def schema(section: str | None, as_json: bool, path: str | None) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print the JSON Schema, for TOML editors.")
+def schema(section: str | None, as_json: bool) -> None:
     """List the keys of a SECTION of a scene file with type, default and meaning; without SECTION the sections.
 
     Editors of TOML complete and check a scene whose first line is `#:schema ./verify.schema.json`.
-    Example: `verify schema beam.spring`, `verify schema --to verify.schema.json`
+    Example: `verify schema beam.spring`, `verify schema --json > verify.schema.json`
     """
-    from verify.files import write_whole
-    from verify.report.result import Column, Table, to_json
+    from verify.report.result import Column, Table
     from verify.scene.schema import TOP, scene_schema, sections
 
     if as_json:
         print_json(scene_schema(section or TOP))
-    elif path is not None:
-        write_whole(Path(path), to_json(scene_schema(section or TOP)), "--to")
-        click.echo(printable(f"wrote {path}"))
     elif section is None:
         rows = [(name, (kind.__doc__ or "").split("\n\n")[0]) for name, kind in sections().items()]
         Table("", [Column("section"), Column("meaning")], rows).print(console())

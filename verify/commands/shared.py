@@ -28,7 +28,7 @@ overrides_option = click.option(
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
 csv_option = click.option("--csv", "as_csv", is_flag=True, help="Print the first table as CSV, in SI units.")
 markdown_option = click.option("--markdown", "as_markdown", is_flag=True, help="Print the first table as Markdown.")
-charts_option = click.option("--charts", metavar="FOLDER", help="Write the charts to FOLDER as SVG, PNG and CSV.")
+charts_option = click.option("--charts", metavar="FOLDER", help="Write the charts to FOLDER as SVG and PNG.")
 
 
 def format_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -57,18 +57,17 @@ def show(result: "Result", *, as_json: bool = False, as_csv: bool = False, as_ma
 
 
 def save_charts(result: "Result", charts: str | None) -> None:
-    """Write every chart of a result as ID.svg, .png and .csv; nothing where no folder is given. Raises InputError."""
+    """Write every chart of a result as ID.svg and ID.png; nothing where no folder is given. Raises InputError."""
     if charts is None:
         return
     from pathlib import Path
 
     from verify.files import whole, writable_folder, write_whole
-    from verify.report.plotting import figure_files, figure_png
+    from verify.report.plotting import figure_png, figure_svg
 
     folder = writable_folder(Path(charts), "--charts")
     for figure in result.figures:
-        for suffix, text in zip(("svg", "csv"), figure_files(figure), strict=True):
-            write_whole(folder / f"{figure.id}.{suffix}", text, "--charts")
+        write_whole(folder / f"{figure.id}.svg", figure_svg(figure), "--charts")
         with whole(folder / f"{figure.id}.png", "--charts") as part:
             part.write_bytes(figure_png(figure))
 

@@ -2,28 +2,24 @@
 
 import click
 
-from verify.commands.shared import GATE_FAILED, charts_option, format_options, progress, save_charts, show
+from verify.commands.shared import GATE_FAILED, format_options, progress, show
 
 
 @click.command()
 @click.argument("ids", nargs=-1, metavar="[ID]...")
 @click.option("--slow", is_flag=True, help="Run the checks that take minutes as well.")
 @click.option("--list", "listed", is_flag=True, help="List the checks and run none.")
-@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Number of processes. Default: VERIFY_JOBS.")
-@charts_option
 @format_options
 def stress(
     ids: tuple[str, ...],
     slow: bool,
     listed: bool,
-    jobs: int | None,
-    charts: str | None,
     **formats: bool,
 ) -> None:
     """Run the numerical stress checks and report where each tolerance is exceeded; exit 1 where one fails.
 
     Each check measures an error along one parameter, up to where it exceeds its tolerance or the input is refused.
-    Costs are measured last, one at a time. Example: `verify stress tip-mass near-resonance`
+    Example: `verify stress tip-mass near-resonance`
     """
     from verify.stress.engine import run, select
 
@@ -36,9 +32,8 @@ def stress(
 
     with progress(len(checks), quiet=any(formats.values())) as step:
         step(checks[0].id)
-        outcomes = run(checks, jobs, step)
+        outcomes = run(checks, progress=step)
     found = result(outcomes)
     show(found, **formats)
-    save_charts(found, charts)
     if not all(one.passed for one in outcomes):
         raise SystemExit(GATE_FAILED)

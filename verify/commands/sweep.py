@@ -1,7 +1,5 @@
 """`verify sweep`: quantities over values of the scene and of their arguments."""
 
-import re
-
 import click
 
 from verify.commands.shared import (
@@ -13,7 +11,7 @@ from verify.commands.shared import (
     scene_argument,
     show,
 )
-from verify.errors import InputError, shown
+from verify.errors import InputError
 
 
 @click.command()
@@ -35,10 +33,6 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
 
     quantities = [word for word in words if "=" not in word]
     pairs = [word.partition("=") for word in words if "=" in word]
-    for key, _, text in pairs:
-        if found := re.search(r"(\d+):(\d+)(:\d+)?", text if "-" not in text else ""):
-            first, last, every = found.groups(default="")
-            raise InputError(f"{key} = {shown(text)}: write a range of whole numbers as {first}-{last}{every}")
     lists = {key: typed(text, tuple[int, ...], key) for key, _, text in pairs}
     if len(lists) < len(pairs):
         raise InputError("KEY = VALUES: one key occurs twice, give each once")

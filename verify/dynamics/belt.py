@@ -3,15 +3,16 @@
 A mass on a spring is one modal row whose rotation moves the surface, the belt a slider of prescribed speed on it.
 """
 
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
-from verify.dynamics.excitation import NO_ROWS, Rows
+from verify.dynamics.excitation import Rows
 from verify.dynamics.linear_system import Stage, Steps
-from verify.dynamics.stepping import Contacts, Recorded, run_stages
+from verify.dynamics.stepping import Contacts, Run, run_stages
 from verify.errors import InputError
 from verify.problem.slider import GRAVITY
 from verify.validation import check_number
@@ -27,9 +28,9 @@ LEVER = 1e6
 
 
 def _contact(
-    speed: float, mu: float, static: float, slope: float, load: float, pull: float, inverse_mass: float
+    speed: float, mu: float, static: float, slope: float = 0.0, load: float = 1.0, pull: float = 0.0, mass: float = inf
 ) -> Contacts:
-    """One point at x = 0 on the surface, of unit mass unless its speed is prescribed."""
+    """One point at x = 0 on the surface; an infinite mass has a prescribed speed and moves the surface."""
     contact = Contacts(
         start=0.0,
         sliders=np.zeros((1, lay.SLIDER)),
@@ -38,16 +39,16 @@ def _contact(
         contacts=np.zeros((1, lay.CONTACT)),
         indices=np.zeros((1, 3), dtype=np.int64),
         law=lay.GIVEN,
-        two_way=inverse_mass == 0.0,
+        two_way=mass == inf,
         presses=False,
     )
     columns = [lay.V, lay.INVERSE_MASS, lay.MU, lay.MU_STATIC, lay.STEEPNESS, lay.PULL]
-    contact.sliders[0, columns] = speed, inverse_mass, mu, static, slope, pull
+    contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, pull
     contact.points[0, [lay.FACE, lay.IMAGE, lay.WEIGHT, lay.LOAD, lay.LEVER]] = 1.0, 1.0, 1.0, load, LEVER
     return contact
 
 
-def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None) -> Recorded:
+def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None) -> Run:
     """Steps on a surface at rest, or on a unit mass on a unit spring in the state z = position - i speed."""
 
     def shapes(x: Array, derivative: int) -> Array:
@@ -55,26 +56,21 @@ def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None
         return np.atleast_2d(slope * x if derivative == 0 else np.full(len(x), slope * (derivative == 1)))
 
     oscillator = Rows(rates=np.array([1j]), participations=np.array([-1j]), loads=np.zeros(1, dtype=complex))
-    alone = z is None
     stage = Stage(
-        rows=NO_ROWS if alone else oscillator,
-        forced=None,
-        shapes=(lambda x, derivative: np.empty((0, len(x)))) if alone else shapes,
         field=lambda x, derivative, psi: np.zeros((1, len(x)), dtype=complex),
-        edges=np.array([-1e300, 1e300]) if alone else np.array([-1.0, 1.0]),
+        edges=np.array([-1e300, 1e300]),
         degree=1,
         omega=1.0,
-        origin=0.0,
-        unit_s=1.0,
-        envelope=np.array([1.0]),
         steps=Steps(steps, dt, steps),
     )
+    if z is not None:
+        stage = replace(stage, rows=oscillator, shapes=shapes, edges=np.array([-1.0, 1.0]))
     return run_stages([stage], np.empty(0, dtype=complex) if z is None else z, contact, np.empty(0))
 
 
 def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
     """Speed that tanh friction leaves of `speed` after `time` on a surface at rest, m/s."""
-    contact = _contact(speed, mu, mu, slope, gravity, 0.0, 1.0)
+    contact = _contact(speed, mu, mu, slope, gravity, mass=1.0)
     _run(contact, STEPS, time / STEPS)
     return float(contact.sliders[0, lay.V])
 
@@ -83,7 +79,7 @@ def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) 
     """Final creep speed of a slider under the constant acceleration `pull`, m/s. Raises InputError."""
     if not abs(pull) <= BELOW * mu * gravity:
         raise InputError(f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull")
-    contact, step = _contact(0.0, mu, mu, slope, gravity, pull, 1.0), 1.0 / (mu * gravity * slope)
+    contact, step = _contact(0.0, mu, mu, slope, gravity, pull, mass=1.0), 1.0 / (mu * gravity * slope)
     for _ in range(60):
         before = float(contact.sliders[0, lay.V])
         contact.sliders[0, lay.X] = 0.0
@@ -100,14 +96,12 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
     Raises InputError where it does not stick and slip.
     """
     if kinetic >= static:
-        raise InputError(
-            f"kinetic = {kinetic!r} is not below static = {static!r}: without a drop nothing slips, lower it"
-        )
+        raise InputError(f"kinetic = {kinetic!r} is not below static = {static!r}: nothing slips, lower it")
     for name, value in (("mass", mass), ("stiffness", stiffness), ("static", static), ("speed", speed)):
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     second, metre = sqrt(mass / stiffness), static / stiffness  # units in which mass, spring and static force are 1
     belt, step = speed * second / metre, 2.0 * pi / STEPS_PER_PERIOD
-    contact = _contact(belt, kinetic / static, 1.0, 0.0, 1.0, 0.0, 0.0)
+    contact = _contact(belt, kinetic / static, 1.0)
     contact.sliders[0, lay.FREE] = 0.0
     contact.contacts[0, [lay.STUCK, lay.FRICTION]] = 1.0, -1.0
     # every slip begins with the static force on a mass that moves with the belt, so that the first cycle is periodic
@@ -129,6 +123,6 @@ def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
     """Amplitude that a spring-mass oscillator on a floor with Coulomb friction `force` loses in a cycle, m."""
     for name, value in (("mass", mass), ("stiffness", stiffness), ("force", force)):
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
-    contact, start = _contact(0.0, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0), 12.5
+    contact, start = _contact(0.0, 1.0, 1.0), 12.5
     recorded = _run(contact, STEPS_PER_PERIOD, 2.0 * pi / STEPS_PER_PERIOD, np.array([start + 0j]))
     return (start - float(recorded.z[0].real)) * force / stiffness

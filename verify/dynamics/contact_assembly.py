@@ -40,7 +40,12 @@ def assemble(
         row[lay.FREE] = 0.0 if stays else 1.0
         rows.append(row)
         for foot in slider.feet if slider.contact else (None,):
-            sheet = _bilateral_point(slider) if foot is None else _foot_points(slider, foot)
+            if foot is None:
+                sheet = np.zeros((1, lay.POINT))
+                sheet[0, [lay.FACE, lay.IMAGE, lay.WEIGHT]] = 1.0
+                sheet[0, [lay.LOAD, lay.INERTIA]] = slider.normal_force, slider.mass
+            else:
+                sheet = _foot_points(slider, foot)
             sheet[:, lay.OFFSET] += start - starts[0]
             sheet[:, lay.LEVER] = half * sheet[:, lay.FACE] * sheet[:, lay.IMAGE]
             sheets.append(sheet)
@@ -63,13 +68,6 @@ def assemble(
         moving_load=all(s.mu == 0.0 and v is not None for s, v in zip(sliders, prescribed_speeds, strict=True)),
         restitution=first.contact.restitution if first.contact and first.contact.hard else None,
     )
-
-
-def _bilateral_point(slider: Slider) -> Array:
-    sheet = np.zeros((1, lay.POINT))
-    sheet[0, [lay.FACE, lay.IMAGE, lay.WEIGHT]] = 1.0
-    sheet[0, lay.LOAD], sheet[0, lay.INERTIA] = slider.normal_force, slider.mass
-    return sheet
 
 
 def _foot_points(slider: Slider, foot: Foot) -> Array:
@@ -129,70 +127,42 @@ def contact_rate(contacts: Contacts, sliders: Sequence[Slider], basis: TimeBasis
 
 def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]) -> None:
     """Raise InputError for sliders off the beam, over a step of its surface, or that do not run together."""
+    feet = [foot for slider in sliders for foot in slider.feet]
     for slider, start in zip(sliders, starts, strict=True):
+        span, near = contact_range(beam, start), SLACK * beam.length
         for foot in slider.feet if slider.contact else ():
-            _check_foot(beam, foot, start)
+            first, last = (start + foot.offset + side * foot.length for side in (-0.5, 0.5))
+            if first < 0.0 or last > beam.length or first < span.start - near or last > span.end + near:
+                step = span.start if first < span.start else span.end
+                over = "" if step in (0.0, beam.length) else f", over the step of beam.section at {written(step)} m"
+                raise InputError(
+                    f"slider.position = {start!r} m and slider.foot.length = {foot.length!r} m put a foot from "
+                    f"{first:.6g} to {last:.6g} m, off the beam{over}: move the slider or shorten the foot"
+                )
     check_one_range(beam, starts)
-    shared = ["coupling"] + ([] if sliders[0].contact else ["normal", "kinematics", "line", "gravity"])
-    for name in shared:
+    for name in ("coupling",) if sliders[0].contact else ("coupling", "normal", "kinematics", "line", "gravity"):
         values = {getattr(slider, name) for slider in sliders}
         if len(values) > 1:
             raise InputError(f"slider.{name} differs among sliders on one beam, {sorted(values)!r}: give all the same")
     if len({slider.contact is None for slider in sliders}) > 1:
         raise InputError("slider.contact is missing in some of the sliders on one beam: give it to all, or to none")
-    mirrored, two_way = [foot.mirrored for slider in sliders for foot in slider.feet], sliders[0].coupling == "two-way"
-    if any(mirrored) and two_way:
-        for slider in sliders:
-            for name in ("gravity", "preload_stiffness"):
-                if value := getattr(slider, name):
-                    raise InputError(
-                        f"slider.{name} = {value!r} with slider.foot.mirrored and two-way coupling: the beams would "
-                        "not stay mirror images, give 0, or coupling = 'one-way'"
-                    )
-        if not all(mirrored):
+    if any(foot.mirrored for foot in feet) and sliders[0].coupling == "two-way":
+        for name in ("gravity", "preload_stiffness"):
+            if value := max(getattr(slider, name) for slider in sliders):
+                raise InputError(f"slider.{name} = {value!r} moves mirrored beams apart: give 0, or 'one-way'")
+        if not all(foot.mirrored for foot in feet):
             raise InputError("slider.foot: some are mirrored and some are not, give all the same, or 'one-way'")
     if any(slider.contact and slider.contact.hard for slider in sliders):
-        _check_rigid(sliders)
+        _check_hard(sliders)
 
 
-def _check_foot(beam: Beam, foot: Foot, start: float) -> None:
-    """Raise InputError for a foot longer than the beam, or off it or over a step of the surface at the start."""
-    span, near = contact_range(beam, start), SLACK * beam.length
-    if foot.length > beam.length:
-        raise InputError(
-            f"slider.foot.length = {foot.length!r} m is longer than the beam, {beam.length!r} m: shorten the foot"
-        )
-    first, last = start + foot.offset - 0.5 * foot.length, start + foot.offset + 0.5 * foot.length
-    if first < 0.0 or last > beam.length:
-        raise InputError(
-            f"slider.position = {start!r} m puts a foot from {first:.6g} to {last:.6g} m, off the beam: move the "
-            "slider or shorten slider.foot"
-        )
-    if first < span.start - near or last > span.end + near:
-        step = span.start if first < span.start else span.end
-        raise InputError(
-            f"slider.position = {start!r} m puts a foot from {first:.6g} to {last:.6g} m, over the step of the "
-            f"surface where beam.section ends at {written(step)} m: move the slider or shorten slider.foot"
-        )
-
-
-def _check_rigid(sliders: Sequence[Slider]) -> None:
-    """Raise InputError for what a rigid contact with impacts does not support."""
-    slider, foot = sliders[0], sliders[0].feet[0]
+def _check_hard(sliders: Sequence[Slider]) -> None:
+    """Raise InputError for what impacts of a hard contact do not support."""
     if len(sliders) > 1:
         raise InputError("slider: a hard contact is of one slider, give slider.contact.stiffness")
-    if slider.coupling != "one-way":
-        raise InputError(
-            f"slider.coupling = {slider.coupling!r} with a hard contact, whose impacts excite all modes: give "
-            "'one-way', or slider.contact.stiffness"
-        )
-    if slider.preload_stiffness:
-        raise InputError(
-            f"slider.preload_stiffness = {slider.preload_stiffness!r} with a hard contact, which flies under a "
-            "constant force: give preload alone, or slider.contact.stiffness"
-        )
-    for name, right in (("face", "upper"), ("length", 0.0), ("offset", 0.0), ("mirrored", False)):
-        if (value := getattr(foot, name)) != right:
-            raise InputError(
-                f"slider.foot.{name} = {value!r} with a hard contact, which is a point on the upper face: leave it out"
-            )
+    slider, foot = sliders[0], sliders[0].feet[0]
+    own = [(name, getattr(slider, name)) for name in ("coupling", "preload_stiffness")]
+    own += [(f"foot.{name}", getattr(foot, name)) for name in ("face", "length", "offset", "mirrored")]
+    for (name, value), right in zip(own, ("one-way", 0.0, "upper", 0.0, 0.0, False), strict=True):
+        if value != right:
+            raise InputError(f"slider.{name} = {value!r} with a hard contact: give {right!r} or contact.stiffness")

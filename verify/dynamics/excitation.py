@@ -7,10 +7,11 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array, ComplexArray
-from verify.errors import InputError, ResonanceError
+from verify.errors import ResonanceError
 from verify.linear.field import phasor
 from verify.linear.time_basis import Ratio, TimeBasis
-from verify.problem.beam import PointForce
+from verify.problem.beam import Beam, PointForce
+from verify.validation import check_number
 
 RESONANCE = 1e-9
 """Relative distance to an undamped resonance within which a drive is refused."""
@@ -21,12 +22,6 @@ SLOW = 0.5
 """|i omega - lambda| T below which a row's forced part is a power series from rest: the closed form cancels there."""
 SERIES = 12
 """Further powers of that series: SLOW^12 / 12! is rounding."""
-MOST_PERIODS = 1e12
-"""Periods after which a phase is uncertain by 1e-3 rad."""
-DECAYED = 40.0
-"""Nepers after which a free mode is negligible."""
-LARGE = 1e100
-"""Radians in a run beyond which a mode counts as undamped."""
 
 
 class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -125,33 +120,20 @@ def _amplitudes(stiff: ComplexArray, load: ComplexArray, unit_s: float) -> Compl
     return a
 
 
+def check_damping(beam: Beam, modal_damping: float | None) -> None:
+    """Raise InputError for a damping ratio, prescribed or that of the beam's loss factor, outside 0 to 1."""
+    if modal_damping is None:
+        check_number("half of beam.loss_factor", 0.5 * beam.loss_factor, "ratio of every mode", at_least=0, below=1)
+    else:
+        check_number("modal_damping", modal_damping, "ratio of every mode", at_least=0, below=1)
+
+
 def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) -> None:
     """Raise InputError where an undamped mode is driven at its own frequency."""
-    if not frequency_hz:
-        return
     ratio = np.abs(2.0 * np.pi * frequency_hz / basis.omegas - 1.0)
     nearest = int(ratio.argmin())
     if ratio[nearest] < RESONANCE and not np.broadcast_to(damping, ratio.shape)[nearest]:
         raise ResonanceError(
             f"frequency_hz = {frequency_hz!r} lies {ratio[nearest]:.1e} (relative) from the undamped resonance of mode "
             f"{nearest + 1} of the {basis.model} model: give the beam a loss_factor or choose another frequency"
-        )
-
-
-def check_phase(name: str, hertz: float, duration: float, since: float = 0.0) -> None:
-    """Raise InputError where an oscillation lasts until its phase is unknown."""
-    if hertz * (since + duration) > MOST_PERIODS:
-        before = f" after {since!r} s" if since else ""
-        raise InputError(
-            f"duration = {duration!r} s{before} is more than {MOST_PERIODS:.0e} periods of {name}, at {hertz:.4g} Hz, "
-            "whose phase is not known to 1e-3 rad by then: shorten it"
-        )
-
-
-def check_free_phases(basis: TimeBasis, damping: Ratio, duration: float) -> None:
-    """The same for every free mode that does not decay first."""
-    lasting = (damping * MOST_PERIODS * 2.0 * np.pi < DECAYED) | (basis.omegas >= LARGE / duration)
-    if lasting.any():
-        check_phase(
-            "the highest mode that does not decay first", float(basis.omegas[lasting].max()) / (2.0 * np.pi), duration
         )

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array
-from verify.dynamics.excitation import check_free_phases, modal_rows
+from verify.dynamics.excitation import check_damping, modal_rows
 from verify.dynamics.linear_system import basis_of
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown
@@ -110,19 +110,11 @@ def free_vibration(
         For bad arguments, and for a beam with rigid-body motions.
     """
     check_number("duration", duration, "seconds", above=0)
-    zeta, field = (
-        (0.5 * beam.loss_factor, "half of beam.loss_factor")
-        if modal_damping is None
-        else (modal_damping, "modal_damping")
-    )
-    check_number(field, zeta, "ratio of every mode", at_least=0, below=1)
-    check_whole("samples", samples, 2)
-    if samples > MOST_SAMPLES:
-        raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
+    check_damping(beam, modal_damping)
+    check_whole("samples", samples, 2, MOST_SAMPLES)
     points = vector_on("at", at, beam.length)
     basis = basis_of(beam, model, count, modes)
     damping = damping_in(basis, modal_damping)
-    check_free_phases(basis, damping, duration)
     q, rates, truncation = _start(basis, shape, amplitude, velocity)
     rows, times = modal_rows(basis, (), damping), np.linspace(0.0, duration, samples)
     z0, shapes, parts = rows.of_state(q, rates), basis.shapes(points, 0), []
@@ -158,35 +150,26 @@ def _start(
     """(q, dq/dt) of every mode at the start, and what they leave of the shape. Raises InputError."""
     if shape is None and velocity is None:
         raise InputError("shape is None and so is velocity: give one of them, or both, else nothing moves")
-    numbered = isinstance(shape, int) and not isinstance(shape, bool)
-    if amplitude is not None and not numbered:
-        raise InputError(f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out")
     rest = np.zeros(len(basis.omegas)), 0.0
     rates = rest[0] if velocity is None else _projected(basis, "velocity", velocity)[0]
-    if numbered:
-        return _single_mode(basis, shape, amplitude), rates, 0.0
-    q, truncation = rest if shape is None else _projected(basis, "shape", shape)
-    return q, rates, truncation
-
-
-def _single_mode(basis: TimeBasis, mode: object, amplitude: float | None) -> Array:
-    """One mode with its largest deflection `amplitude`, m. Raises InputError."""
-    check_whole("shape", mode, 1)
-    assert isinstance(mode, int)
-    if mode > len(basis.omegas):
-        raise InputError(f"shape = {mode}: the {basis.model} model has {len(basis.omegas)} modes, raise count or modes")
+    if not isinstance(shape, int) or isinstance(shape, bool):
+        if amplitude is not None:
+            raise InputError(
+                f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out"
+            )
+        q, truncation = rest if shape is None else _projected(basis, "shape", shape)
+        return q, rates, truncation
+    check_whole("shape", shape, 1, len(basis.omegas))
     if amplitude is None:
-        raise InputError(f"amplitude is missing: give mode {mode} its largest deflection in metres")
-    check_number(
-        "amplitude", amplitude, "metres", at_least=-1e100 * basis.beam.length, at_most=1e100 * basis.beam.length
-    )
-    x = np.linspace(0.0, basis.beam.length, 20 * mode + 41)
-    least, largest = extremes(lambda x: np.asarray(basis.shapes(x, 0)[mode - 1]), x)
-    size, values = max(largest, -least), basis.shapes(x, 0)[mode - 1]
-    first = values[np.argmax(abs(values) > 1e-3 * size)]
+        raise InputError(f"amplitude is missing: give mode {shape} its largest deflection in metres")
+    length, own = basis.beam.length, slice(shape - 1, shape)
+    check_number("amplitude", amplitude, "metres", at_least=-1e100 * length, at_most=1e100 * length)
+    x = np.linspace(0.0, length, 20 * shape + 41)
+    least, largest = extremes(lambda x: np.asarray(basis.shapes(x, 0)[own][0]), x)
+    size, values = max(largest, -least), basis.shapes(x, 0)[own][0]
     q = np.zeros(len(basis.omegas))
-    q[mode - 1] = amplitude * np.sign(first) / size
-    return q
+    q[own] = amplitude * np.sign(values[np.argmax(abs(values) > 1e-3 * size)]) / size
+    return q, rates, 0.0
 
 
 def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]:
@@ -196,12 +179,9 @@ def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]
     if name == "shape":
         ends = np.array([0.0, beam.length])
         largest = abs(function(np.linspace(0.0, beam.length, 33))).max()
-        for support, place, value in zip(beam.supports, ends, function(ends), strict=True):
+        for support, place, value in zip(beam.supports, ends.tolist(), function(ends).tolist(), strict=True):
             if support in ("pinned", "clamped") and abs(value) > NEAR * largest:
-                raise InputError(
-                    f"shape = {float(value)!r} m at x = {float(place)!r} m, where the beam is {support}: let it be 0 "
-                    "there, or give the beam another support"
-                )
+                raise InputError(f"shape = {value!r} m at x = {place!r} m, where the beam is {support}: let it be 0")
     # Gauss points between the edges of the shapes, the steps of the beam and the corners of the given shape
     steps = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
     pieces = basis.edges if basis.count is not None else np.append(basis.edges[:-1:3], beam.length)
@@ -238,21 +218,15 @@ def _function(name: str, given: Shape, length: float) -> tuple[Callable[[Array],
                 result = [given(float(one)) for one in x]
             found = real_array(f"{name}(x)", result, "SI")
             if found.shape not in ((), x.shape) or not np.isfinite(found).all():
-                raise InputError(
-                    f"{name}(x) returns {shown(result)} for {len(x)} places: return as many finite numbers"
-                )
+                raise InputError(f"{name}(x) = {shown(result)} for {len(x)} places: return as many finite numbers")
             return np.broadcast_to(found, x.shape)
 
         return values, np.empty(0)
     if not isinstance(given, list | tuple | np.ndarray) or len(given) != 2:
-        raise InputError(
-            f"{name} = {shown(given)}: give a function of x, a pair (x, values), or a mode's number with its amplitude"
-        )
+        raise InputError(f"{name} = {shown(given)}: give a function of x, a pair (x, values), or of shape a mode")
     x, y = real_array(f"{name}[0]", given[0], "metres"), real_array(f"{name}[1]", given[1], "SI")
     if x.ndim != 1 or x.shape != y.shape or len(x) < 2 or not np.isfinite(y).all():
         raise InputError(f"{name} has x of the shape {x.shape} and values of {y.shape}: give as many finite ones")
-    if not (np.diff(x) > 0).all() or abs(x[0]) > 1e-9 * length or abs(x[-1] - length) > 1e-9 * length:
-        raise InputError(
-            f"{name}[0] runs from {float(x[0])!r} to {float(x[-1])!r}: let x ascend from 0 to {length!r} m"
-        )
+    if not (np.diff(x) > 0).all() or max(abs(x[0]), abs(x[-1] - length)) > 1e-9 * length:
+        raise InputError(f"{name}[0] = {shown(given[0])}: let x ascend from 0 to {length!r} m")
     return lambda at: np.asarray(np.interp(at, x, y)), x

@@ -68,10 +68,7 @@ def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
     loop = np.eye(len(x)) - omega**2 * (shapes.T * compliance) @ shapes * mass
     if np.linalg.svd(loop, compute_uv=False).min() < RESONANCE:
-        raise InputError(
-            f"slider.mass = {float(mass[0])!r} kg on the beam at {float(x[0])!r} m is in resonance with the drive: "
-            "give the beam a loss_factor or choose another mass"
-        )
+        raise InputError(f"slider.mass = {float(mass[0])!r} kg is in resonance with the drive: give beam.loss_factor")
     force = mass * omega**2 * np.linalg.solve(loop, stage.drive_shapes(x, 0)[0]) * np.exp(1j * omega * stage.origin)
     phasors = (shapes @ force) * compliance
     return stage.rows.of_state(phasors.real, (1j * omega * phasors).real)
@@ -90,6 +87,7 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
     rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
     along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
     along = along - slope * rise if contacts.following else along
+    along = along * contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.FREE]
     climb = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
     if not len(contacts.feet):
         state[:, lay.RISE_RATE] = climb
@@ -97,19 +95,17 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
     foot, rigid = contacts.indices[:, lay.OF_FOOT], contacts.restitution is not None
     for number, row in enumerate(contacts.feet):
         own = foot == number
-        row[lay.HEIGHT] = _rest_height(number, p[own], level[own], row, rigid)
+        row[lay.HEIGHT] = float(level[own][0]) if rigid else _rest_height(number, p[own], level[own], row)
     if rigid:  # a rigid point moves with the surface from the start
         contacts.feet[:, lay.CLIMB] = climb
     height = contacts.feet[foot, lay.HEIGHT]
     state[:, lay.DEPTH] = p[:, lay.INSET] + p[:, lay.FACE] * (p[:, lay.IMAGE] * level - height)
 
 
-def _rest_height(number: int, points: Array, level: Array, foot: Array, rigid: bool) -> float:
+def _rest_height(number: int, points: Array, level: Array, foot: Array) -> float:
     """Height at which the springs of a level foot carry its load over these levels, m. Raises InputError."""
     from scipy.optimize import brentq
 
-    if rigid:
-        return float(level[0])
     face, stiff, press = points[:, lay.FACE], points[:, lay.STIFF], float(foot[lay.PRESS])
     depth = points[:, lay.INSET] + face * points[:, lay.IMAGE] * level
 
@@ -119,8 +115,7 @@ def _rest_height(number: int, points: Array, level: Array, foot: Array, rigid: b
     total = float(stiff.sum())
     wide = 2.0 * float(np.abs(level).max()) + 2.0 * (abs(press) + total * points[:, lay.INSET].max()) / total + 1e-12
     if not force(-wide) > 0.0 > force(wide):
-        reason = "its weight is more than the preload" if press < 0.0 else "it has no load"
-        raise InputError(f"slider.preload leaves foot {number + 1} off the beam, {reason}: raise slider.preload")
+        raise InputError(f"slider.preload leaves foot {number + 1} without load or off the beam: raise it")
     return float(brentq(force, -wide, wide, xtol=1e-15 * max(wide, 1e-9), rtol=1e-14))
 
 

@@ -154,7 +154,7 @@ def add_sums(
             if codes[lay.PRESSES] > 0 or spring:
                 across = dt * push * face * (lift - (contacts[i, lay.RAMP] if spring else 0.0))
                 sums[b, lay.ACROSS] += across
-                sums[b, lay.LIFTED_BEAM] -= across
+                sums[b, lay.LIFTED_BEAM] -= points[i, lay.WEIGHT] * across
             if spring:
                 k, uphill = indices[i, lay.OF_FOOT], dt * push * face * contacts[i, lay.RAMP]
                 sums[b, lay.UPHILL] += uphill

@@ -166,7 +166,8 @@ def look(
         along = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
         lift, share = rise + slope * lever * turn, 4.0 / 6.0 if when == MIDDLE else 1.0 / 6.0  # Simpson's rule
         if codes[lay.FOLLOWING] > 0:
-            tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise
+            tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise * sliders[b, lay.FREE]
+            tilt = tilt if sliders[b, lay.INVERSE_MASS] > 0.0 else 0.0  # what prescribes a speed takes it
             if when == START:
                 if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
                     sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
@@ -175,7 +176,7 @@ def look(
             sliders[b, lay.TILT] += share * tilt
             sliders[b, lay.DRIFT] += share * drift
             contacts[i, lay.TILT_END], contacts[i, lay.DRIFT_END] = tilt, drift
-        on = v - slope * rise if codes[lay.FOLLOWING] > 0 else v
+        on = sliders[b, lay.FREE] * (v - slope * rise if codes[lay.FOLLOWING] > 0 else v)
         climb = rise + slope * (on + lever * (turn + bend * on))
         if when == START:
             contacts[i, lay.START], contacts[i, lay.MEAN], contacts[i, lay.LIFT] = along, share * along, share * lift
@@ -184,9 +185,10 @@ def look(
         elif when == END:
             contacts[i, lay.MEAN] += share * along
             contacts[i, lay.LIFT] += share * lift
-            contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, v
+            contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, sliders[b, lay.FREE] * v
             contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
-            contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = slope * (1.0 + lever * bend), climb
+            ramp = sliders[b, lay.FREE] * slope * (1.0 + lever * bend)
+            contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = ramp, climb
         elif when == MIDDLE:
             image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
             contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope

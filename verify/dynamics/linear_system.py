@@ -49,13 +49,17 @@ class Growth(msgspec.Struct, frozen=True, eq=False):
     coefficients: Array
 
 
+def _no_shapes(x: Array, derivative: int) -> Array:
+    return np.empty((0, len(x)))
+
+
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A stretch of time in which the forces keep one envelope; its own time begins at 0."""
 
-    rows: Rows
-    forced: Forced | None
+    rows: Rows = NO_ROWS
+    forced: Forced | None = None
     """None where the drive's rows are a steady field."""
-    shapes: Callable[[Array, int], Any]
+    shapes: Callable[[Array, int], Any] = _no_shapes
     """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 where no mode is free."""
     field: Callable[[Array, int, Any], ComplexArray]
     """(x, derivative, psi) -> shapes of the drive, one for each power of t, (degree + 1, len(x)), m."""
@@ -63,10 +67,10 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(pieces + 1,), m: between them all shapes are polynomials of `degree`."""
     degree: int
     omega: float
-    origin: float
+    origin: float = 0.0
     """Seconds before the stage begins."""
-    unit_s: float
-    envelope: Array
+    unit_s: float = 1.0
+    envelope: Array = CONSTANT
     """Amplitude of the forces as a polynomial in t / unit_s."""
     steps: Steps
     complex_rows: int = 0
@@ -114,16 +118,11 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def rates_at_start(self, z: ComplexArray) -> Array:
         """Time derivatives of the factors at time 0 for free rows z, (columns,)."""
-        rates, drive = (
-            self.rows.rates * z,
-            np.zeros(1 if self.forced is None else self.forced.forward.shape[1], complex),
-        )
-        drive[0] = 1j * self.omega
-        drive[1:2] = 1.0 / self.unit_s
+        rates, powers = self.rows.rates * z, 1 if self.forced is None else self.forced.forward.shape[1]
+        drive = np.array([1j * self.omega, 1.0 / self.unit_s, *(0.0,) * powers])[:powers]
         drive *= np.exp(1j * self.omega * self.origin)
-        return np.concatenate(
-            [rates.real, -rates[len(rates) - self.complex_rows :].imag, interleaved(drive[None].conj())[0]]
-        )
+        imaginary = rates[len(rates) - self.complex_rows :].imag
+        return np.concatenate([rates.real, -imaginary, interleaved(drive[None].conj())[0]])
 
     def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
         """Closed form, (len(t), len(x)), m: free rows from z at t = 0, and the drive."""
@@ -178,44 +177,29 @@ def stages_from_rest(
     if tail:  # its third derivative jumps where a force acts
         basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
     for piece in pieces:
-        forced = forced_response(rows, omega, piece.coefficients, piece.steps.duration, origin)
+        unit, envelope = piece.steps.duration, piece.coefficients
+        forced = forced_response(rows, omega, envelope, unit, origin)
+        growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
+
+        def field(x: Array, derivative: int, psi: Any, forced: Forced = forced, growth: Array = growth) -> ComplexArray:
+            shapes = forced.drive_shapes(psi)  # truncated modes follow the envelope at once
+            return shapes + np.outer(growth, tail(x, derivative)) if tail else shapes
+
         stages.append(
             Stage(
-                rows=rows,
-                forced=forced,
-                shapes=basis.shapes,
-                field=_forced_field(forced, tail, piece.coefficients),
-                edges=_to_the_end(basis.edges, basis.beam),
-                degree=basis.degree,
-                omega=omega,
-                origin=origin,
-                unit_s=piece.steps.duration,
-                envelope=piece.coefficients,
-                steps=piece.steps,
+                rows=rows, forced=forced, shapes=basis.shapes, field=field, edges=_to_the_end(basis.edges, basis.beam),
+                degree=basis.degree, omega=omega, origin=origin, unit_s=unit, envelope=envelope, steps=piece.steps,
             )
-        )
-        origin += piece.steps.duration
+        )  # fmt: skip
+        origin += unit
     return stages
-
-
-def _forced_field(
-    forced: Forced, tail: Callable[[Array, int], ComplexArray] | None, envelope: Array
-) -> Callable[[Array, int, Any], ComplexArray]:
-    """`Stage.field` of the forced rows and of the truncated modes, which follow the envelope at once."""
-    growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
-
-    def field(x: Array, derivative: int, psi: Any) -> ComplexArray:
-        shapes = forced.drive_shapes(psi)
-        return shapes + np.outer(growth, tail(x, derivative)) if tail else shapes
-
-    return field
 
 
 def steady_stage(
     harmonic: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio
 ) -> Stage:
     """A beam in its steady state; with a basis, its modes are at rest at first and respond to contact forces."""
-    edges, degree = steady_edges(harmonic)
+    edges, degree = _steady_edges(harmonic)
     if basis:
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
 
@@ -224,19 +208,9 @@ def steady_stage(
         higher, rest = divmod(derivative, 4) if harmonic.count is None and harmonic.beam.uniform else (0, derivative)
         return np.asarray(harmonic.shapes(x, rest) * harmonic.wavenumber ** (4 * higher))[None, :]
 
-    return Stage(
-        rows=modal_rows(basis, (), damping) if basis else NO_ROWS,
-        forced=None,
-        shapes=basis.shapes if basis else lambda x, derivative: np.empty((0, len(x))),
-        field=field,
-        edges=_to_the_end(edges, harmonic.beam),
-        degree=degree,
-        omega=harmonic.omega,
-        origin=origin,
-        unit_s=1.0,
-        envelope=CONSTANT,
-        steps=steps,
-    )
+    edges = _to_the_end(edges, harmonic.beam)
+    stage = Stage(field=field, edges=edges, degree=degree, omega=harmonic.omega, origin=origin, steps=steps)
+    return replace(stage, rows=modal_rows(basis, (), damping), shapes=basis.shapes) if basis else stage
 
 
 def _to_the_end(edges: Array, beam: Beam) -> Array:
@@ -244,7 +218,7 @@ def _to_the_end(edges: Array, beam: Beam) -> Array:
     return np.append(edges[:-1], beam.length)
 
 
-def steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
+def _steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
     """Edges of the polynomial pieces of a steady field, m, and their degree."""
     beam = harmonic.beam
     if harmonic.count is not None:

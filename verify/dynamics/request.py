@@ -10,8 +10,8 @@ from msgspec.structs import replace
 
 from verify.arrays import Array
 from verify.dynamics.contact_assembly import check_sliders
-from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_phase
-from verify.dynamics.linear_system import Growth, cut
+from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_damping
+from verify.dynamics.linear_system import Growth, Stage, cut
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown, written
 from verify.linear.mesh import part_counts
@@ -19,7 +19,7 @@ from verify.linear.positions import forces_on, vector_on
 from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam, PointForce, check_frequency
-from verify.problem.slider import Slider
+from verify.problem.slider import GRAVITY, Slider
 from verify.validation import check_kind, check_number, check_unmasked, check_whole, plain, several
 
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
@@ -27,21 +27,16 @@ STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
 not all reverse their friction at the same phases of it."""
 FEET_MODES = 80
 """Modes of the exact beam under feet, unless given."""
-SOFT_START_PERIODS = 2.0
-"""Of a scene from rest: forces that act at once excite all modes, under which a slider's path does not converge."""
 SHORTEST = 1e-100
-"""Seconds of a motion, and periods of its growth: their squares are numbers."""
+"""Least seconds of a motion, and periods of a growth, shorter ones being a step: their squares are numbers."""
 COARSEST = 0.25
 """Longest step of a slider in periods of the drive."""
+MOST_PERIODS = 1e12
+"""Periods of the drive after which its phase is uncertain by 1e-3 rad."""
 MOST_STEPS = 2e9
 MOST_SAMPLES = 10_000_000
 Envelope = Sequence[tuple[float, Sequence[float]]]
 """Pieces (seconds, coefficients of ascending powers of t / seconds, 0 to 1 within each) of the forces' amplitude."""
-
-
-def soft_start(start: str, periods: float | None) -> float:
-    """Periods over which the forces grow in a scene: the given ones, else two from rest and none in a steady beam."""
-    return (SOFT_START_PERIODS if start == "rest" else 0.0) if periods is None else periods
 
 
 class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -81,65 +76,73 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether the sliders act on the beam."""
         return bool(self.sliders) and self.sliders[0].coupling == "two-way"
 
+    @property
+    def gravity(self) -> float:
+        """Least N / m of the sliders, m/s^2, or that of a slider under its weight."""
+        return min((slider.effective_gravity for slider in self.sliders), default=GRAVITY)
+
     def damping_in(self, basis: TimeBasis | None) -> Ratio:
         """Damping ratio of all modes of a basis, one or (n,). Raises InputError for an overdamped mode."""
         return 0.0 if basis is None else damping_in(basis, self.modal_damping)
 
+    def notes(self, basis: TimeBasis | None) -> tuple[str, ...]:
+        """Modes, damping and growth of the forces."""
+        notes = [f"modes: {basis.method}" if basis else f"steady field of the {self.model} model, no modes"]
+        if self.modal_damping is not None:
+            notes.append(f"damping: ratio {self.modal_damping:g}")
+        elif self.beam.loss_factor:
+            notes.append(f"damping: loss factor {self.beam.loss_factor:g}")
+        if len(self.pieces) > 1:
+            notes.append(f"forces grow over {sum(piece.steps.duration for piece in self.pieces[:-1]):.6g} s")
+            reached = float(np.sum(self.pieces[-2].coefficients))
+            if abs(reached - 1.0) >= 1e-9:
+                notes.append(f"forces jump from {reached:.6g} times their amplitude to all of it")
+        return tuple(notes)
+
+    def end(self, stage: Stage, z: Any, time: float, **contact: Any) -> EndState:
+        """The state at a time, s, with all of the motion z of the last stage's rows."""
+        q, rates = stage.rows.state(z)
+        steady = self.start == "steady"
+        return EndState(
+            beam=self.beam, model=self.model, count=self.count, time=time, q=q, rates=rates, steady=steady, **contact
+        )
+
+    def continued(self, stage: Stage) -> Any:
+        """All of the motion z of the rows with which the earlier run ended. Raises InputError for other modes."""
+        before, n = self.before, len(stage.rows.rates)
+        assert before is not None
+        if len(before.q) != n:
+            raise InputError(f"continue_from has {len(before.q)} modes and this run {n}: give both the same modes")
+        return stage.rows.of_state(before.q, before.rates)
+
 
 def request_of(
-    beam: Beam,
-    forces: Any,
-    frequency_hz: float,
-    duration: float,
-    *,
-    model: str,
-    count: int | None,
-    modes: int | None,
-    start: str | None,
-    soft_start_periods: float,
-    envelope: Envelope,
-    modal_damping: float | None,
-    slider: Any,
-    prescribed_speed: Any,
-    fixed_position: Any,
-    at: Any,
-    samples: int,
-    step: float | None,
-    steps_per_period: int | None,
-    continue_from: Any,
-) -> Request:
+    beam: Beam, forces: Any, frequency_hz: float, duration: float, *, model: str, count: int | None, modes: int | None,
+    start: str | None, soft_start_periods: float, envelope: Envelope, modal_damping: float | None, slider: Any,
+    prescribed_speed: Any, fixed_position: Any, at: Any, samples: int, step: float | None,
+    steps_per_period: int | None, continue_from: Any,
+) -> Request:  # fmt: skip
     """A checked request; arguments as those of `simulate`. Raises InputError."""
     check_frequency("frequency_hz", frequency_hz, beam)
-    check_number("duration", duration, "seconds", above=0)
     check_number("duration", duration, "seconds", at_least=SHORTEST)
-    check_whole("samples", samples, 2)
-    if samples > MOST_SAMPLES:
-        raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
-    zeta = 0.5 * beam.loss_factor if modal_damping is None else modal_damping
-    field = "half of beam.loss_factor" if modal_damping is None else "modal_damping"
-    check_number(field, zeta, "ratio of every mode", at_least=0, below=1)
+    check_whole("samples", samples, 2, MOST_SAMPLES)
+    check_damping(beam, modal_damping)
     kind, sliders = MODELS.named(model), () if slider is None else several("slider", slider, Slider)
     driven = forces_on(beam, forces)
     if not driven and not sliders:
         raise InputError("forces is empty: give at least one PointForce")
-    feet = bool(sliders) and sliders[0].contact is not None
+    feet, two_way = (bool(sliders) and sliders[0].contact is not None), (sliders and sliders[0].coupling == "two-way")
     start = ("steady" if feet else "rest") if start is None else start
     if start not in ("rest", "steady"):
         raise InputError(f"start = {start!r} is not known: known are rest, steady")
     if sliders and sliders[0].line == "raw" and ("raw" not in kind.lines or start == "steady"):
-        raise InputError(
-            f"slider.line = 'raw' with model = {model!r}, start = {start!r}: only rigid links from rest have straight "
-            "edges, leave it out"
-        )
-    before = _before(continue_from, beam, model, count, start, sliders)
-    grown = _growth(soft_start_periods, envelope, frequency_hz, start == "steady" or before is not None)
-    check_phase("the drive", frequency_hz, duration, before.time if before else 0.0)
-    two_way = bool(sliders) and sliders[0].coupling == "two-way"
+        raise InputError("slider.line = 'raw': only rigid links from rest have straight edges, leave it out")
     if modes is not None and start == "steady" and not two_way:
         raise InputError(f"modes = {modes!r}: a steady field without two-way coupling has none, leave it out")
-    replaced = modal_damping is not None and (
-        modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
-    )
+    before = _before(continue_from, beam, model, count, start, sliders)
+    if frequency_hz * (duration + (before.time if before else 0.0)) > MOST_PERIODS:
+        raise InputError(f"duration = {duration!r} s: the phase of the drive is unknown after 1e12 periods, shorten it")
+    replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
     own = before.starts if before and before.contact is not None and sliders else ()
     starts = own or tuple(one.start_on(beam) for one in sliders)
     if sliders:
@@ -149,6 +152,7 @@ def request_of(
     for speed, one in zip(speeds, fixed, strict=True):
         check_number("prescribed_speed", 0.0 if speed is None else speed, "m/s")
         check_kind("fixed_position", one, bool)
+    grown = _growth(soft_start_periods, envelope, frequency_hz, start == "steady" or before is not None)
     longest = _longest_step(frequency_hz, duration, step, steps_per_period, sliders)
     return Request(
         beam=beam,
@@ -164,7 +168,7 @@ def request_of(
         prescribed_speeds=speeds,
         fixed=fixed,
         points=vector_on("at", at, beam.length),
-        pieces=cut_envelope(duration, grown, longest, samples - 1),
+        pieces=_cut(duration, grown, longest, samples - 1),
         step=step,
         before=before,
     )
@@ -179,24 +183,23 @@ def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
     return values
 
 
-def _growth(soft: float, envelope: Envelope, frequency_hz: float, moves: bool) -> tuple[tuple[float, Array], ...]:
+def _growth(soft: float, envelope: Envelope, frequency_hz: float, moves: bool) -> list[tuple[float, Array]]:
     """The pieces (seconds, coefficients) over which the forces grow. Raises InputError."""
     check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
-    if 0.0 < soft < SHORTEST:
-        raise InputError(f"soft_start_periods = {soft!r}: give 0, or at least {SHORTEST:g}, whose square is a number")
     check_unmasked("envelope", envelope)
     try:
-        pieces = tuple((float(seconds), np.asarray(c, dtype=float)) for seconds, c in envelope)
+        pieces = [(float(seconds), np.asarray(c, dtype=float)) for seconds, c in envelope]
+        good = all(0.0 < s < inf and c.ndim == 1 and len(c) and np.isfinite(c).all() for s, c in pieces)
     except (TypeError, ValueError):
-        pieces = ((0.0, np.zeros(())),)
+        pieces, good = [], False
+    if not good:
+        raise InputError(f"envelope = {shown(envelope)}: give pieces (seconds above 0, finite coefficients)")
     if soft and pieces:
         raise InputError(f"soft_start_periods = {soft!r} and envelope = {shown(envelope)}: give one of the two")
     if (soft or pieces) and moves:
         given = f"soft_start_periods = {soft!r}" if soft else f"envelope = {shown(envelope)}"
         raise InputError(f"{given} with start = 'steady' or continue_from: the beam moves already, leave it out")
-    if any(c.ndim != 1 for _, c in pieces):
-        raise InputError(f"envelope = {shown(envelope)}: give pieces (seconds, coefficients)")
-    return ((soft / frequency_hz, SMOOTH_STEP),) if soft else pieces
+    return [(soft / frequency_hz, SMOOTH_STEP)] if soft >= SHORTEST else pieces
 
 
 def _longest_step(
@@ -204,9 +207,9 @@ def _longest_step(
 ) -> float:
     """The longest step of a slider, s; infinite of a beam alone. Raises InputError."""
     if not sliders:
-        for name, value in (("step", step), ("steps_per_period", steps_per_period)):
-            if value is not None:
-                raise InputError(f"{name} = {shown(value)} is a slider's: a beam alone takes no steps, leave it out")
+        if step is not None or steps_per_period is not None:
+            name = "steps_per_period" if step is None else "step"
+            raise InputError(f"{name}: a beam alone takes no steps, leave it out or give slider")
         return inf
     least = STEPS_PER_PERIOD if sliders[0].contact is None else FEET_STEPS_PER_PERIOD
     per_period = least if steps_per_period is None else steps_per_period
@@ -214,42 +217,36 @@ def _longest_step(
     longest = 1.0 / (per_period * frequency_hz) if step is None else step
     check_number("step", longest, "seconds", above=0)
     check_step(longest, frequency_hz)
-    if duration / longest > MOST_STEPS:
-        raise InputError(
-            f"step = {longest!r} takes more than {MOST_STEPS:g} steps: lengthen the step or shorten the duration"
-        )
+    check_steps(duration, longest)
     return longest
+
+
+def check_steps(duration: float, step: float) -> None:
+    """Raise InputError for a step, s, of which a run takes too many."""
+    if duration / step > MOST_STEPS:
+        raise InputError(
+            f"duration = {written(duration)} s: {duration / step:.2g} steps are too many, shorten it or lengthen step"
+        )
 
 
 def check_step(step: float, frequency_hz: float) -> None:
     """Raise InputError for a slider's step, s, that does not resolve the period of the drive."""
     if step * frequency_hz > COARSEST:
-        raise InputError(
-            f"step = {step!r} s is {step * frequency_hz:.3g} periods of the drive, which it does not resolve: "
-            f"give at most {COARSEST / frequency_hz:.3g} s"
-        )
+        raise InputError(f"step = {step!r} s does not resolve the drive: give at most {COARSEST / frequency_hz:.3g} s")
 
 
-def cut_envelope(
-    duration: float, grown: Sequence[tuple[float, Array]], longest: float, samples: int
-) -> tuple[Growth, ...]:
+def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
     """Steps of every piece of the envelope and of the constant forces after it, samples shared by length.
 
     As many samples as requested, or one for each piece where those are more. Raises InputError.
     """
-    lengths = [seconds for seconds, _ in grown]
-    if any(not 0.0 < s < np.inf for s in lengths) or any(not len(c) or not np.all(np.isfinite(c)) for _, c in grown):
-        raise InputError(
-            "envelope: give pieces (seconds, coefficients), each longer than 0 s and of finite coefficients"
-        )
-    rest = duration - sum(lengths)
+    total = sum(seconds for seconds, _ in grown)
+    rest = duration - total
     if rest < -1e-12 * duration:
-        soft = any(coefficients is SMOOTH_STEP for _, coefficients in grown)
         raise InputError(
-            f"the forces grow over {written(sum(lengths))} s of duration = {written(duration)} s: "
-            f"{'lower soft_start_periods' if soft else 'shorten envelope'}, or lengthen the duration"
+            f"soft_start_periods or envelope last {written(total)} s: lengthen duration = {written(duration)} s"
         )
-    pieces = list(grown) + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
+    pieces = grown + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
     shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]
     shares[-1] = samples - sum(shares[:-1])
     if shares[-1] < 1:
@@ -266,16 +263,12 @@ def _before(
     before = getattr(run, "end", None)
     if not isinstance(before, EndState):
         raise InputError(f"continue_from = {shown(run)}: give a Motion or a FreeVibration")
-    if (before.model, before.count) != (model, count):
-        raise InputError(
-            f"continue_from is of model = {before.model!r}, count = {before.count!r} and this run of "
-            f"model = {model!r}, count = {count!r}: give both the same"
-        )
+    ran = (before.model, before.count, "steady" if before.steady else "rest")
+    for name, here, there in zip(("model", "count", "start"), (model, count, start), ran, strict=True):
+        if here != there:
+            raise InputError(f"{name} = {here!r}: continue_from is a run with {name} = {there!r}, give that")
     if replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
         raise InputError("continue_from is of another beam: give the one it was run with, but for loss_factor")
-    if (start == "steady") != before.steady:
-        own = "steady" if before.steady else "rest"
-        raise InputError(f"start = {start!r}: continue_from is a run with start = {own!r}, give that")
     if before.contact is None or not sliders:
         return before
     if before.off:
@@ -283,12 +276,9 @@ def _before(
     if len(sliders) != len(before.starts):
         raise InputError(f"continue_from has {len(before.starts)} sliders and this run {len(sliders)}: give as many")
     states = zip(sliders, before.starts, before.contact.sliders.tolist(), before.sliders, strict=True)
-    for one, first, (travelled, speed), earlier in states:
-        known = {"position": (None, first, first + travelled), "speed": (0.0, earlier.speed, speed)}
-        for name, values in known.items():
-            if getattr(one, name) not in values:
-                raise InputError(
-                    f"slider.{name} = {getattr(one, name)!r}: the slider continues from {values[-1]!r}; give the "
-                    f"{name} of the earlier run's slider, or none"
-                )
+    for slider, first, (travelled, speed), earlier in states:
+        own = (slider.position, (None, first, first + travelled)), (slider.speed, (0.0, earlier.speed, speed))
+        for name, (value, known) in zip(("position", "speed"), own, strict=True):
+            if value not in known:
+                raise InputError(f"slider.{name} = {value!r}: the earlier slider ends with {known[-1]!r}, give none")
     return before

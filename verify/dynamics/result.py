@@ -2,19 +2,16 @@
 
 import numpy as np
 from msgspec import Struct
-from msgspec.structs import replace
 
 from verify.arrays import Array
-from verify.dynamics.coupling import Coupling
-from verify.dynamics.validity import Margins
+from verify.dynamics.validity import Coupling, Margins
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 
-END, INTERRUPTED = "end", "interrupted"
+END = "end"
 """Why a run stopped: at its end, or by the user."""
-STICKS, SLIPS, LANDS, LEAVES = 1, 2, 4, 5
-"""Kinds of events."""
+NONE, NO_EVENTS, NAN = np.empty(0), np.empty((0, 4)), float("nan")
 
 
 class Statistics(Struct, frozen=True, kw_only=True):
@@ -37,17 +34,12 @@ class Statistics(Struct, frozen=True, kw_only=True):
     unconverged: int = 0
     """Steps in which the contact forces did not converge."""
     stopped: str
-    """end, interrupted, left the beam, came to a step (and where), or diverged; a chain's adds when."""
+    """end, left the beam, came to a step (and where), or diverged; a chain's adds when."""
 
     @property
     def finished(self) -> bool:
         """Whether it reached its end."""
         return self.stopped == END
-
-    @property
-    def interrupted(self) -> bool:
-        """Whether the user stopped it."""
-        return self.stopped.partition(" ")[0] == INTERRUPTED
 
 
 class EnergyBalance(Struct, frozen=True, kw_only=True):
@@ -91,6 +83,17 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """The same of the sliders or, from rest, of the beam, whichever is larger: the error of the time integration."""
 
 
+class ContactState(Struct, frozen=True, eq=False):
+    """Sliders, feet and points at the end of a run, as the compiled loop has them (`layout`)."""
+
+    sliders: Array
+    """(sliders, 2): distance travelled and speed."""
+    feet: Array
+    """(feet, 4): height, its rate, pitch, its rate."""
+    points: Array
+    """(points, columns of memory)."""
+
+
 class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """State from which a run continues."""
 
@@ -110,7 +113,7 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     starts: tuple[float, ...] = ()
     """Initial positions of the sliders, m."""
     sliders: tuple[Slider, ...] = ()
-    contact: "ContactState | None" = None
+    contact: ContactState | None = None
     """State of the sliders; None of a beam alone."""
     off: str = ""
     """What a slider did that left its contact range; empty otherwise."""
@@ -119,11 +122,6 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     def feet(self) -> Array:
         """(feet, 4): height, its rate, pitch, its rate; (0, 4) without feet."""
         return np.empty((0, 4)) if self.contact is None else self.contact.feet
-
-    def with_feet(self, feet: Array) -> "EndState":
-        """The same with other states of the feet."""
-        assert self.contact is not None
-        return replace(self, contact=replace(self.contact, feet=feet))
 
     @property
     def position(self) -> float | None:
@@ -136,22 +134,12 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
         return 0.0 if self.contact is None else float(self.contact.sliders[0, 1])
 
 
-class ContactState(Struct, frozen=True, eq=False):
-    """Sliders, feet and points at the end of a run, as the compiled loop has them (`layout`)."""
-
-    sliders: Array
-    """(sliders, 2): distance travelled and speed."""
-    feet: Array
-    """(feet, 4): height, its rate, pitch, its rate."""
-    points: Array
-    """(points, columns of memory)."""
-
-
 class Motion(Struct, frozen=True, eq=False, kw_only=True):
     """A linear beam in time, with sliders or alone; arrays of one slider are (n,), of a sequence (n, sliders).
 
-    Friction, normal force and shares of a slider with feet are means over the interval that ends at the sample;
-    friction and surface speed of a point slider are instantaneous, but for friction that sticks.
+    Of a beam alone the fields of sliders are empty, NaN or None. Friction, normal force and shares of a slider with
+    feet are means over the interval that ends at the sample; friction and surface speed of a point slider are
+    instantaneous, but for friction that sticks.
     """
 
     model: str
@@ -164,49 +152,48 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     """(p,), m: places of the deflection."""
     deflection: Array
     """(n, p), m."""
-    slider: Slider | tuple[Slider, ...] | None
-    start: float | tuple[float, ...] | None
+    slider: Slider | tuple[Slider, ...] | None = None
+    start: float | tuple[float, ...] | None = None
     """Initial position, m from the left end."""
-    travelled: Array
-    """Displacement along +x, m, to full digits; (0,) of a beam alone, so for the following."""
-    speed: Array
+    travelled: Array = NONE
+    """Displacement along +x, m, to full digits."""
+    speed: Array = NONE
     """m/s."""
-    friction: Array
+    friction: Array = NONE
     """Tangential force on the slider, N."""
-    normal_force: Array
+    normal_force: Array = NONE
     """Normal force on the slider, N; of a bilateral contact it may be negative."""
-    surface_speed: Array
+    surface_speed: Array = NONE
     """Tangential velocity of the surface under the slider, m/s."""
-    contact_share: Array
+    contact_share: Array = NONE
     """Share of points and time in contact, 0 to 1."""
-    stuck_share: Array
+    stuck_share: Array = NONE
     """Share of points and time that stick, 0 to 1."""
-    friction_loss: Array
+    friction_loss: Array = NONE
     """Energy lost in friction and tangential compliance over the interval before, J."""
-    tangential_work: Array
+    tangential_work: Array = NONE
     """Work of the surface's motion along the beam on the slider over the interval before, J."""
-    height: Array
+    height: Array = NONE
     """(n, feet), m."""
-    pitch: Array
+    pitch: Array = NONE
     """(n, feet), rad."""
-    pressures: Array
+    pressures: Array = NONE
     """(n, points), normal force at each point in the middle of the last step, N."""
-    point_offsets: Array
+    point_offsets: Array = NONE
     """(points,), of the points from their slider, m."""
-    events: Array
+    events: Array = NO_EVENTS
     """(k, 4): time, kind (1 sticks, 2 slips, 4 lands, 5 leaves), point, distance travelled."""
-    mean_friction: float | Array
-    """Friction on the slider along +x, mean over all steps, N; NaN of a beam alone, (sliders,) of a sequence."""
-    largest_friction: float | Array
+    mean_friction: float | Array = NAN
+    """Friction on the slider along +x, mean over all steps, N; (sliders,) of a sequence."""
+    largest_friction: float | Array = NAN
     """Largest friction of all steps, N."""
-    mean_surface_speed: float | Array
+    mean_surface_speed: float | Array = NAN
     """Speed of the surface under the slider, mean over all steps, m/s."""
-    coupling: Coupling | None
-    """Coupling of sliders and beam, with sizes; None of a beam alone."""
+    coupling: Coupling | None = None
+    """Coupling of sliders and beam, with sizes."""
     margins: Margins
     """What the assumptions of the run leave out, with sizes."""
-    energy: EnergyBalance | None
-    """None of a beam alone."""
+    energy: EnergyBalance | None = None
     notes: tuple[str, ...]
     """Modes, damping, envelope, events beyond the capacity."""
     statistics: Statistics
@@ -233,8 +220,5 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     def duration(self) -> float:
         """Simulated seconds. Raises InputError where the slider left before the first sample."""
         if not (seconds := float(self.times[-1] - self.times[0])):
-            raise InputError(
-                f"the slider {self.statistics.stopped} before the first sample: change its position, speed or mu, or "
-                "give more samples"
-            )
+            raise InputError(f"samples: the slider {self.statistics.stopped} before the first one, give more")
         return seconds

@@ -6,19 +6,18 @@ from time import perf_counter
 import numpy as np
 from msgspec.structs import replace
 
-from verify.dynamics.excitation import check_free_phases, check_no_resonance
+from verify.dynamics.excitation import check_no_resonance
 from verify.dynamics.free_vibration import FreeVibration
 from verify.dynamics.linear_system import Stage, basis_of, damped_field, stages_from_rest, steady_stage
 from verify.dynamics.request import Envelope, Request, request_of
-from verify.dynamics.result import END, EndState, Motion, Statistics
+from verify.dynamics.result import END, Motion, Statistics
 from verify.dynamics.slider_run import SliderRun
 from verify.dynamics.validity import margins_of
-from verify.errors import InputError
 from verify.linear.positions import Forces, Numbers
 from verify.linear.time_basis import TimeBasis
 from verify.options import Start
 from verify.problem.beam import Beam
-from verify.problem.slider import GRAVITY, Slider
+from verify.problem.slider import Slider
 
 CLOSED_FORM_ROWS = 2000
 """Times evaluated at once."""
@@ -100,7 +99,7 @@ def simulate(
     Returns
     -------
     Motion
-        Up to where the run was interrupted or a slider left the beam (`statistics.stopped`).
+        Up to where a slider left the beam (`statistics.stopped`).
 
     Raises
     ------
@@ -109,38 +108,23 @@ def simulate(
     """
     began = perf_counter()
     request = request_of(
-        beam,
-        forces,
-        frequency_hz,
-        duration,
-        model=model,
-        count=count,
-        modes=modes,
-        start=start,
-        soft_start_periods=soft_start_periods,
-        envelope=envelope,
-        modal_damping=modal_damping,
-        slider=slider,
-        prescribed_speed=prescribed_speed,
-        fixed_position=fixed_position,
-        at=at,
-        samples=samples,
-        step=step,
-        steps_per_period=steps_per_period,
-        continue_from=continue_from,
-    )
+        beam, forces, frequency_hz, duration, model=model, count=count, modes=modes, start=start,
+        soft_start_periods=soft_start_periods, envelope=envelope, modal_damping=modal_damping, slider=slider,
+        prescribed_speed=prescribed_speed, fixed_position=fixed_position, at=at, samples=samples, step=step,
+        steps_per_period=steps_per_period, continue_from=continue_from,
+    )  # fmt: skip
     basis = None
     if request.start == "rest" or request.two_way:
         line = request.sliders[0].line if request.sliders else "spline"
         basis = basis_of(beam, model, count, request.modes, line)
     stages = _stages(request, basis)
     if not request.sliders:
-        return _closed_form(request, basis, stages, began)
-    run = SliderRun.of(request, basis, stages, _notes(request, basis), sequence=not isinstance(slider, Slider))
-    motion = run.converged(progress)
+        motion = _closed_form(request, stages, request.notes(basis))
+    else:
+        run = SliderRun.of(request, basis, stages, request.notes(basis), sequence=not isinstance(slider, Slider))
+        motion = run.converged(progress)
     statistics = motion.statistics
-    set_up = perf_counter() - began - statistics.wall_s
-    return replace(motion, statistics=replace(statistics, set_up_s=set_up))
+    return replace(motion, statistics=replace(statistics, set_up_s=perf_counter() - began - statistics.wall_s))
 
 
 def _stages(request: Request, basis: TimeBasis | None) -> list[Stage]:
@@ -149,7 +133,6 @@ def _stages(request: Request, basis: TimeBasis | None) -> list[Stage]:
     if request.start == "rest":
         assert basis is not None
         check_no_resonance(basis, request.frequency_hz, damping)
-        check_free_phases(basis, damping, sum(piece.steps.duration for piece in request.pieces))
         return stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, origin)
     field = damped_field(
         request.model, request.count, request.beam, request.forces, request.frequency_hz, request.modal_damping
@@ -157,28 +140,10 @@ def _stages(request: Request, basis: TimeBasis | None) -> list[Stage]:
     return [steady_stage(field, request.pieces[-1].steps, origin, basis, damping)]
 
 
-def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
-    """Modes, damping and growth of the forces."""
-    notes = [f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"]
-    if request.modal_damping is not None:
-        notes.append(f"damping: ratio {request.modal_damping:g}")
-    elif request.beam.loss_factor:
-        notes.append(f"damping: loss factor {request.beam.loss_factor:g}")
-    if len(request.pieces) > 1:
-        notes.append(f"forces grow over {sum(piece.steps.duration for piece in request.pieces[:-1]):.6g} s")
-        reached = float(np.sum(request.pieces[-2].coefficients))
-        if abs(reached - 1.0) >= 1e-9:
-            notes.append(f"forces jump from {reached:.6g} times their amplitude to all of it")
-    return tuple(notes)
-
-
-def _closed_form(request: Request, basis: TimeBasis | None, stages: list[Stage], began: float) -> Motion:
+def _closed_form(request: Request, stages: list[Stage], notes: tuple[str, ...]) -> Motion:
     """A beam alone: every sample by its closed form."""
-    ready, first = perf_counter(), stages[0]
-    before, n = request.before, len(first.rows.rates)
-    if before is not None and len(before.q) != n:
-        raise InputError(f"continue_from has {len(before.q)} modes and this run {n}: give both the same modes")
-    whole = first.rows.of_state(before.q, before.rates) if before else np.zeros(n, dtype=complex)
+    began, first = perf_counter(), stages[0]
+    whole = request.continued(first) if request.before else np.zeros(len(first.rows.rates), dtype=complex)
     parts = [first.deflection(first.free(whole), np.zeros(1), request.points)]
     for stage in stages:
         z = stage.free(whole)
@@ -186,52 +151,15 @@ def _closed_form(request: Request, basis: TimeBasis | None, stages: list[Stage],
         parts += [stage.deflection(z, block, request.points) for block in blocks]
         whole = stage.whole(stage.rows.after(z, stage.duration), stage.duration)
     times = np.concatenate([[first.origin], *(stage.origin + stage.sample_times for stage in stages)])
-    q, rates = stages[-1].rows.state(whole)
-    none, nan = np.empty(0), float("nan")
+    margins, seconds = margins_of(request, stages[-1]), perf_counter() - began
     return Motion(
         model=request.model,
         count=request.count,
         times=times,
         points=request.points,
         deflection=np.concatenate(parts),
-        slider=None,
-        start=None,
-        travelled=none,
-        speed=none,
-        friction=none,
-        normal_force=none,
-        surface_speed=none,
-        contact_share=none,
-        stuck_share=none,
-        friction_loss=none,
-        tangential_work=none,
-        height=none,
-        pitch=none,
-        pressures=none,
-        point_offsets=none,
-        events=np.empty((0, 4)),
-        mean_friction=nan,
-        largest_friction=nan,
-        mean_surface_speed=nan,
-        coupling=None,
-        margins=margins_of(request.beam, request.model, request.count, stages[-1], GRAVITY, None),
-        energy=None,
-        notes=_notes(request, basis),
-        statistics=Statistics(
-            steps=0,
-            evaluations=len(times),
-            step_s=0.0,
-            set_up_s=ready - began,
-            wall_s=perf_counter() - ready,
-            stopped=END,
-        ),
-        end=EndState(
-            beam=request.beam,
-            model=request.model,
-            count=request.count,
-            time=float(times[-1]),
-            q=q,
-            rates=rates,
-            steady=request.start == "steady",
-        ),
+        margins=margins,
+        notes=notes,
+        statistics=Statistics(steps=0, evaluations=len(times), step_s=0.0, set_up_s=0.0, wall_s=seconds, stopped=END),
+        end=request.end(stages[-1], whole, float(times[-1])),
     )

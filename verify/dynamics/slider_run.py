@@ -1,7 +1,7 @@
 """A run of sliders in contact with a beam: initial state, steps, result."""
 
 from collections.abc import Callable
-from math import inf
+from math import ceil, inf
 from time import perf_counter
 from typing import Any
 
@@ -12,7 +12,6 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble, contact_rate
-from verify.dynamics.coupling import Coupling, coupling_of, field_receptance, modal_receptance
 from verify.dynamics.initial_state import (
     deepen_between_beams,
     largest_static_deflection,
@@ -21,33 +20,45 @@ from verify.dynamics.initial_state import (
     steady_with_mass,
 )
 from verify.dynamics.linear_system import Stage
-from verify.dynamics.request import MOST_STEPS, Request
-from verify.dynamics.result import END, INTERRUPTED, ContactState, EndState, EnergyBalance, Motion, Statistics
+from verify.dynamics.request import Request, check_steps
+from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
 from verify.dynamics.step_control import (
+    COMPARED,
     CONVERGED,
-    NOT_CONVERGED,
     UNRESOLVED,
     change,
     check_energy,
-    doubled,
     feet_step,
     point_step,
     stepped,
     unresolved,
 )
-from verify.dynamics.stepping import Contacts, Recorded, run_stages
-from verify.dynamics.validity import Margins, margins_of
-from verify.errors import InputError, written
-from verify.linear.field import travelling_wavenumber
-from verify.linear.surface import contact_range, section_at
+from verify.dynamics.stepping import Contacts, Run, run_stages
+from verify.dynamics.validity import (
+    Coupling,
+    Margins,
+    coupling_of,
+    field_receptance,
+    margins_of,
+    modal_receptance,
+    presliding,
+)
+from verify.errors import InputError
+from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
-from verify.problem.slider import Slider
 
-SAMPLED = (
-    "times", "deflection", "travelled", "speed", "friction", "normal_force", "surface_speed", "contact_share",
-    "stuck_share", "friction_loss", "tangential_work", "height", "pitch", "pressures",
-)  # fmt: skip
-"""Fields of a motion with a row for each sample."""
+COLUMNS = {
+    "travelled": lay.KEPT_X, "speed": lay.KEPT_V, "friction": lay.KEPT_FRICTION, "normal_force": lay.KEPT_NORMAL,
+    "surface_speed": lay.KEPT_SURFACE, "contact_share": lay.KEPT_TOUCH, "stuck_share": lay.KEPT_STUCK,
+    "friction_loss": lay.KEPT_LOSS, "tangential_work": lay.KEPT_ALONG,
+}  # fmt: skip
+"""Column of the engine's samples of each field of a motion."""
+WORKS = {
+    "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "slope_work": lay.UPHILL, "friction_loss": lay.DISSIPATED,
+    "contact_loss": lay.DAMPED, "friction_on_beam": lay.ON_BEAM, "normal_on_beam": lay.LIFTED_BEAM,
+}  # fmt: skip
+"""Column of the engine's sums of each term of the balance."""
+SAMPLED = ("times", "deflection", "height", "pitch", "pressures", *COLUMNS)
 Progress = Callable[[float], None]
 
 
@@ -69,27 +80,24 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         cls, request: Request, basis: TimeBasis | None, stages: list[Stage], notes: tuple[str, ...], sequence: bool
     ) -> "SliderRun":
         """The run in steps that resolve motion and contact. Raises InputError."""
-        beam, omega, sliders, starts = request.beam, request.omega, request.sliders, request.starts
+        beam, hertz, starts = request.beam, request.frequency_hz, request.starts
         stages = [stage.within(contact_range(beam, starts[0])) for stage in stages]
         if basis is not None and request.start == "rest":
-            receptance = modal_receptance(basis, omega, request.damping_in(basis))
+            receptance = modal_receptance(basis, request.omega, request.damping_in(basis))
         else:
-            receptance = field_receptance(
-                beam, request.model, request.count, request.frequency_hz, request.modal_damping
-            )
-        gravity = min(slider.effective_gravity for slider in sliders)
-        margins = margins_of(beam, request.model, request.count, stages[-1], gravity, None)
-        coupling = coupling_of(beam, sliders, starts, stages[-1], receptance)
+            receptance = field_receptance(beam, request.model, request.count, hertz, request.modal_damping)
         run = cls(
             request=request,
             basis=basis,
             stages=stages,
-            coupling=coupling,
-            margins=margins,
+            coupling=coupling_of(beam, request.sliders, starts, stages[-1], receptance),
+            margins=margins_of(request, stages[-1]),
             notes=notes,
             sequence=sequence,
         )
-        return run._with_feet_steps() if request.feet else run._with_point_steps()
+        run = run._with_feet_steps() if request.feet else run._with_point_steps()
+        check_steps(sum(stage.duration for stage in run.stages), run.stages[-1].steps.dt)
+        return run
 
     def _contacts(self) -> Contacts:
         request = self.request
@@ -97,9 +105,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def _with_feet_steps(self) -> "SliderRun":
         request, contacts, basis = self.request, self._contacts(), self.basis if self.request.two_way else None
-        rate, longest = contact_rate(contacts, request.sliders, basis), self.stages[0].steps.dt
-        fastest = float(basis.omegas.max()) if basis else 0.0
-        stages = stepped(self.stages, feet_step(longest, rate, fastest, request.step))
+        rate, fastest = contact_rate(contacts, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
+        stages = stepped(self.stages, feet_step(self.stages[0].steps.dt, rate, fastest, request.step))
         margins = replace(
             self.margins,
             presliding=presliding(request),
@@ -109,45 +116,30 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return replace(self, stages=stages, margins=margins)
 
     def _with_point_steps(self) -> "SliderRun":
-        request, stages, slider = self.request, self.stages, self.request.sliders[0]
+        request, stages, length, rate = self.request, self.stages, self.request.beam.length, 0.0
         z, longest = self._initial(self._contacts(), loaded=False), max(stage.steps.dt for stage in stages)
-        rate = 0.0
-        if request.two_way:
-            rates = [(s.steepness or inf) * s.mu * s.normal_force / s.mass for s in request.sliders if s.mu]
-            rate = max(rates, default=0.0)
         if request.step is not None:
-            share = unresolved(stages, z, request.beam.length, longest)
-            enough = point_step(stages, z, request.beam.length, longest, 0.0)
+            share, enough = unresolved(stages, z, length, longest), point_step(stages, z, length, longest, 0.0)
             note = f"step: {100 * share:.2g} % of the surface speed are not resolved, give at most {enough:.2g} s"
             return replace(self, notes=(*self.notes, *(note,) * (enough < longest)))
-        if request.two_way and slider.normal == "held":
-            longest *= 0.5  # the contact excites waves of its own
-        step = point_step(stages, z, request.beam.length, longest, rate)
-        duration = sum(stage.duration for stage in stages)
-        if duration / step > MOST_STEPS:
-            raise InputError(
-                f"duration = {written(duration)} s: the modes that the start excites need steps of {step:.2g} s, more "
-                f"than {MOST_STEPS:g} of them: shorten the duration, lengthen soft_start_periods, or give a step"
-            )
-        return replace(self, stages=stepped(stages, step))
+        if request.two_way:
+            rates = ((s.steepness or inf) * s.mu * s.normal_force / s.mass for s in request.sliders if s.mu)
+            rate = max(rates, default=0.0)
+            if request.sliders[0].normal == "held":
+                longest *= 0.5  # the contact excites waves of its own
+        return replace(self, stages=stepped(stages, point_step(stages, z, length, longest, rate)))
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
         """Free rows at the start, (n,); sets the sliders down, or continues them. Raises InputError."""
         request, basis, stage, before = self.request, self.basis, self.stages[0], self.request.before
-        still, z = np.zeros(len(stage.rows.rates)), np.zeros(len(stage.rows.rates), dtype=complex)
+        z: ComplexArray = np.zeros(len(stage.rows.rates), dtype=complex)
         if basis and loaded and contacts.presses:
             still = static_deflection(basis, contacts)
             deepen_between_beams(basis, contacts, still)
             z = stage.rows.of_state(still, 0.0 * still)
             if stage.forced is None and contacts.law == lay.BILATERAL:
                 z = z + steady_with_mass(basis, stage, contacts, request.damping_in(basis))
-        if before is not None:
-            if len(before.q) != len(z):
-                raise InputError(
-                    f"continue_from has {len(before.q)} modes and this run {len(z)}: give both the same modes"
-                )
-            z = stage.rows.of_state(before.q, before.rates)
-        z = stage.free(z)
+        z = stage.free(request.continued(stage) if before else z)
         if before is None or before.contact is None:
             set_down(contacts, stage, z)
             return z
@@ -165,32 +157,33 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
         Raises InputError where the energy balance does not close.
         """
-        request = self.request
+        request, stages = self.request, self.stages
         if request.feet or not request.two_way or request.step is not None:
-            return self._checked(self.run(self.stages, progress))
-        coarse, fine, closer = doubled(self.run, self.stages, progress)
-        if fine.statistics.interrupted:
-            return fine
-        moved = change(coarse, fine)
-        notes = (f"{NOT_CONVERGED} by {100.0 * moved:.2g} %",) * (moved > CONVERGED)
-        kept = {name: getattr(fine, name)[::closer] for name in SAMPLED}
-        wall = coarse.statistics.wall_s + fine.statistics.wall_s
+            return self._checked(self.run(stages, progress))
+        closer = ceil(COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
+        dt = max(stage.steps.dt for stage in stages)
+        coarse = self.run(stepped(stages, 2.0 * dt, closer), lambda part: progress(part / 3.0))
+        fine = self.run(stepped(stages, dt, closer), lambda part: progress((1.0 + 2.0 * part) / 3.0))
+        moved, cost = change(coarse, fine), coarse.statistics
+        note = f"step: not converged, doubling it changes the slider's displacement by {100.0 * moved:.2g} %"
         statistics = replace(
             fine.statistics,
             step_change=moved,
-            wall_s=wall,
-            loop_s=coarse.statistics.loop_s + fine.statistics.loop_s,
+            wall_s=cost.wall_s + fine.statistics.wall_s,
+            loop_s=cost.loop_s + fine.statistics.loop_s,
         )
-        return self._checked(replace(fine, statistics=statistics, notes=(*fine.notes, *notes), **kept))
+        kept: dict[str, Any] = {name: getattr(fine, name)[::closer] for name in SAMPLED}
+        notes = (*fine.notes, *(note,) * (moved > CONVERGED))
+        return self._checked(replace(fine, statistics=statistics, notes=notes, **kept))
 
     def _checked(self, motion: Motion) -> Motion:
         """A motion with a note on its energy balance. Raises InputError where that does not close."""
-        if motion.statistics.interrupted or motion.energy is None:
+        if motion.energy is None:
             return motion
-        dt, request, stages, resolved = motion.statistics.step_s, self.request, self.stages, True
+        dt, request, resolved = motion.statistics.step_s, self.request, True
         if request.step is not None:
             z = self._initial(self._contacts(), loaded=False)
-            resolved = unresolved(stages, z, request.beam.length, dt) <= UNRESOLVED
+            resolved = unresolved(self.stages, z, request.beam.length, dt) <= UNRESOLVED
         notes = check_energy(motion.energy, dt, request.frequency_hz, request.feet, resolved)
         return replace(motion, notes=(*motion.notes, *notes))
 
@@ -198,122 +191,107 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """One run through these stages. Raises InputError."""
         began, request, contacts = perf_counter(), self.request, self._contacts()
         z = self._initial(contacts)
-        kinetic, elastic = _kinetic(request.sliders, contacts), _elastic(contacts)
-        beam = _beam_energy(self.basis, stages[0], z, 0.0)
-        first = (
-            stages[0].deflection(z, np.zeros(1), request.points),
-            contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(),
-            (contacts.points[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[None],
-        )
-        n_steps, accounts = sum(stage.steps.n for stage in stages), request.start == "rest"
-        recorded = run_stages(
-            stages, z, contacts, request.points, accounts=accounts, progress=lambda n: progress(n / n_steps)
-        )
-        gains = (
-            _kinetic(request.sliders, contacts) - kinetic,
-            float(recorded.sums[:, lay.STORED].sum()) - elastic,
-            *(_beam_energy(self.basis, stages[-1], recorded.z, None) - beam).tolist(),
-            float(beam.sum()),
-        )
-        statistics = Statistics(
-            steps=recorded.n_steps,
-            evaluations=2 * recorded.n_steps + 1,
-            step_s=stages[-1].steps.dt,
-            set_up_s=recorded.set_up_s,
-            wall_s=perf_counter() - began,
-            loop_s=recorded.loop_s,
-            unconverged=int(recorded.balance[lay.UNCONVERGED]),
-            stopped=recorded.stopped,
-        )
-        return self._motion(
-            stages, contacts, recorded, first, statistics, _balance(recorded, gains, contacts, accounts)
-        )
-
-    def _motion(
-        self,
-        stages: list[Stage],
-        contacts: Contacts,
-        recorded: Recorded,
-        first: tuple[Array, ...],
-        statistics: Statistics,
-        energy: EnergyBalance,
-    ) -> Motion:
-        request, n = self.request, len(recorded.samples)
-        recordings = recorded.deflections, recorded.heights, recorded.pressures
-        deflection, heights, pressures = (np.concatenate(pair) for pair in zip(first, recordings, strict=True))
-        kept = np.concatenate([recorded.first[None], recorded.samples])
+        p, depth = contacts.points, np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
+        kinetic, stored = self._kinetic(contacts), 0.5 * float(p[:, lay.STIFF] @ depth**2)
+        heights, pressures = contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(), (p[:, lay.STIFF] * depth)[None]
+        recorded, deflection, beam, accounts = self._marched(stages, z, contacts, progress)
+        gains = self._kinetic(contacts) - kinetic, float(recorded.sums[:, lay.STORED].sum()) - stored, *beam
+        n, kept = len(recorded.samples), np.concatenate([recorded.first[None], recorded.samples])
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             kept[0, still, lay.KEPT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+        heights = np.concatenate([heights, recorded.heights])
         end = _time_after(stages, recorded.n_steps)
-        seconds = end - stages[0].origin
-        sums, mean = recorded.sums, 1.0 / seconds if seconds > 0.0 else float("nan")
-
-        def along(column: int) -> Array:
-            return np.ascontiguousarray(kept[:, :, column] if self.sequence else kept[:, 0, column])
-
-        def total(values: Array) -> Any:
-            return values if self.sequence else float(values[0])
-
-        lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
-        margins = self.margins
+        seconds, sums, margins = end - stages[0].origin, recorded.sums, self.margins
+        mean = 1.0 / seconds if seconds > 0.0 else float("nan")
         if not request.feet:
-            gravity = min(slider.effective_gravity for slider in request.sliders)
             fall = float(sums[:, lay.FALL].max())
-            margins = replace(margins, lift_off=fall / gravity if gravity else inf)
-        own = contacts.indices[:, lay.OF_SLIDER]
-        offsets = contacts.points[:, lay.OFFSET] - (np.array(request.starts) - request.starts[0])[own]
-        whole = stages[-1]
-        q, rates = whole.rows.state(recorded.z)
-        left = recorded.stopped not in (END, INTERRUPTED, "diverged", "chatters")
+            margins = replace(margins, lift_off=fall / request.gravity if request.gravity else inf)
+        offsets = np.array(request.starts) - request.starts[0]
+        lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
+        left = recorded.stopped not in (END, "diverged", "chatters")
+        state = contacts.sliders[:, [lay.X, lay.V]], contacts.feet[:, : lay.TURN + 1].copy(), contacts.contacts.copy()
+
+        def each(values: Array) -> Any:
+            """Values of all sliders of a sequence, or those of the only one."""
+            own = np.array(values if self.sequence else values[..., 0], order="C")
+            return own if own.ndim else float(own)
+
         return Motion(
             model=request.model,
             count=request.count,
             times=np.concatenate([[stages[0].origin], *(s.origin + s.sample_times for s in stages)])[: n + 1],
             points=request.points,
-            deflection=deflection,
+            deflection=np.concatenate([deflection, recorded.deflections]),
             slider=request.sliders if self.sequence else request.sliders[0],
             start=request.starts if self.sequence else request.starts[0],
-            travelled=along(lay.KEPT_X),
-            speed=along(lay.KEPT_V),
-            friction=along(lay.KEPT_FRICTION),
-            normal_force=along(lay.KEPT_NORMAL),
-            surface_speed=along(lay.KEPT_SURFACE),
-            contact_share=along(lay.KEPT_TOUCH),
-            stuck_share=along(lay.KEPT_STUCK),
-            friction_loss=along(lay.KEPT_LOSS),
-            tangential_work=along(lay.KEPT_ALONG),
+            **{name: each(kept[:, :, column]) for name, column in COLUMNS.items()},
             height=heights[:, :, 0],
             pitch=heights[:, :, 1],
-            pressures=pressures,
-            point_offsets=offsets,
+            pressures=np.concatenate([pressures, recorded.pressures]),
+            point_offsets=p[:, lay.OFFSET] - offsets[contacts.indices[:, lay.OF_SLIDER]],
             events=recorded.events,
-            mean_friction=total(mean * sums[:, lay.FRICTION_TIME]),
-            largest_friction=total(sums[:, lay.HARDEST]),
-            mean_surface_speed=total(mean * sums[:, lay.SURFACE_TIME]),
+            mean_friction=each(mean * sums[:, lay.FRICTION_TIME]),
+            largest_friction=each(sums[:, lay.HARDEST]),
+            mean_surface_speed=each(mean * sums[:, lay.SURFACE_TIME]),
             coupling=self.coupling,
             margins=margins,
-            energy=energy,
+            energy=_balance(recorded, gains, contacts.two_way, accounts),
             notes=(*self.notes, *lost * (recorded.n_events > len(recorded.events))),
-            statistics=statistics,
-            end=EndState(
-                beam=request.beam,
-                model=request.model,
-                count=request.count,
-                time=end,
-                q=q,
-                rates=rates,
-                steady=request.start == "steady",
+            statistics=Statistics(
+                steps=recorded.n_steps,
+                evaluations=2 * recorded.n_steps + 1,
+                step_s=stages[-1].steps.dt,
+                set_up_s=recorded.set_up_s,
+                wall_s=perf_counter() - began,
+                loop_s=recorded.loop_s,
+                unconverged=int(recorded.balance[lay.UNCONVERGED]),
+                stopped=recorded.stopped,
+            ),
+            end=request.end(
+                stages[-1],
+                recorded.z,
+                end,
                 starts=request.starts,
                 sliders=request.sliders,
-                contact=ContactState(
-                    contacts.sliders[:, [lay.X, lay.V]],
-                    contacts.feet[:, : lay.TURN + 1].copy(),
-                    contacts.contacts.copy(),
-                ),
+                contact=ContactState(*state),
                 off=recorded.stopped if left else "",
             ),
         )
+
+    def _marched(
+        self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
+    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
+        """Beam and sliders to the end.
+
+        Also the deflection at the start, (1, p), m; what the beam gains, kinetic and elastic, and its energy at the
+        start, J; whether work of the drive and loss in the beam are known.
+        """
+
+        def energies(rows: Stage, z: ComplexArray) -> tuple[float, float]:
+            if self.basis is None:
+                return 0.0, 0.0
+            q, rates = rows.rows.state(z)
+            return 0.5 * float(rates @ rates), 0.5 * float((self.basis.omegas**2 * q) @ q)
+
+        n_steps, points = sum(stage.steps.n for stage in stages), self.request.points
+        # impacts are one-way: the balance of the beam is exact
+        rest = self.request.start == "rest" and contacts.restitution is None
+        kinetic, elastic = energies(stages[0], stages[0].whole(z, 0.0))
+        deflection = stages[0].deflection(z, np.zeros(1), points)
+        recorded = run_stages(stages, z, contacts, points, accounts=rest, progress=lambda n: progress(n / n_steps))
+        after = energies(stages[-1], recorded.z)
+        return recorded, deflection, (after[0] - kinetic, after[1] - elastic, kinetic + elastic), rest
+
+    def _kinetic(self, contacts: Contacts) -> float:
+        """Of sliders and feet, along and across the beam, J."""
+        feet, masses = contacts.feet, np.array([slider.mass for slider in self.request.sliders])
+        inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
+        inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
+        twice = masses @ contacts.sliders[:, lay.V] ** 2 + (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
+        if contacts.law == lay.BILATERAL:
+            twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2
+        return 0.5 * float(twice)
 
 
 def _time_after(stages: list[Stage], steps: int) -> float:
@@ -325,42 +303,13 @@ def _time_after(stages: list[Stage], steps: int) -> float:
     return stage.origin + steps * stage.steps.dt
 
 
-def _kinetic(sliders: tuple[Slider, ...], contacts: Contacts) -> float:
-    """Of sliders and feet, along and across the beam, J."""
-    feet, bilateral = contacts.feet, contacts.law == lay.BILATERAL
-    masses = np.array([slider.mass for slider in sliders])
-    inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
-    inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-    across = inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2
-    rise = contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2 if bilateral else 0.0
-    return 0.5 * float(masses @ contacts.sliders[:, lay.V] ** 2 + across.sum() + rise)
-
-
-def _elastic(contacts: Contacts) -> float:
-    """Of normal contact springs, J."""
-    depth = np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
-    return 0.5 * float(contacts.points[:, lay.STIFF] @ depth**2)
-
-
-def _beam_energy(basis: TimeBasis | None, stage: Stage, z: ComplexArray, t: float | None) -> Array:
-    """(kinetic, elastic) of the modes, J; `z` is the free part at time t, or all of the motion for None."""
-    if basis is None:
-        return np.zeros(2)
-    q, rates = stage.rows.state(z if t is None else stage.whole(z, t))
-    return 0.5 * np.array([rates @ rates, (basis.omegas**2 * q) @ q])
-
-
-def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, rest: bool) -> EnergyBalance:
-    """Works, losses and gains."""
+def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
+    """Works, losses and gains: of sliders, springs and modes, kinetic and elastic, and the modes' initial energy."""
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
     load = s[lay.PULLED] + s[lay.PRESSED]
     residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
-    whole = residual
-    if rest:
-        charged = s[lay.ON_BEAM] + s[lay.LIFTED_BEAM] if contacts.two_way else 0.0
-        beam = driven + charged - lost - kinetic - elastic
-        whole = beam if abs(beam) > abs(residual) else residual
+    beam = driven + (s[lay.ON_BEAM] + s[lay.LIFTED_BEAM]) * two_way - lost - kinetic - elastic
     return EnergyBalance(
         kinetic=kinetic,
         elastic=elastic,
@@ -368,33 +317,10 @@ def _balance(recorded: Recorded, gains: tuple[float, ...], contacts: Contacts, r
         contact_elastic=stored,
         drive_work=driven,
         load_work=float(load),
-        tangential_work=float(s[lay.ALONG]),
-        normal_work=float(s[lay.ACROSS]),
-        slope_work=float(s[lay.UPHILL]),
         damping_loss=lost,
-        friction_loss=float(s[lay.DISSIPATED]),
-        contact_loss=float(s[lay.DAMPED]),
-        friction_on_beam=float(s[lay.ON_BEAM]),
-        normal_on_beam=float(s[lay.LIFTED_BEAM]),
+        **{name: float(s[column]) for name, column in WORKS.items()},
         initial=initial,
         created=float(recorded.balance[lay.GAINED_ENERGY]),
         slider_residual=float(residual),
-        residual=float(whole),
+        residual=float(beam if accounts and abs(beam) > abs(residual) else residual),
     )
-
-
-def presliding(request: Request) -> float | None:
-    """2 mu kappa / (kappa_t k h), the largest of all feet (`Margins.presliding`)."""
-    largest = 0.0
-    for slider, start in zip(request.sliders, request.starts, strict=True):
-        contact, section = slider.contact, section_at(request.beam, start)
-        if contact is None or contact.hard:
-            return None
-        compliances = [(contact.across(foot.length), contact.along(foot.length)) for foot in slider.feet]
-        if all(along for _, along in compliances):
-            k = travelling_wavenumber(section, request.frequency_hz)
-            if k is None:
-                return None
-            ratio = max(across / along for across, along in compliances)
-            largest = max(largest, slider.mu * ratio / (k * section.surface_distance))
-    return largest

@@ -1,13 +1,12 @@
 """Time steps of sliders: resolution of the motion, one step doubling, and the energy check."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, inf
-from typing import TypeVar
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray
+from verify.arrays import ComplexArray
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.result import EnergyBalance, Motion
 from verify.errors import InputError
@@ -28,42 +27,31 @@ COMPARED = 16
 """Least number of samples at which two runs are compared: at a single one, different runs may coincide."""
 MOST_GAIN = 0.01
 """Energy that contact may add, or the balance may miss, relative to all energy exchanged."""
-NOT_CONVERGED = "step: not converged, doubling it changes the slider's displacement"
-T = TypeVar("T")
-
-
-def _speeds(stages: Sequence[Stage], z: ComplexArray, length: float) -> tuple[Array, float]:
-    """Surface speed of every free mode, the largest of all stages, and of the driven motion, but for a common factor.
-
-    Means over the beam: omega |q| n pi / L, with n pi / L for the slope of the nth mode over its deflection, whose mean
-    square on a uniform beam is 1/mass.
-    """
-    starts = [z]
-    for before, stage in pairwise(stages):
-        end = before.whole(before.rows.after(starts[-1], before.duration), before.duration)
-        starts.append(stage.free(end))
-    wavenumbers = np.pi / length * np.arange(1.0, len(z) + 1.0)
-    free, last = np.abs(starts).max(axis=0) * wavenumbers * abs(stages[0].rows.rates.imag), stages[-1]
-    if last.forced is not None:
-        driven = float(np.linalg.norm(abs(last.forced.forward + last.forced.backward)[:, 0] * wavenumbers))
-    else:
-        x = np.linspace(0.0, length, 129)
-        first = np.sqrt((last.shapes(x, 0)[0] ** 2).mean())
-        driven = float(np.sqrt((abs(last.drive_shapes(x, 1)[0]) ** 2).mean()) / first)
-    return free, last.omega * driven
 
 
 def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: float) -> float:
     """Share of the surface speed, rms, that steps of dt do not resolve from free rows z.
 
     A parabola through start, middle and end of a step misses (omega dt / 2)^4 / 180 of the mean of a cosine, and all of
-    one that turns faster.
+    one that turns faster. Speeds, but for a common factor, are means over the beam, omega |q| n pi / L, largest of all
+    stages: n pi / L is the slope of the nth mode over its deflection, whose mean square on a uniform beam is 1/mass.
     """
     if not len(z):
         return 0.0
-    free, driven = _speeds(stages, z, length)
-    missed = free * np.minimum((0.5 * abs(stages[0].rows.rates.imag) * dt) ** 4 / 180.0, 1.0)
-    total = np.hypot(driven, np.linalg.norm(free))
+    starts, last, turning = [z], stages[-1], abs(stages[0].rows.rates.imag)
+    for before, stage in pairwise(stages):
+        end = before.whole(before.rows.after(starts[-1], before.duration), before.duration)
+        starts.append(stage.free(end))
+    wavenumbers = np.pi / length * np.arange(1.0, len(z) + 1.0)
+    free = np.abs(starts).max(axis=0) * wavenumbers * turning
+    if last.forced is not None:
+        driven = np.linalg.norm(abs(last.forced.forward + last.forced.backward)[:, 0] * wavenumbers)
+    else:
+        x = np.linspace(0.0, length, 129)
+        first = np.sqrt((last.shapes(x, 0)[0] ** 2).mean())
+        driven = np.sqrt((abs(last.drive_shapes(x, 1)[0]) ** 2).mean()) / first
+    missed = free * np.minimum((0.5 * turning * dt) ** 4 / 180.0, 1.0)
+    total = np.hypot(last.omega * driven, np.linalg.norm(free))
     return float(np.linalg.norm(missed) / total) if total else 0.0
 
 
@@ -89,10 +77,7 @@ def feet_step(longest: float, contact: float, fastest: float, step: float | None
     if step is None:
         return min(longest, CONTACT_RADIANS / contact if contact else inf, MODE_RADIANS / fastest if fastest else inf)
     if contact * step >= UNSTABLE:
-        raise InputError(
-            f"step = {step!r} s is {contact * step:.3g} radians of the contact, unstable from {UNSTABLE:.3g} on: give "
-            f"at most {CONTACT_RADIANS / contact:.3g} s"
-        )
+        raise InputError(f"step = {step!r} s is unstable: give at most {CONTACT_RADIANS / contact:.3g} s")
     return step
 
 
@@ -101,31 +86,17 @@ def stepped(stages: Sequence[Stage], step: float, closer: int = 1) -> list[Stage
     return [stage.stepped(step, closer) for stage in stages]
 
 
-def doubled(
-    run: Callable[[list[Stage], Callable[[float], None]], Motion],
-    stages: Sequence[Stage],
-    progress: Callable[[float], None],
-) -> tuple[Motion, Motion, int]:
-    """Runs with doubled step and with that of `stages`, and how many samples of theirs make one of `stages`."""
-    dt, closer = max(s.steps.dt for s in stages), ceil(COMPARED / sum(s.steps.n // s.steps.every for s in stages))
-    coarse = run(stepped(stages, 2.0 * dt, closer), lambda part: progress(part / 3.0))
-    if coarse.statistics.interrupted:
-        return coarse, coarse, closer
-    return coarse, run(stepped(stages, dt, closer), lambda part: progress((1.0 + 2.0 * part) / 3.0)), closer
-
-
 def change(coarse: Motion, fine: Motion) -> float:
     """Relative change of the displacements with the step: at the end, and over the largest at any sample.
 
     Infinite where the runs end differently; 0 where nothing moved.
     """
-    ends = coarse.end.time, fine.end.time
-    if coarse.statistics.finished != fine.statistics.finished or abs(ends[0] - ends[1]) > CONVERGED * ends[1]:
+    apart = abs(coarse.end.time - fine.end.time)
+    if coarse.statistics.finished != fine.statistics.finished or apart > CONVERGED * fine.end.time:
         return inf
     n = min(len(coarse.travelled), len(fine.travelled))
-    moved = fine.travelled[:n] - fine.travelled[0]
-    apart, size = abs(coarse.travelled[:n] - fine.travelled[:n]), abs(moved)
-    pairs = ((float(apart[-1].max()), float(size[-1].max())), (float(apart.max()), float(size.max())))
+    differs, size = abs(coarse.travelled[:n] - fine.travelled[:n]), abs(fine.travelled[:n] - fine.travelled[0])
+    pairs = ((float(differs[rows].max()), float(size[rows].max())) for rows in (slice(-1, None), slice(None)))
     return max(one / of if of else 0.0 if not one else inf for one, of in pairs)
 
 

@@ -54,38 +54,6 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """Of rigid contact (`impact`): one point with a foot, one-way; None for the laws above."""
 
 
-class Recorded(msgspec.Struct, eq=False, kw_only=True):
-    """Raw samples, events and sums of a run; the sample before the first step is not among them."""
-
-    samples: Array
-    """(n, sliders, KEPT)"""
-    heights: Array
-    """(n, feet, 2): height and pitch."""
-    pressures: Array
-    """(n, points): normal forces."""
-    deflections: Array
-    """(n, places)"""
-    events: Array
-    """(m, 4): time, kind, point, distance travelled."""
-    n_events: int
-    """Events altogether, also beyond the capacity of `events`."""
-    sums: Array
-    """(sliders, SUMS)"""
-    balance: Array
-    """(BALANCE,)"""
-    n_steps: int
-    loop_s: float
-    """Processor time of the compiled loop."""
-    set_up_s: float
-    """Processor time of tables and arrays."""
-    stopped: str
-    """"end", "left the beam" and the like (`Stage.beyond`), "diverged", "interrupted" or "chatters"."""
-    z: ComplexArray
-    """All of the motion of every row at the end, (n,)."""
-    first: Array
-    """(sliders, KEPT), before the first step: speed; of points without feet the friction law and the surface speed."""
-
-
 def run_stages(
     stages: Sequence[Stage],
     z: ComplexArray,
@@ -94,77 +62,66 @@ def run_stages(
     *,
     accounts: bool = False,
     progress: Callable[[int], None] = lambda steps: None,
-) -> Recorded:
-    """Advance a beam and its sliders through all stages.
+) -> "Run":
+    """Advance a beam and its sliders through all stages, whose `steps` set step, number of steps and sampling.
 
-    Parameters
-    ----------
-    stages : sequence of Stage
-        Their `steps` set step, number of steps and sampling.
-    z : (n,) complex
-        Free part of the rows at the start of the first stage.
-    contacts : Contacts
-        Advanced in place; sums start at zero.
-    places : (p,) array
-        Positions of the deflection samples, m.
-    accounts : bool
-        Whether the work of the drive and the loss of the modes are integrated.
-    progress : callable
-        Called with the number of steps done.
+    z is the free part of the rows at the start, (n,); contacts are advanced in place; deflections are sampled at
+    `places`, (p,), m; with `accounts` the work of the drive and the loss of the modes are integrated; `progress` is
+    called with the number of steps done.
     """
-    run = _Run(stages, contacts, places, accounts)
+    run = Run(stages, contacts, places, accounts)
     stopped = "end"
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.free(z)
         stopped = run.stage(stage, z, progress)
-        z = stage.whole(run.z, run.time(stage))
+        z = stage.whole(run.z, float(run.tally[lay.STEP] * stage.steps.dt))
         if stopped != "end":
             break
-    run.store(stages[-1].steps.dt)
-    n = int(run.tally[lay.SAMPLES])
-    n_events = int(run.tally[lay.EVENTS])
-    return Recorded(
-        samples=run.samples[:n],
-        heights=run.heights[:n],
-        pressures=run.pressures[:n],
-        deflections=run.deflections[:n],
-        events=run.events[: min(n_events, EVENTS)],
-        n_events=n_events,
-        sums=run.sums,
-        balance=run.balance,
-        n_steps=run.n_steps,
-        loop_s=run.loop_s,
-        set_up_s=run.set_up_s,
-        stopped=stopped,
-        z=z,
-        first=run.first,
-    )
+    return run.recorded(z, stages[-1].steps.dt, stopped)
 
 
-class _Run:
-    """State and records of a run."""
+class Run:
+    """State of a run and its raw samples, events and sums; `first` is the sample before the first step."""
 
     def __init__(self, stages: Sequence[Stage], contacts: Contacts, places: Array, accounts: bool) -> None:
         samples = sum(stage.steps.n // stage.steps.every for stage in stages)
         n, n_sliders, n_feet = len(contacts.points), len(contacts.sliders), len(contacts.feet)
-        self.contacts, self.places = contacts, places
-        self.samples = np.zeros((samples, n_sliders, lay.KEPT))
+        self.contacts, self.places, self.accounts = contacts, places, accounts
+        self.samples, self.first = np.zeros((samples, n_sliders, lay.KEPT)), np.zeros((n_sliders, lay.KEPT))
+        """`first`: speed; of points without feet the friction law and the surface speed."""
         self.heights, self.pressures = np.zeros((samples, n_feet, 2)), np.zeros((samples, n))
-        self.deflections, self.events = np.zeros((samples, len(places))), np.zeros((EVENTS, 4))
+        """Heights and pitches of the feet; normal forces of the points."""
+        self.deflections = np.zeros((samples, len(places)))
+        self.events, self.n_events = np.zeros((EVENTS, 4)), 0
+        """Time, kind, point, distance travelled; how many altogether, also beyond the capacity."""
         self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
         self.balance, self.tally = np.zeros(lay.BALANCE), np.zeros(3, dtype=np.int64)
         self.spans, self.block = np.zeros((n, 4 + 2 * SPANS)), np.zeros((n, n + 1))
-        self.first = np.zeros((n_sliders, lay.KEPT))
-        self.couplings = np.zeros((2, n, n))
-        self.feet_of = np.zeros(n_feet, dtype=np.int64)
+        self.couplings, self.feet_of = np.zeros((2, n, n)), np.zeros(n_feet, dtype=np.int64)
         if n_feet:
             self.feet_of[contacts.indices[:, lay.OF_FOOT]] = contacts.indices[:, lay.OF_SLIDER]
-        self.accounts, self.n_steps, self.loop_s, self.set_up_s = accounts, 0, 0.0, 0.0
-        self.z: ComplexArray = np.empty(0, dtype=complex)
+        self.n_steps, self.loop_s, self.set_up_s = 0, 0.0, 0.0
+        """Steps; processor time of the compiled loop, and of tables and arrays."""
+        self.stopped, self.z = "end", np.empty(0, dtype=complex)
+        """"end", "left the beam" and the like (`Stage.beyond`), "diverged" or "chatters"; the motion of
+        every row at the end, (n,)."""
 
-    def time(self, stage: Stage) -> float:
-        """Seconds of the stage so far."""
-        return float(self.tally[lay.STEP] * stage.steps.dt)
+    def recorded(self, z: ComplexArray, dt: float, stopped: str) -> "Run":
+        """The run that ended with all of the motion z, in steps of dt: its samples and events so far.
+
+        Energy of the normal springs is that at the end of the last step, with the depths of its middle drawn on.
+        """
+        p, c, feet, indices = self.contacts.points, self.contacts.contacts, self.contacts.feet, self.contacts.indices
+        if len(feet):
+            foot = feet[indices[:, lay.OF_FOOT]]
+            climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
+            depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
+            np.add.at(self.sums[:, lay.STORED], indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2)
+        for name in ("samples", "heights", "pressures", "deflections"):
+            setattr(self, name, getattr(self, name)[: self.tally[lay.SAMPLES]])
+        self.n_events = int(self.tally[lay.EVENTS])
+        self.events, self.stopped, self.z = self.events[: min(self.n_events, EVENTS)], stopped, z
+        return self
 
     def stage(self, stage: Stage, z: ComplexArray, progress: Callable[[int], None]) -> str:
         """One stage from free rows z in chunks; why it ended."""
@@ -181,60 +138,54 @@ class _Run:
             forced[:] = interleaved(stage.forced.forward + stage.forced.backward)
             growth = np.array(stage.envelope, dtype=float)
         codes = np.zeros(lay.CODES, dtype=np.int64)
-        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES]] = (
-            contacts.law,
-            contacts.two_way,
-            contacts.two_way and contacts.presses,
-        )
-        codes[[lay.FOLLOWING, lay.COMPLEX, lay.ACCOUNTS]] = contacts.following, own - n, self.accounts
+        codes[[lay.LAW, lay.TWO_WAY]] = contacts.law, contacts.two_way
+        codes[[lay.PRESSES, lay.FOLLOWING]] = contacts.two_way and contacts.presses, contacts.following
+        codes[[lay.COMPLEX, lay.ACCOUNTS]] = own - n, self.accounts
         factors, two_way = np.zeros((4, 2, columns)), contacts.two_way
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
         self.tally[lay.STEP], first = 0, self._around(stage)
         why, steps = "end", self.n_steps
-        try:
-            while first is not None and self.tally[lay.STEP] < stage.steps.n:
-                edges = stage.edges[first[0] : first[1] + 1] - contacts.start
-                table = stage.table(*first)
-                local = np.zeros((len(table), 2, stage.degree + 1))
-                stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
-                contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self._positions())
-                self.set_up_s += thread_time() - began
-                arrays = (
-                    contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
-                    contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
-                    response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
-                    self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
-                    self.balance,
-                )  # fmt: skip
-                rigid = contacts.restitution is not None
-                if self.n_steps == 0 and not rigid:
-                    advance(0, 1, stage.steps.dt, *arrays)
-                    self._sample_first()
-                while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
-                    began = thread_time()
-                    n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
-                    if rigid:
-                        reason = self._impacts(n_steps, stage, codes, drive, rows, table, edges, factors, places)
-                    else:
-                        reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
-                    self.loop_s += thread_time() - began
-                    self.n_steps = steps + int(self.tally[lay.STEP])
-                    progress(self.n_steps)
-                if reason in (lay.NOT_FINITE, lay.CHATTERS):
-                    why = "diverged" if reason == lay.NOT_FINITE else "chatters"
-                    break
-                began, last = thread_time(), first
-                first = self._around(stage)
-                if reason == lay.OFF_PIECES and first == last:
-                    first = None
-        except KeyboardInterrupt:  # the loop advances all arrays together
-            why = "interrupted"
+        while first is not None and self.tally[lay.STEP] < stage.steps.n:
+            edges = stage.edges[first[0] : first[1] + 1] - contacts.start
+            table = stage.table(*first)
+            local = np.zeros((len(table), 2, stage.degree + 1))
+            stamp, reason = np.full(len(table), -1, dtype=np.int64), lay.DONE
+            contacts.indices[:, lay.PIECE] = np.searchsorted(edges[1:-1], self.positions())
+            self.set_up_s += thread_time() - began
+            arrays = (
+                contacts.gravity, codes, drive, rows, table, edges, contacts.sliders, contacts.feet,
+                contacts.points, contacts.contacts, contacts.indices, self.feet_of, factors, local, stamp, shapes,
+                response, self.couplings, self.spans, self.block, forced, loads, growth, places, self.samples,
+                self.heights, self.pressures, self.deflections, self.events, self.tally, self.sums, self.before,
+                self.balance,
+            )  # fmt: skip
+            rigid = contacts.restitution is not None
+            if self.n_steps == 0 and not rigid:
+                advance(0, 1, stage.steps.dt, *arrays)
+                self.sample_first()
+            while reason == lay.DONE and self.tally[lay.STEP] < stage.steps.n:
+                began = thread_time()
+                n_steps = min(CHUNK, stage.steps.n - int(self.tally[lay.STEP]))
+                if rigid:
+                    reason = self._impacts(n_steps, stage, codes, drive, rows, table, edges, factors, places)
+                else:
+                    reason = advance(n_steps, stage.steps.every, stage.steps.dt, *arrays)
+                self.loop_s += thread_time() - began
+                self.n_steps = steps + int(self.tally[lay.STEP])
+                progress(self.n_steps)
+            if reason in (lay.NOT_FINITE, lay.CHATTERS):
+                why = "diverged" if reason == lay.NOT_FINITE else "chatters"
+                break
+            began, last = thread_time(), first
+            first = self._around(stage)
+            if reason == lay.OFF_PIECES and first == last:
+                first = None
         self.z = rows[lay.Z_RE] + 1j * rows[lay.Z_IM]
         if why == "end" and self.tally[lay.STEP] < stage.steps.n:
             if contacts.moving_load:
                 self._go_on(stage)
             else:
-                x = contacts.start + self._positions()
+                x = contacts.start + self.positions()
                 why = stage.beyond(float(x.min()), float(x.max()))
         return why
 
@@ -256,7 +207,7 @@ class _Run:
             )
         )  # fmt: skip
 
-    def _sample_first(self) -> None:
+    def sample_first(self) -> None:
         """The state before the first step; a slider in contact with feet has friction from the first step on."""
         sliders, contacts = self.contacts.sliders, self.contacts.contacts
         self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
@@ -266,35 +217,20 @@ class _Run:
             self.first[:, lay.KEPT_NORMAL] = np.bincount(self.contacts.indices[:, lay.OF_SLIDER], load, len(sliders))
             self.first[:, lay.KEPT_SURFACE] = np.nan
             return
-        load, slip, steepness = (
-            self.contacts.points[:, lay.LOAD],
-            sliders[:, lay.V] - contacts[:, lay.START],
-            sliders[:, lay.STEEPNESS],
-        )
+        load, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.STEEPNESS]
+        slip = sliders[:, lay.V] - contacts[:, lay.START]
         law = np.where(steepness > 0.0, np.tanh(steepness * slip), np.sign(slip))
         self.first[:, lay.KEPT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
         self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
 
-    def store(self, dt: float) -> None:
-        """Energy of the normal springs at the end of the last step, with the depths of its middle drawn on."""
-        p, c, feet = self.contacts.points, self.contacts.contacts, self.contacts.feet
-        if len(feet):
-            foot = feet[self.contacts.indices[:, lay.OF_FOOT]]
-            climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
-            depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
-            np.add.at(
-                self.sums[:, lay.STORED], self.contacts.indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2
-            )
-
-    def _positions(self) -> Array:
+    def positions(self) -> Array:
         """Points from the start of the first slider, (points,), m, half a step on for feet."""
-        contacts = self.contacts
-        x, owner = contacts.sliders[:, lay.X], contacts.indices[:, lay.OF_SLIDER]
-        return np.asarray(x[owner] + contacts.points[:, lay.OFFSET])
+        x, owner = self.contacts.sliders[:, lay.X], self.contacts.indices[:, lay.OF_SLIDER]
+        return np.asarray(x[owner] + self.contacts.points[:, lay.OFFSET])
 
     def _around(self, stage: Stage) -> tuple[int, int] | None:
         """The pieces around all points, first and end, or None where a point is off the beam."""
-        edges, x = stage.edges - self.contacts.start, self._positions()
+        edges, x = stage.edges - self.contacts.start, self.positions()
         if x.min() < edges[0] or x.max() > edges[-1]:
             return None
         pieces = len(edges) - 1
@@ -305,20 +241,15 @@ class _Run:
         """The beam alone, after a moving load has left it, to the end of the stage."""
         begun, dt = int(self.tally[lay.STEP]), stage.steps.dt
         rest = np.arange(begun // stage.steps.every + 1, stage.steps.n // stage.steps.every + 1) * stage.steps.every
-        row = int(self.tally[lay.SAMPLES])
-        free = stage.rows.after(self.z, (rest - begun) * dt)
-        shapes, x = stage.shapes(self.places, 0), self.contacts.sliders[:, lay.X]
-        drive = (
-            stage.drive_factors(np.asarray(rest * dt, dtype=float))
-            @ interleaved(stage.drive_shapes(self.places, 0).T).T
-        )
-        self.deflections[row : row + len(rest)] = (free @ shapes).real + drive
-        speed = self.contacts.sliders[:, lay.V]
-        self.samples[row : row + len(rest), :, lay.KEPT_X] = x + np.multiply.outer((rest - begun) * dt, speed)
-        self.samples[row : row + len(rest), :, lay.KEPT_V] = speed
+        row, (x, speed) = int(self.tally[lay.SAMPLES]), self.contacts.sliders[:, [lay.X, lay.V]].T
+        rows, since = slice(row, row + len(rest)), np.asarray((rest - begun) * dt, dtype=float)
+        free = stage.rows.after(self.z, since)
+        self.deflections[rows] = stage.factors(free, since + begun * dt) @ stage.columns(self.places)
+        self.samples[rows, :, lay.KEPT_X] = x + np.multiply.outer(since, speed)
+        self.samples[rows, :, lay.KEPT_V] = speed
         self.contacts.sliders[:, lay.X] += (stage.steps.n - begun) * dt * speed
         self.z = stage.rows.after(self.z, (stage.steps.n - begun) * dt)
-        self.tally[lay.STEP], self.tally[lay.SAMPLES] = stage.steps.n, row + len(rest)
+        self.tally[[lay.STEP, lay.SAMPLES]] = stage.steps.n, row + len(rest)
 
 
 def rows_of(stage: Stage, z: ComplexArray) -> Array:
@@ -328,14 +259,5 @@ def rows_of(stage: Stage, z: ComplexArray) -> Array:
     gain = stage.rows.participations * np.where(rate == 0.0, dt, grown / np.where(rate == 0.0, 1.0, rate))
     coarse = abs(rate) * dt > RESOLVED
     end = np.where(coarse, gain / dt, stage.rows.participations * grown)
-    half, rows = np.exp(0.5 * rate * dt), np.empty((lay.ROW, len(z)))
-    for first, value in (
-        (lay.Z_RE, z),
-        (lay.RATE_RE, rate),
-        (lay.HALF_RE, half),
-        (lay.GAIN_RE, gain),
-        (lay.END_RE, end),
-    ):
-        rows[first], rows[first + 1] = value.real, value.imag
-    rows[lay.COARSE] = coarse
-    return rows
+    pairs = (part for value in (z, rate, np.exp(0.5 * rate * dt), gain, end) for part in (value.real, value.imag))
+    return np.array([*pairs, coarse])  # in the order of `layout`

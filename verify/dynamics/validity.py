@@ -1,21 +1,49 @@
-"""Margins of a run: errors that no time step removes."""
+"""Validity of a run: the size of the coupling of sliders and beam, and margins, errors that no time step removes."""
 
-from math import pi
+from collections.abc import Callable, Sequence
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
 
+from verify.arrays import Array, ComplexArray
+from verify.dynamics.linear_system import Stage, damped_field
 from verify.exact.closed_forms import frequency_hz, wavenumber_length
 from verify.exact.error_laws import LAWS, expected_error, leading_error
-from verify.linear.field import lossless_wavenumber
-from verify.problem.beam import Beam
+from verify.linear.field import lossless_wavenumber, travelling_wavenumber
+from verify.linear.surface import section_at
+from verify.linear.time_basis import Ratio, TimeBasis
+from verify.problem.beam import Beam, PointForce
+from verify.problem.slider import Slider
 
 if TYPE_CHECKING:
-    from verify.dynamics.linear_system import Stage
+    from verify.dynamics.request import Request
 
 NONLINEAR = 1e-3
 """(kL)^2 <theta^2> from which the linear chain departs from the paper's nonlinear one."""
+COUPLED = 1e-3
+"""Relative change of the surface motion above which one-way coupling is an error to state."""
+NEAR = 1e-3
+"""Distance of the forces that represent a couple, over 1/k, or over L/50 where that is shorter."""
+Receptance = Callable[[float, Array], tuple[ComplexArray, ComplexArray]]
+"""(x, places) -> deflections there under a unit force at x, m/N, and slopes under a unit couple, rad/(N m)."""
+
+
+class Coupling(Struct, frozen=True, kw_only=True):
+    """Whether sliders and beam are coupled two-way, and the size of what one-way coupling leaves out."""
+
+    two_way: bool
+    friction_size: float | None
+    """Surface speed due to full friction over that due to the drive; None where the drive moves no surface there."""
+    normal_size: float
+    """Surface motion due to the normal load over its motion by the drive: N |G| / |w| of a slider with contact, of a
+    bilateral one m omega^2 |G| of its inertia. Infinite where the drive does not move a loaded surface."""
+
+    @property
+    def relative_size(self) -> float | None:
+        """The larger of the sizes; None where the drive does not move the surface under the slider."""
+        return None if self.friction_size is None else max(self.friction_size, self.normal_size)
 
 
 class Margins(Struct, frozen=True, kw_only=True):
@@ -43,6 +71,73 @@ class Margins(Struct, frozen=True, kw_only=True):
     a beam with rigid motions that they would move."""
 
 
+def coupling_of(
+    beam: Beam, sliders: Sequence[Slider], starts: Sequence[float], stage: Stage, receptance: Receptance
+) -> Coupling:
+    """Sizes under the slider where they are largest, by the loads of all.
+
+    Full friction mu N is a couple (h/2) mu N on the beam, which turns its section and so moves the surface h/2 off.
+    """
+    places, omega = np.array(starts), stage.omega
+    half = np.array([section_at(beam, x).surface_distance for x in starts])
+    drive = [abs(stage.drive_shapes(places, derivative)[0]) for derivative in (0, 1)]
+    normal, friction = np.zeros(len(places)), np.zeros(len(places))
+    for x, slider, lever in zip(starts, sliders, half, strict=True):
+        lifted, turned = receptance(x, places)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            loaded = np.where(drive[0] > 0.0, slider.load * abs(lifted) / drive[0], np.inf)
+        normal += slider.mass * omega**2 * abs(lifted) if slider.contact is None else loaded
+        friction += slider.mu * slider.load * lever * half * omega * abs(turned)
+    speeds = half * omega * drive[1]
+    return Coupling(
+        two_way=sliders[0].coupling == "two-way",
+        friction_size=float((friction / speeds).max()) if (speeds > 0.0).all() else None,
+        normal_size=float(normal.max()),
+    )
+
+
+def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptance:
+    """Of all modes, and for the slope of the truncated ones too: their sum falls as slowly as 1/n."""
+    compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
+
+    def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
+        ends = ((basis.shapes(np.array([x]), derivative), basis.shapes(places, derivative)) for derivative in (0, 1))
+        lifted, turned = (np.asarray((compliance * here[:, 0]) @ there, dtype=complex) for here, there in ends)
+        if basis.tail is not None:
+            hertz = omega / (2.0 * np.pi)
+            turned += basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1)
+        return lifted, turned
+
+    return receptance
+
+
+def field_receptance(
+    beam: Beam, model: str, count: int | None, frequency_hz: float, damping: float | None
+) -> Receptance:
+    """Of the model's steady fields, with this damping ratio or the beam's own. Raises InputError."""
+
+    def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
+        forces = (PointForce(position=x),), couple(beam, x, frequency_hz)
+        fields = [damped_field(model, count, beam, some, frequency_hz, damping) for some in forces]
+        return fields[0].deflection(places), fields[1].slope(places)
+
+    return receptance
+
+
+def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
+    """A unit couple at x, 1 N m, as five close forces from x inwards: the derivative of a force by its place, order 4.
+
+    Curvature jumps under a couple: elements turn too little by up to 0.066 l/EI, links of length l by 0.15, at an end
+    by 0.30.
+    """
+    near = NEAR * min(float(np.sqrt(beam.wave_constant / (2.0 * np.pi * frequency_hz))), 0.02 * beam.length)
+    inwards = near if x < 0.5 * beam.length else -near
+    places = x + inwards * np.arange(5)
+    powers = np.vander((places - x) / inwards, increasing=True).T  # of the places as rounded
+    weights = np.linalg.solve(powers, np.eye(5)[1]) / inwards
+    return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
+
+
 def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float) -> float:
     """Nonlinearity of a roller-ended chain of rigid links, (k L)^2 <theta^2>, relative, through its axial inertia.
 
@@ -52,33 +147,38 @@ def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float
     return float(abs(lossless_wavenumber(beam, frequency_hz)) ** 2 * beam.length**2 * mean_square_slope)
 
 
-def nearest_mode(beam: Beam, drive_hz: float) -> int:
+def margins_of(request: "Request", stage: Stage) -> Margins:
+    """Margins of a run with this last stage, before its steps are known."""
+    beam, hertz, x = request.beam, request.frequency_hz, np.linspace(0.0, request.beam.length, 400)
+    falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
+    square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
+    return Margins(
+        lift_off=falling / request.gravity if request.gravity else inf,
+        nonlinearity=axial_inertia_size(beam, hertz, square),
+        model_form=_model_form(beam, hertz),
+        discretisation=_discretisation(beam, request.model, request.count, hertz),
+    )
+
+
+def _nearest_mode(beam: Beam, drive_hz: float) -> int:
     """The exact mode whose frequency lies nearest a drive's."""
     turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
-    mode = max(int(turns) - 1, 1)
-    while frequency_hz(beam, mode) < drive_hz:
-        mode += 1
-    below = frequency_hz(beam, mode - 1) if mode > 1 else 0.0
-    return mode - 1 if mode > 1 and drive_hz - below < frequency_hz(beam, mode) - drive_hz else mode
+    return min(range(max(int(turns) - 2, 1), int(turns) + 4), key=lambda n: abs(frequency_hz(beam, n) - drive_hz))
 
 
-def model_form(beam: Beam, drive_hz: float) -> float | None:
-    """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1; None without closed form."""
+def _model_form(beam: Beam, drive_hz: float) -> float | None:
     unknown = any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces)
     if beam.supports != ("pinned", "pinned") or not beam.uniform or unknown:
         return None
-    mode = nearest_mode(beam, drive_hz)
+    mode = _nearest_mode(beam, drive_hz)
     return frequency_hz(beam, mode, "timoshenko") / frequency_hz(beam, mode) - 1.0
 
 
-def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
-    """The leading frequency error of a discrete model at the mode nearest the drive; None where no law is known.
-
-    The whole law for a chain with clamped ends: its leading terms have the wrong sign at practical sizes.
-    """
+def _discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
+    """The whole law for a chain with clamped ends: its leading terms have the wrong sign at practical sizes."""
     if count is None or not beam.uniform or model not in LAWS:
         return None
-    mode = nearest_mode(beam, drive_hz)
+    mode = _nearest_mode(beam, drive_hz)
     if wavenumber_length(beam.supports, mode) >= pi * count:
         return None
     if "clamped" in beam.supports and LAWS[model].clamped_terms:
@@ -86,19 +186,18 @@ def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -
     return leading_error(model, beam.supports, mode, count)
 
 
-def margins_of(
-    beam: Beam, model: str, count: int | None, stage: "Stage", gravity: float, fall: float | None
-) -> Margins:
-    """Margins of a run with this last stage; `gravity` is N / m of the slider, m/s^2.
-
-    `fall` is the largest downward acceleration of the surface under a point slider in the run, m/s^2.
-    """
-    hertz, x = stage.omega / (2.0 * pi), np.linspace(0.0, beam.length, 400)
-    falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max()) if fall is None else fall
-    square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
-    return Margins(
-        lift_off=falling / gravity if gravity else float("inf"),
-        nonlinearity=axial_inertia_size(beam, hertz, square),
-        model_form=model_form(beam, hertz),
-        discretisation=discretisation(beam, model, count, hertz),
-    )
+def presliding(request: "Request") -> float | None:
+    """`Margins.presliding`, the largest of all feet."""
+    largest = 0.0
+    for slider, start in zip(request.sliders, request.starts, strict=True):
+        contact, section = slider.contact, section_at(request.beam, start)
+        if contact is None or contact.hard:
+            return None
+        compliances = [(contact.across(foot.length), contact.along(foot.length)) for foot in slider.feet]
+        if all(along for _, along in compliances):
+            k = travelling_wavenumber(section, request.frequency_hz)
+            if k is None:
+                return None
+            ratio = max(across / along for across, along in compliances)
+            largest = max(largest, slider.mu * ratio / (k * section.surface_distance))
+    return largest

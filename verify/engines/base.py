@@ -1,17 +1,14 @@
-"""The chain and the slider that every engine gets, what it returns, and which engines there are."""
+"""The chain that every engine gets, what it returns, and which engines there are."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
-from math import cos, isfinite, pi, radians, tanh
+from math import cos, pi, radians
 from typing import Protocol
-
-import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce, check_frequency
-from verify.problem.slider import Slider
 from verify.registry import Registry
 from verify.validation import check_whole
 
@@ -58,7 +55,7 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
     beam.check_added("the engines' chain")
     if beam.loss_factor:
         raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: the engines' chain is undamped, give 0")
-    check_whole("count", n, 6)  # the surface under a slider is read from six links
+    check_whole("count", n, 2)
     check_frequency("frequency_hz", frequency_hz, beam)
     for i, force in enumerate(forces):
         if force.position > beam.length:
@@ -68,64 +65,14 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
 
 
 @dataclass(frozen=True)
-class Rider:
-    """A point mass on the surface, moved by tanh friction and without effect on the chain. SI units.
-
-    `friction`: mu N. `half_thickness`: from the neutral line to the surface. `start`: position from the left end.
-    """
-
-    mass: float
-    friction: float
-    slope: float
-    half_thickness: float
-    start: float
-    speed: float = 0.0
-
-    def force(self, relative_speed: float) -> float:
-        """Friction by the speed relative to the surface."""
-        return -self.friction * tanh(self.slope * relative_speed)
-
-    def surface_speed(self, chain: Chain, spins: Sequence[float] | Array, x: float, first: int = 0) -> float:
-        """Tangential speed of the surface at x, m, in m/s, from the angular velocities of links `first` on.
-
-        At least two on either side of x. Means of two links at the joints, a cubic through four joints between (Catmull
-        and Rom, 1974).
-        """
-        i = near(chain, x)
-        s, k = x / chain.link - i, i - first
-        e, f, g, h, m = spins[k - 2], spins[k - 1], spins[k], spins[k + 1], spins[k + 2]
-        a, b, c, d = 0.5 * (e + f), 0.5 * (f + g), 0.5 * (g + h), 0.5 * (h + m)
-        cubic = 2.0 * b + s * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)))
-        return float(-0.5 * self.half_thickness * cubic)
-
-
-def near(chain: Chain, x: float) -> int:
-    """The link whose cubic holds at x; any where x is not a number."""
-    return min(max(int(x / chain.link), 2), chain.n - 3) if isfinite(x) else 2
-
-
-def rider_of(beam: Beam, slider: Slider) -> Rider:
-    """The slider as engines take it. Raises InputError for another law, kinematics or coupling."""
-    for name, value in (("law", "tanh"), ("kinematics", "tangential"), ("coupling", "one-way")):
-        if (given := getattr(slider, name)) != value:
-            raise InputError(f"slider.{name} = {given!r}: the engines' slider has {value!r} only, give that")
-    assert slider.steepness is not None
-    friction = slider.mu * slider.normal_force
-    return Rider(slider.mass, friction, slider.steepness, beam.surface_distance, slider.start_on(beam), slider.speed)
-
-
-@dataclass(frozen=True)
 class Run:
-    """What an engine returned, up to where it failed; arrays (m,) in s, m and m/s.
+    """What an engine returned, up to where it failed: times (m,), s, and deflections of mid-span (m,), m.
 
-    `deflection` of mid-span, `distance` and `speed` of the slider, zeros without one. `steps` are those completed,
-    `failure` is what the engine did where it failed, and when.
+    `steps` are those completed, `failure` is what the engine did where it failed, and when.
     """
 
     times: Array
     deflection: Array
-    distance: Array
-    speed: Array
     steps: int
     failure: str = ""
 
@@ -136,7 +83,7 @@ class Adapter(Protocol):
     def frequencies(self, chain: Chain) -> Array | None:
         """(n - 1,), Hz, ascending; None where the engine has none."""
 
-    def run(self, chain: Chain, steps: int, end: float, rider: Rider | None = None) -> Run:
+    def run(self, chain: Chain, steps: int, end: float) -> Run:
         """The motion from rest to `end` seconds in so many steps."""
 
 
@@ -168,7 +115,6 @@ ENGINES: Registry[Engine] = Registry(
     own=(
         Engine("Exudyn", "exudyn", "exudyn", "verify.engines.exudyn:Exudyn", implicit=True),
         Engine("MuJoCo", "mujoco", "mujoco", "verify.engines.mujoco:Mujoco"),
-        Engine("Pinocchio", "pin", "pinocchio", "verify.engines.pinocchio:Pinocchio"),
     ),
     refuses=lambda one: "" if isinstance(one, Engine) else "is not a verify.engines.Engine: make it one",
 )
@@ -181,43 +127,3 @@ def missing(engine: Engine) -> str:
     if find_spec(engine.module) is not None:
         return ""
     return f"{engine.name} is not installed: pip install {engine.package}, or leave it out"
-
-
-def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
-    """(n - 1,), Hz, of a tree over joint angles whose far end is constrained, ascending.
-
-    `mass` (n, n), `closure` (n,) the far end's height by the angles, `stiffness` (n,). The largest eigenvalues of the
-    inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
-    """
-    from scipy.linalg import eigh
-
-    basis = np.vstack([-closure[1:] / closure[0], np.eye(len(closure) - 1)])
-    root = 1.0 / np.sqrt(stiffness[1:])
-    values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
-    return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
-
-
-@dataclass
-class Recorder:
-    """Samples of a run in relative joint angles, the slider's coordinate after them."""
-
-    chain: Chain
-    steps: int
-    step: float
-    samples: list[tuple[float, float, float, float]] = field(default_factory=list)
-
-    def keep(self, k: int, q: Array, v: Array) -> None:
-        """Store the state after k steps, about `SAMPLES` times in a run."""
-        if k % max(self.steps // SAMPLES, 1):
-            return
-        n = self.chain.n
-        middle, at = self.chain.locate(0.5 * self.chain.length)
-        reach = np.append(np.full(middle, self.chain.link), at)
-        height = float(np.sin(np.cumsum(q[: middle + 1])) @ reach)
-        slid = (float(q[n]), float(v[n])) if len(q) > n else (0.0, 0.0)
-        self.samples.append((k * self.step, height, *slid))
-
-    def run(self, steps: int, failure: str) -> Run:
-        """The run from its samples."""
-        times, deflection, distance, speed = np.array(self.samples).reshape(-1, 4).T
-        return Run(times, deflection, distance, speed, steps, failure)

@@ -1,7 +1,7 @@
 """Exudyn: plane rigid bodies in redundant coordinates, revolute joints, its trapezoidal rule of index 2.
 
 That rule has order 2, no numerical damping and no step limit, and constrains velocities: with constrained positions
-rounding grows as 1 / step^2. A slider is a mass on one coordinate whose load is a user function. Where Newton's
+rounding grows as 1 / step^2. Where Newton's
 iteration stalls the engine halves its step and then raises an error.
 """
 
@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.base import SAMPLES, Chain, Rider, Run, near
+from verify.engines.base import SAMPLES, Chain, Run
 
-TOLERANCE, WITH_RIDER = 1e-7, 1e-9
-"""Relative, of Newton's residual: friction is not part of the Jacobian and needs the second."""
+TOLERANCE = 1e-7
+"""Relative, of Newton's residual."""
 
 
 class Exudyn:
@@ -23,47 +23,44 @@ class Exudyn:
 
     def frequencies(self, chain: Chain) -> Array:
         """By the engine's eigenvalue solver, which eliminates the constraints."""
-        system, _, _ = assemble(chain)
+        system, _ = assemble(chain)
         system.Assemble()
         with redirect_stdout(StringIO()):
             found, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
         return np.sort(np.asarray(found, dtype=float))[-(chain.n - 1) :]
 
-    def run(self, chain: Chain, steps: int, end: float, rider: Rider | None = None) -> Run:
+    def run(self, chain: Chain, steps: int, end: float) -> Run:
         """In steps of the trapezoidal rule."""
         import exudyn as exu
         from exudyn import utilities as items
 
-        system, nodes, bodies = assemble(chain)
+        system, bodies = assemble(chain)
         middle, at = chain.locate(0.5 * chain.length)
-        more = {"storeInternal": True, "writeToFile": False}
         position, place = exu.OutputVariableType.Position, [at - chain.link / 2, 0.0, 0.0]
-        sensor = items.SensorBody(bodyNumber=bodies[middle], localPosition=place, outputVariableType=position, **more)
-        sensors = [system.AddSensor(sensor)]
-        if rider:
-            node = _add_slider(chain, rider, system, nodes)
-            kinds = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t
-            slid = [items.SensorNode(nodeNumber=node, outputVariableType=kind, **more) for kind in kinds]
-            sensors += [system.AddSensor(one) for one in slid]
+        sensor = system.AddSensor(
+            items.SensorBody(
+                bodyNumber=bodies[middle],
+                localPosition=place,
+                outputVariableType=position,
+                storeInternal=True,
+                writeToFile=False,
+            )
+        )
         system.Assemble()
         failure = ""
         with redirect_stdout(StringIO()):
             try:
                 rule = exu.DynamicSolverType.TrapezoidalIndex2
-                system.SolveDynamic(_settings(steps, end, bool(rider)), solverType=rule, showHints=False)
+                system.SolveDynamic(_settings(steps, end), solverType=rule, showHints=False)
             except exu.SolverError as error:
                 failure = f"it raised {str(error) or 'an error'!r}"
-        kept = [np.array(system.GetSensorStoredData(one)) for one in sensors]
-        kept = [one.reshape(-1, 2 if i else 4)[1:] for i, one in enumerate(kept)]
-        times = kept[0][:, 0]
-        still = [np.zeros(len(times))] * 2
-        distance, speed = [one[:, 1] for one in kept[1:]] or still
+        times, _, deflection, _ = np.array(system.GetSensorStoredData(sensor)).reshape(-1, 4)[1:].T
         done = int(system.sys["dynamicSolver"].it.currentStepIndex) - (2 if failure else 1)
-        return Run(times, kept[0][:, 2], distance, speed, done, failure)
+        return Run(times, deflection, done, failure)
 
 
-def assemble(chain: Chain) -> tuple[Any, list[int], list[int]]:
-    """(system, nodes, bodies) of the chain with its springs, its roller and its forces."""
+def assemble(chain: Chain) -> tuple[Any, list[int]]:
+    """(system, bodies) of the chain with its springs, its roller and its forces."""
     import exudyn as exu
     from exudyn import utilities as items
 
@@ -96,33 +93,10 @@ def assemble(chain: Chain) -> tuple[Any, list[int], list[int]]:
         marker = point(bodies[link], at - half)
         vector = items.LoadForceVector(markerNumber=marker, loadVector=[0.0, 1.0, 0.0], loadVectorUserFunction=load)
         system.AddLoad(vector)
-    return system, nodes, bodies
+    return system, bodies
 
 
-def _add_slider(chain: Chain, rider: Rider, system: Any, nodes: list[int]) -> int:
-    """A mass on one coordinate with its friction; its node."""
-    import exudyn as exu
-    from exudyn import utilities as items
-
-    kinds = exu.OutputVariableType
-    place, rate, spin = kinds.Coordinates, kinds.Coordinates_t, kinds.AngularVelocity
-    start = {"initialCoordinates": [0.0], "initialVelocities": [rider.speed]}
-    node = system.AddNode(items.Node1D(referenceCoordinates=[0.0], **start))
-    system.AddObject(items.Mass1D(mass=rider.mass, nodeNumber=node))
-    marker = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
-
-    def friction(mbs: Any, t: float, load: object) -> float:
-        x = rider.start + float(np.ravel(mbs.GetNodeOutput(node, place))[0])
-        v = float(np.ravel(mbs.GetNodeOutput(node, rate))[0])
-        first = near(chain, x) - 2
-        spins = [float(mbs.GetNodeOutput(nodes[j], spin)[2]) for j in range(first, first + 5)]
-        return rider.force(v - rider.surface_speed(chain, spins, x, first))
-
-    system.AddLoad(items.LoadCoordinate(markerNumber=marker, load=1.0, loadUserFunction=friction))
-    return int(node)
-
-
-def _settings(steps: int, end: float, with_rider: bool) -> Any:
+def _settings(steps: int, end: float) -> Any:
     """Modified Newton, sparse matrices; sensors at `SAMPLES` times."""
     import exudyn as exu
 
@@ -131,7 +105,7 @@ def _settings(steps: int, end: float, with_rider: bool) -> Any:
     settings.timeIntegration.verboseMode = 0
     newton = settings.timeIntegration.newton
     newton.useModifiedNewton = True
-    newton.relativeTolerance, newton.absoluteTolerance = WITH_RIDER if with_rider else TOLERANCE, 1e-12
+    newton.relativeTolerance, newton.absoluteTolerance = TOLERANCE, 1e-12
     newton.numericalDifferentiation.minimumCoordinateSize = 1
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     settings.solution.file.write = False

@@ -1,9 +1,8 @@
 """MuJoCo: hinges in a tree, the far end held by a fixed tendon, which is linear in the angles; its own RK4.
 
-Bending is in its x-z plane, about -y. The tendon is a soft equality as hard as the engine makes one. A slider is a body
-on a slide joint. Forces and friction act in the control callback, a Python function at every stage: a C function takes
-half the time at 49 links. Beyond its stability limit the engine resets itself and raises nothing; a run stops where
-its time goes backwards.
+Bending is in its x-z plane, about -y. The tendon is a soft equality as hard as the engine makes one. Forces act in
+the control callback, a Python function at every stage: a C function takes half the time at 49 links. Beyond its
+stability limit the engine resets itself and raises nothing; a run stops where its time goes backwards.
 """
 
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.base import Chain, Recorder, Rider, Run, near, tree_frequencies
+from verify.engines.base import SAMPLES, Chain, Run
 from verify.errors import one_line
 
 
@@ -33,36 +32,56 @@ class Mujoco:
         stiffness = np.asarray(model.jnt_stiffness).reshape(model.nv, -1)[:, 0]
         return tree_frequencies(mass, np.array(data.efc_J).reshape(-1, model.nv)[0], np.array(stiffness))
 
-    def run(self, chain: Chain, steps: int, end: float, rider: Rider | None = None) -> Run:
+    def run(self, chain: Chain, steps: int, end: float) -> Run:
         """In steps of its Runge-Kutta method."""
         import mujoco
 
-        h, n = end / steps, chain.n
-        recorder = Recorder(chain, steps, h)
+        h = end / steps
+        middle, at = chain.locate(0.5 * chain.length)
+        reach = np.append(np.full(middle, chain.link), at)
+        samples: list[tuple[float, float]] = []
+
+        def run_up_to(k: int, failure: str = "") -> Run:
+            times, heights = np.array(samples).reshape(-1, 2).T
+            return Run(times, heights, k, failure)
+
         try:
-            model = mujoco.MjModel.from_xml_string(model_text(chain, h, rider))
+            model = mujoco.MjModel.from_xml_string(model_text(chain, h))
         except ValueError as error:
-            return recorder.run(0, f"before its first step it rejected the model: {one_line(str(error))}")
+            return run_up_to(0, f"before its first step it rejected the model: {one_line(str(error))}")
         data = mujoco.MjData(model)
-        if rider:
-            data.qvel[n] = rider.speed
         before = mujoco.get_mju_user_warning()
         mujoco.set_mju_user_warning(lambda text: None)  # it would write a file
-        mujoco.set_mjcb_control(_loads(chain, rider))
+        mujoco.set_mjcb_control(_loads(chain))
         try:
             for k in range(1, steps + 1):
                 mujoco.mj_step(model, data)
                 if data.time < (k - 0.5) * h:
-                    return recorder.run(k - 1, f"at t = {k * h:.4g} s it reset itself to its start")
-                recorder.keep(k, data.qpos, data.qvel)
+                    return run_up_to(k - 1, f"at t = {k * h:.4g} s it reset itself to its start")
+                if k % max(steps // SAMPLES, 1) == 0:
+                    samples.append((k * h, float(np.sin(np.cumsum(data.qpos[: middle + 1])) @ reach)))
         finally:
             mujoco.set_mjcb_control(None)
             mujoco.set_mju_user_warning(before)
-        return recorder.run(steps, "")
+        return run_up_to(steps)
 
 
-def model_text(chain: Chain, step: float, rider: Rider | None = None) -> str:
-    """The chain, and a slider beside it, in the engine's XML."""
+def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
+    """(n - 1,), Hz, of a tree over joint angles whose far end is constrained, ascending.
+
+    `mass` (n, n), `closure` (n,) the far end's height by the angles, `stiffness` (n,). The largest eigenvalues of the
+    inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
+    """
+    from scipy.linalg import eigh
+
+    basis = np.vstack([-closure[1:] / closure[0], np.eye(len(closure) - 1)])
+    root = 1.0 / np.sqrt(stiffness[1:])
+    values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
+    return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
+
+
+def model_text(chain: Chain, step: float) -> str:
+    """The chain in the engine's XML."""
     link, spin = chain.link, chain.inertia
     bodies = "".join(
         f'<body name="link{i}" pos="{0.0 if i == 0 else link!r} 0 0">'
@@ -70,24 +89,18 @@ def model_text(chain: Chain, step: float, rider: Rider | None = None) -> str:
         f'<inertial pos="{link / 2!r} 0 0" mass="{chain.mass!r}" diaginertia="{spin!r} {spin!r} {spin!r}"/>'
         for i in range(chain.n)
     )
-    slider = ""
-    if rider:
-        slider = (
-            f'<body name="slider" pos="{rider.start!r} 0 0.01"><joint name="slide" type="slide" axis="1 0 0"/>'
-            f'<inertial pos="0 0 0" mass="{rider.mass!r}" diaginertia="1e-9 1e-9 1e-9"/></body>'
-        )
     levers = "".join(f'<joint joint="hinge{i}" coef="{link * (chain.n - i)!r}"/>' for i in range(chain.n))
     return (
         '<mujoco><compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>'
         f'<option timestep="{step!r}" integrator="RK4" gravity="0 0 0" solver="PGS" jacobian="dense" iterations="20" '
         'tolerance="1e-14"><flag contact="disable"/></option>'
-        f'<size memory="200M"/><worldbody>{bodies}{"</body>" * chain.n}{slider}</worldbody>'
+        f'<size memory="200M"/><worldbody>{bodies}{"</body>" * chain.n}</worldbody>'
         f'<tendon><fixed name="closure">{levers}</fixed></tendon><equality><tendon tendon1="closure" '
         f'solref="{2 * step!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"/></equality></mujoco>'
     )
 
 
-def _loads(chain: Chain, rider: Rider | None) -> Any:
+def _loads(chain: Chain) -> Any:
     """The control callback."""
     places = [(link + 1, at - chain.link / 2) for link, at in (chain.locate(force.position) for force in chain.forces)]
     bodies = sorted({body for body, _ in places})
@@ -97,12 +110,5 @@ def _loads(chain: Chain, rider: Rider | None) -> Any:
         for (body, lever), force in zip(places, chain.force_values(data.time), strict=True):
             data.xfrc_applied[body, 2] += force
             data.xfrc_applied[body, 4] -= lever * force
-        if rider:
-            x = rider.start + float(data.qpos[chain.n])
-            first = near(chain, x) - 2
-            spins = np.cumsum(data.qvel[: first + 5])[first:].tolist()
-            data.qfrc_applied[chain.n] = rider.force(
-                float(data.qvel[chain.n]) - rider.surface_speed(chain, spins, x, first)
-            )
 
     return control

@@ -1,4 +1,4 @@
-"""Pictures and movies of modes, waves and motion: png, gif, webp, mp4; a solid beam by pyvista where requested."""
+"""Pictures and movies of modes, waves and motion: png, gif, webp."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,24 +29,18 @@ HEIGHT = 0.08
 
 
 def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -> None:
-    """Write a picture (png) or a movie of a dataset.
-
-    Raises InputError for mp4 without ffmpeg, and for a solid picture without pyvista.
-    """
+    """Write a picture (png) or a movie of a dataset. Raises InputError for a beam at rest."""
     kind, frames = path.suffix.lower().removeprefix("."), _frames(data, request)
+    if not 0.0 < abs(frames["deflection"]).max() < np.inf:
+        raise InputError("what: the beam is at rest, give the drive a force")
     if kind == "png":
         largest = int(np.argmax(abs(frames["deflection"]).max(axis=1)))
         frames = {name: values[largest : largest + 1] for name, values in frames.items()}
-    if request.solid:
-        pictures = _solid(data, frames)
-    else:
-        drawn = movie_frames(movie(scene, data, frames), 110.0, INK, "white")[0]
-        pictures = [image.convert("RGB") for image in drawn]
+    drawn = movie_frames(movie(scene, data, frames), 110.0, INK, "white")[0]
+    pictures = [image.convert("RGB") for image in drawn]
     with whole(path, "to") as part:
         if kind == "png":
             pictures[0].save(part, format="png")
-        elif kind == "mp4":
-            _write_mp4(pictures, part)
         else:
             more = {"save_all": True, "append_images": pictures[1:], "duration": 1000 // FPS, "loop": 0}
             pictures[0].save(part, format=kind, **more)
@@ -66,14 +60,6 @@ def _frames(data: Dataset, request: Request) -> "dict[str, Array]":
     return frames | {name: data.histories[name][thin] for name in ("slider_position",) if name in data.histories}
 
 
-def _scale(deflection: "Array", length: float) -> float:
-    """Factor from the deflection to lengths of the beam. Raises InputError for a beam at rest."""
-    largest = float(abs(deflection).max())
-    if not 0.0 < largest < np.inf:
-        raise InputError("what: the beam is at rest, give the drive a force")
-    return HEIGHT * length / largest
-
-
 def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
     """The frames as a movie: the beam at its supports, forces as arrows, the slider on the surface."""
 
@@ -82,7 +68,7 @@ def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
 
         ax: Any = figure.subplots()
         length, deflection = scene.beam.length, frames["deflection"]
-        scale = _scale(deflection, length)
+        scale = HEIGHT * length / float(abs(deflection).max())
         color = MODEL_COLORS["segment" if data.links else "fem"]
         ax.plot([0.0, length], [0.0, 0.0], color="#b0b6be", linewidth=0.8)
         for x, support in zip((0.0, length), scene.beam.supports, strict=True):
@@ -111,53 +97,3 @@ def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
         return FuncAnimation(figure, update, frames=len(deflection), interval=1000.0 / FPS)
 
     return Movie(data.what, data.title, "", animate)
-
-
-def _write_mp4(pictures: list[Any], path: Path) -> None:
-    """H.264 by ffmpeg, from the path or from imageio-ffmpeg. Raises InputError where there is none."""
-    import shutil
-    import subprocess
-
-    program = shutil.which("ffmpeg")
-    if program is None:
-        try:
-            from imageio_ffmpeg import get_ffmpeg_exe
-        except ImportError:
-            raise InputError("to: mp4 needs ffmpeg, install it or imageio-ffmpeg, or give .gif or .webp") from None
-        program = get_ffmpeg_exe()
-    width, height = (size // 2 * 2 for size in pictures[0].size)
-    raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(FPS), "-i", "-"]
-    command = [program, "-y", "-loglevel", "error", *raw, "-pix_fmt", "yuv420p", "-f", "mp4", str(path)]
-    frames = b"".join(picture.crop((0, 0, width, height)).tobytes() for picture in pictures)
-    done = subprocess.run(command, input=frames, capture_output=True, check=False)
-    if done.returncode:
-        raise InputError(f"to: ffmpeg cannot write mp4 ({done.stderr.decode(errors='replace').strip()}): give .gif")
-
-
-def _solid(data: Dataset, frames: "dict[str, Array]") -> list[Any]:
-    """The beam as a strip with its colours by deflection, off screen. Raises InputError without pyvista."""
-    try:
-        import pyvista
-    except ImportError:
-        raise InputError(
-            "solid = true needs pyvista: pip install 'fem-segment-verify[viz]', or leave --solid out"
-        ) from None
-    from PIL import Image
-
-    length = float(data.x[-1])
-    half = min(max(0.5 * (data.beam.width or 0.0), 0.04 * length), 0.1 * length)
-    scale = _scale(frames["deflection"], length)
-    largest, pictures = float(abs(frames["deflection"]).max()), []
-    plotter = pyvista.Plotter(off_screen=True, window_size=(1280, 720))
-    for deflection, label in zip(frames["deflection"], frames["label"], strict=True):
-        sides = np.meshgrid([-half, half], data.x, indexing="ij")
-        grid = pyvista.StructuredGrid(sides[1], sides[0], np.tile(scale * deflection, (2, 1)))
-        grid["deflection"] = np.tile(deflection, (2, 1)).ravel(order="F")
-        plotter.clear()
-        plotter.add_mesh(grid, scalars="deflection", cmap="coolwarm", clim=(-largest, largest), show_edges=data.links)
-        plotter.add_text(f"{data.title}\n{label}", font_size=10)
-        plotter.camera_position = [(0.5 * length, -1.6 * length, 0.7 * length), (0.5 * length, 0, 0), (0, 0, 1)]
-        plotter.camera.zoom(1.4)
-        pictures.append(Image.fromarray(np.asarray(plotter.screenshot(return_img=True))))
-    plotter.close()
-    return pictures

@@ -12,7 +12,6 @@ from verify.errors import InputError
 from verify.linear.registry import MODELS
 
 if TYPE_CHECKING:
-    from verify.problem.beam import Beam
     from verify.scene.model import Scene
 
 COUNT, MODES, EXACT = 49, 10, 201
@@ -25,7 +24,7 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     """What to export."""
 
     what: str | None = None
-    """modes, wave, motion or tables; by default what the scene has and the file type holds."""
+    """modes, wave or motion; by default what the scene has and the file type holds."""
     model: str = "segment"
     count: int | None = None
     """Segments or elements; by default the count of the scene's study of the same subject, else 49."""
@@ -33,8 +32,6 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     """Number of modes of data, the mode of a picture."""
     samples: int | None = None
     """Steps of a period or of a motion."""
-    solid: bool = False
-    """Picture by pyvista."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,6 @@ class Dataset:
 
     what: str
     title: str
-    beam: "Beam"
     links: bool
     x: Array
     points: dict[str, Array]
@@ -56,18 +52,6 @@ class Dataset:
     step_name: str
     deflection: Array
     histories: dict[str, Array] = field(default_factory=dict)
-
-    @property
-    def cells(self) -> dict[str, Array]:
-        """EI (N m^2), rho A (kg/m) and section number, (n - 1,) each, of the beam between two points."""
-        pieces = self.beam.pieces
-        ends = np.cumsum([piece.length for piece in pieces])
-        index = np.minimum(np.searchsorted(ends, 0.5 * (self.x[1:] + self.x[:-1])), len(pieces) - 1)
-        return {
-            "section": index.astype(float),
-            "bending_stiffness": np.array([piece.bending_stiffness for piece in pieces])[index],
-            "mass_per_length": np.array([piece.mass_per_length for piece in pieces])[index],
-        }
 
 
 def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
@@ -84,7 +68,7 @@ def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
     reader = {"modes": _modes, "wave": _wave, "motion": _motion}[what]
     values = reader(scene, cache, request, count, x)
     values["title"] = f"{values['title']}, {name}"
-    return Dataset(what=what, beam=scene.beam, links=model.name == "segment", x=x, **values)
+    return Dataset(what=what, links=model.name == "segment", x=x, **values)
 
 
 def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:

@@ -1,8 +1,8 @@
-"""Datasets, tables and pictures of a scene written to files whose suffix is the file type."""
+"""Datasets and pictures of a scene written to files whose suffix is the file type."""
 
 import csv
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,57 +11,44 @@ import numpy as np
 from verify.errors import InputError, near_name, shown
 from verify.files import whole, writable_folder, write_whole
 from verify.io.data import Dataset, Request, dataset
-from verify.report.result import Table, to_json
+from verify.report.result import to_json
 
 if TYPE_CHECKING:
     from verify.arrays import Array
     from verify.scene.model import Scene
 
-DATA = ("modes", "wave", "motion")
+DATA, PICTURES = ("modes", "wave", "motion"), ("png", "gif", "webp")
 TYPES = {
     "vtu": ("modes", "wave"),
-    **dict.fromkeys(("pvd", "xdmf", "csv", "npz"), DATA),
-    "json": (*DATA, "tables"),
-    "tex": ("tables",),
-    **dict.fromkeys(("png", "gif", "webp", "mp4"), DATA),
+    **dict.fromkeys(("xdmf", "csv", "json", "npz", *PICTURES), DATA),
 }
 """What a file type holds."""
 
 
 def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:
-    """Write modes, wave, motion or tables of a scene to a file; returns what was written.
+    """Write modes, wave or motion of a scene to a file, whole or not at all; returns what was written.
 
-    The file is whole or absent. A pvd has its meshes in a folder NAME-steps beside it. Raises InputError for an unknown
-    file type, for content that it does not hold, and where the file cannot be written.
+    Raises InputError for an unknown file type, for content that it does not hold, and where the file cannot be written.
     """
     kind = path.suffix.lower().removeprefix(".")
     if kind not in TYPES:
         raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give one of .{', .'.join(TYPES)}")
-    there = [*["motion"] * (scene.motion is not None), *["wave"] * bool(scene.forces), "modes", "tables"]
+    there = [*["motion"] * (scene.motion is not None), *["wave"] * bool(scene.forces), "modes"]
     what = request.what or next(what for what in there if what in TYPES[kind])
-    if what not in (*DATA, "tables"):
-        raise InputError(f"what = {what!r} is not known: {near_name(what, (*DATA, 'tables'))}")
+    if what not in DATA:
+        raise InputError(f"what = {what!r} is not known: {near_name(what, DATA)}")
     if what not in TYPES[kind]:
         holding = ", ".join(f".{name}" for name, held in TYPES.items() if what in held)
         raise InputError(f"what = {what!r}: a .{kind} file does not hold it, give one of {holding}")
     writable_folder(path.parent, "to")
-    if what == "tables":
-        from verify.report.summary import gates_table
-        from verify.scene.run import run_scene
-
-        run = run_scene(scene, progress)
-        tables = [gates_table(run), *(table for result in run.results.values() for table in result.tables)]
-        data = [{"title": table.title, "rows": table.records()} for table in tables]
-        write_whole(path, latex(tables) if kind == "tex" else to_json(data), "to")
-        return f"{len(tables)} tables"
     progress(what)
     data_ = dataset(scene, what, request)
-    if kind in ("png", "gif", "webp", "mp4"):
+    if kind in PICTURES:
         from verify.io.animate import write_picture
 
         write_picture(scene, data_, path, request)
     else:
-        writers = {"vtu": _vtu, "pvd": _pvd, "xdmf": _xdmf, "csv": _csv, "json": _json, "npz": _npz}
+        writers = {"vtu": _vtu, "xdmf": _xdmf, "csv": _csv, "json": _json, "npz": _npz}
         writers[kind](data_, path)
     return data_.title
 
@@ -77,8 +64,7 @@ def _mesh(data: Dataset, points: "dict[str, Array]") -> Any:
     import meshio
 
     lines = np.stack([np.arange(len(data.x) - 1), np.arange(1, len(data.x))], axis=1)
-    cells = {name: [values] for name, values in data.cells.items()}
-    return meshio.Mesh(_vectors(data.x, 0), [("line", lines)], point_data=points, cell_data=cells)
+    return meshio.Mesh(_vectors(data.x, 0), [("line", lines)], point_data=points)
 
 
 def _vtu(data: Dataset, path: Path) -> None:
@@ -95,24 +81,6 @@ def _step(data: Dataset, i: int) -> "dict[str, Array]":
     """Values at the points at a step."""
     slider = {name: np.full(len(data.x), values[i]) for name, values in data.histories.items()}
     return {"deflection": _vectors(data.deflection[i]), **slider}
-
-
-def _pvd(data: Dataset, path: Path) -> None:
-    import meshio
-
-    folder = path.with_name(f"{path.stem}-steps")
-    names = [f"{path.stem}_{i:05d}.vtu" for i in range(len(data.steps))]
-    rows = "".join(
-        f'<DataSet timestep="{float(step)!r}" part="0" file="{folder.name}/{name}"/>\n'
-        for step, name in zip(data.steps, names, strict=True)
-    )
-    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n'
-    writable_folder(folder, "to")
-    with whole(path, "to") as index:
-        index.write_text(f"{head}{rows}</Collection>\n</VTKFile>\n", "utf-8")
-        for i, name in enumerate(names):
-            with whole(folder / name, "to") as part:
-                meshio.write(part, _mesh(data, _step(data, i)), file_format="vtu")
 
 
 def _xdmf(data: Dataset, path: Path) -> None:
@@ -142,7 +110,7 @@ def _csv(data: Dataset, path: Path) -> None:
 
 def _arrays(data: Dataset) -> "dict[str, Array]":
     series = {data.step_name: data.steps, "deflection": data.deflection}
-    return {"x": data.x, **data.cells, **data.points, **series, **data.histories}
+    return {"x": data.x, **data.points, **series, **data.histories}
 
 
 def _json(data: Dataset, path: Path) -> None:
@@ -152,26 +120,3 @@ def _json(data: Dataset, path: Path) -> None:
 def _npz(data: Dataset, path: Path) -> None:
     with whole(path, "to") as part, part.open("wb") as stream:
         np.savez_compressed(stream, title=np.array(data.title), **_arrays(data))  # type: ignore[arg-type]
-
-
-_TEX = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "–": "--", "µ": r"$\mu$"}
-_TEX |= {character: f"\\{character}" for character in "{}$&#_%"} | {"±": r"$\pm$", "²": "$^2$", "°": r"$^\circ$"}
-_TEX |= {"<": "$<$", ">": "$>$", "|": "$|$", "×": r"$\times$", "μ": r"$\mu$", "√": r"$\surd$", "³": "$^3$"}
-
-
-def latex(tables: Sequence[Table]) -> str:
-    r"""Tables for \input: plain tabular, no package needed."""
-
-    def row(cells: Sequence[str]) -> str:
-        texts = ("".join(_TEX.get(character, character) for character in cell) for cell in cells)
-        return " & ".join(f"{{{text}}}" for text in texts) + r" \\"
-
-    parts = []
-    for table in tables:
-        words = [any(isinstance(line[i], str) for line in table.rows) for i in range(len(table.columns))]
-        sides = "".join("l" if word else "r" for word in words)
-        lines = [rf"\par\medskip\noindent {row([table.title])[:-3]}\par\smallskip", rf"\begin{{tabular}}{{{sides}}}"]
-        lines += [r"\hline", row(table.headings()), r"\hline", *map(row, table.text_rows()), r"\hline"]
-        lines.append(r"\end{tabular}")
-        parts.append("\n".join([*lines, *(rf"\par {row([note])[:-3]}" for note in table.notes)]) + "\n")
-    return "\n".join(parts)

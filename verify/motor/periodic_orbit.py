@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble
-from verify.dynamics.result import Motion
+from verify.dynamics.result import EndState, Motion
 from verify.errors import InputError
 from verify.motor.steady_state import MotorCase
 
@@ -57,11 +57,15 @@ def periodic_orbit(
     free = np.flatnonzero(np.repeat(moves, 2, axis=1).ravel())
     size = np.tile(scale, len(moves))[free]
 
-    def period(start: Motion, by: Array) -> Motion:
-        """The period after a start with its free coordinates shifted."""
-        feet = start.end.feet.copy()
+    def shifted(state: EndState, feet: Array, by: Array) -> EndState:
+        """A state with these feet, their free coordinates shifted."""
+        assert state.contact is not None
+        feet = feet.copy()
         feet.flat[free] += by * size
-        return case.run(1.0, 2, replace(start, end=start.end.with_feet(feet)), speed)
+        return replace(state, contact=replace(state.contact, feet=feet))
+
+    def period(start: Motion, by: Array) -> Motion:
+        return case.run(1.0, 2, replace(start, end=shifted(start.end, start.end.feet, by)), speed)
 
     def coordinates(one: Motion) -> Array:
         return np.asarray(one.end.feet.flat[free] / size)
@@ -69,8 +73,8 @@ def periodic_orbit(
     still, best = np.zeros(len(free)), None
     for _ in range(ROUNDS):
         after = period(run, still)
-        shifted = [coordinates(period(run, row)) for row in DIFFERENCE * np.eye(len(free))]
-        jacobian = (np.array(shifted) - coordinates(after)).T / DIFFERENCE
+        ends = [coordinates(period(run, row)) for row in DIFFERENCE * np.eye(len(free))]
+        jacobian = (np.array(ends) - coordinates(after)).T / DIFFERENCE
         change = coordinates(after) - coordinates(run)
         residual = float(np.abs(change).max())
         if best is None or residual < best.residual:
@@ -78,9 +82,7 @@ def periodic_orbit(
         if residual <= tolerance:
             return best
         step = np.linalg.lstsq(np.eye(len(free)) - jacobian, change, rcond=None)[0]
-        feet = run.end.feet.copy()
-        feet.flat[free] += step * size
-        run = replace(after, end=after.end.with_feet(feet))
+        run = replace(after, end=shifted(after.end, run.end.feet, np.asarray(step)))
     if best is None or best.residual > REPEATS:
         raise InputError(f"speed = {speed!r} m/s: no motion repeats after one period, use means over many periods")
     return best

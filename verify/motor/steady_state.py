@@ -14,7 +14,7 @@ ch. 2), so that the first window is run at a speed at which all points slip.
 
 from functools import lru_cache
 from math import copysign
-from typing import Literal, NamedTuple, TypeAlias
+from typing import Literal, NamedTuple
 
 import numpy as np
 from msgspec import Struct
@@ -31,7 +31,7 @@ from verify.options import Start
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
-Figure: TypeAlias = Literal["force", "normal force", "shares", "powers"]
+Figure = Literal["force", "normal force", "shares", "powers"]
 BATCHES = 16
 FIRST = 48
 """Periods of the first two windows: batches of 3, then of 6, in which subharmonics of order 2 and 3 repeat."""
@@ -74,17 +74,10 @@ class MotorCase(Struct, frozen=True, kw_only=True):
         self, periods: float, samples: int, before: Motion | None = None, prescribed_speed: float | None = None
     ) -> Motion:
         """A run of so many periods after another; a prescribed speed, m/s, has a fixed position. Raises InputError."""
-        fixed = prescribed_speed is not None
         run = simulate(
-            **asdict(self),
-            duration=periods * self.period,
-            samples=samples,
-            continue_from=before,
-            prescribed_speed=prescribed_speed,
-            fixed_position=fixed,
-        )
-        if run.statistics.interrupted:
-            raise KeyboardInterrupt
+            **asdict(self), duration=periods * self.period, samples=samples, continue_from=before,
+            prescribed_speed=prescribed_speed, fixed_position=prescribed_speed is not None,
+        )  # fmt: skip
         return run
 
 
@@ -175,8 +168,7 @@ def _window(
     run = case.run(periods, BATCHES + 1, before, speed)
     if not run.statistics.finished:
         raise InputError(
-            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped} after "
-            f"{run.end.time:.6g} s, give more"
+            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped}, give more"
         )
     batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
     assert run.energy is not None

@@ -8,7 +8,6 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble
-from verify.dynamics.excitation import CONSTANT, NO_ROWS
 from verify.dynamics.linear_system import EXACT_DEGREE, Stage, Steps, cut
 from verify.dynamics.stepping import run_stages
 from verify.errors import InputError
@@ -26,18 +25,11 @@ def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 
     check_uniform(beam)
     omega = 2.0 * pi * frequency_hz
     k = float(np.sqrt(omega / beam.wave_constant))
-
     return Stage(
-        rows=NO_ROWS,
-        forced=None,
-        shapes=lambda x, derivative: np.empty((0, len(x))),
         field=lambda x, derivative, psi: (amplitude * (-1j * k) ** derivative * np.exp(-1j * k * x))[None],
         edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2),
         degree=EXACT_DEGREE,
         omega=omega,
-        origin=0.0,
-        unit_s=1.0,
-        envelope=CONSTANT,
         steps=Steps(STEPS, 2.0 * pi / (omega - k * mean) / STEPS, STEPS),
     )
 

@@ -15,7 +15,7 @@ from verify.quantities.slider import SliderOptions, TimeOptions, motion_argument
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
-    from verify.chain.ride import ChainRide
+    from verify.dynamics.result import Motion
 
 Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
 Seconds = Annotated[float, Meta(gt=0, description="s, from rest")]
@@ -135,46 +135,54 @@ def axial_departure(
     return float(getattr(departure(scene.beam, *drive, run.segments, inertia=inertia, progress=cache.progress), of))
 
 
-class Ride(msgspec.Struct, frozen=True, kw_only=True):
-    """Time integration of the scene's slider on the nonlinear chain, from rest."""
+class OnChain(msgspec.Struct, frozen=True, kw_only=True):
+    """Time integration of the scene's slider, with or without feet, on the nonlinear chain from rest."""
 
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
+    joint_dashpot: Annotated[float, Meta(ge=0, description="of every joint with a spring, N m s")] = 0.0
     force: ForceAmplitude | None = None
     soft_start_periods: SoftStart | None = None
 
-    def run(self, scene: Scene, cache: "SolutionCache", options: SliderOptions) -> "ChainRide":
+    def run(self, scene: Scene, cache: "SolutionCache", options: SliderOptions) -> "Motion":
         """The motion of the slider. Raises InputError."""
-        from verify.chain.ride import ride_from_rest
+        from verify.chain.slider_on_chain import slide_on_chain
 
         if scene.motion is None:
             raise InputError("motion is missing: a slider on a chain takes [motion] with its duration")
         time = TimeOptions(model="analytic", force=self.force, soft_start_periods=self.soft_start_periods)
-        slider, (forces, hertz, duration) = options.of(scene), _drive(scene, time)
-        step = options.step or 1.0 / (scene.motion.steps_per_period * hertz)
-        case = (scene.beam, forces, hertz, slider, self.segments, duration)
-        key: Any = ("chain", *case, step, self.links)
+        case: dict[str, Any] = {"slider": options.of(scene), "count": self.segments, "links": self.links}
+        case |= {"joint_dashpot": self.joint_dashpot, "step": options.step}
+        drive, steps = _drive(scene, time), scene.motion.steps_per_period
+        key: Any = ("chain", scene.beam, *drive, *case.values(), steps)
         if key not in cache.motors:
-            cache.motors[key] = ride_from_rest(*case, step=step, links=self.links, progress=cache.progress)
-        motion: ChainRide = cache.motors[key]
+            cache.motors[key] = slide_on_chain(
+                scene.beam, *drive, **case, steps_per_period=steps, samples=2, progress=cache.progress
+            )
+        motion: Motion = cache.motors[key]
+        if not motion.statistics.finished:
+            raise InputError(
+                f"duration = {drive[2]:.12g} s: the slider {motion.statistics.stopped} after {motion.end.time:.6g} s, "
+                "give a shorter duration or another slider_position"
+            )
         return motion
 
 
 @quantity("chain.slider_displacement", unit="m")
-def slider_displacement(scene: Scene, cache: "SolutionCache", ride: Ride, slider: SliderOptions) -> float:
+def slider_displacement(scene: Scene, cache: "SolutionCache", by: OnChain, slider: SliderOptions) -> float:
     """Displacement of the scene's slider along +x on the chain."""
-    return ride.run(scene, cache, slider).displacement
+    return by.run(scene, cache, slider).displacement
 
 
 @quantity("chain.slider_mean_speed", unit="m/s")
-def slider_mean_speed(scene: Scene, cache: "SolutionCache", ride: Ride, slider: SliderOptions) -> float:
+def slider_mean_speed(scene: Scene, cache: "SolutionCache", by: OnChain, slider: SliderOptions) -> float:
     """Displacement of the slider on the chain over time."""
-    return ride.run(scene, cache, slider).mean_speed
+    return by.run(scene, cache, slider).mean_speed
 
 
 @quantity("chain.slider_imbalance", unit="1")
-def slider_imbalance(scene: Scene, cache: "SolutionCache", ride: Ride, slider: SliderOptions) -> float:
+def slider_imbalance(scene: Scene, cache: "SolutionCache", by: OnChain, slider: SliderOptions) -> float:
     """Residual of the slider's energy balance on the chain over its friction loss."""
-    ledger = ride.run(scene, cache, slider).ledger
-    assert ledger is not None
-    return abs(ledger.residual) / ledger.rubbed
+    energy = by.run(scene, cache, slider).energy
+    assert energy is not None
+    return abs(energy.slider_residual) / energy.friction_loss

@@ -48,7 +48,7 @@ class Belt(msgspec.Struct, frozen=True, kw_only=True):
         """(stick, slip) time of a cycle, s."""
         from verify.dynamics.belt import stick_slip_times
 
-        return stick_slip_times(self.mass, self.stiffness, self.static, self.kinetic, self.speed)
+        return stick_slip_times(**msgspec.structs.asdict(self))
 
 
 @quantity("friction.belt_stick_time", unit="s", reads=())

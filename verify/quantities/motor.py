@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from verify.motor.curves import Transient
     from verify.motor.steady_state import Figure, MotorCase, SteadyState
 
+Speed = Annotated[float, Meta(description="of the slider along +x, m/s")]
+
 
 class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
     """Model of a motor's beam, and its time steps."""
@@ -56,9 +58,8 @@ class Prescribed(MotorOptions, frozen=True, kw_only=True):
         from verify.motor.steady_state import steady_state
 
         found: SteadyState = cached(cache, steady_state, self.case(scene), speed, self.periods)
-        for name in figures:
-            if not found.converged(name):
-                raise InputError(f"periods = {self.periods!r}: {REASONS[name]}")
+        if missing := next((name for name in figures if not found.converged(name)), None):
+            raise InputError(f"periods = {self.periods!r}: {REASONS[missing]}")
         return found
 
 
@@ -68,13 +69,7 @@ def _at_speed(
     """Register a quantity of the slider at a prescribed speed."""
 
     @quantity(f"motor.{name}", unit=unit, summary=f"{summary} at a prescribed speed.")
-    def at_speed(
-        scene: Scene,
-        cache: "SolutionCache",
-        motor: Prescribed,
-        *,
-        speed: Annotated[float, Meta(description="of the slider along +x, m/s")] = 0.0,
-    ) -> float:
+    def at_speed(scene: Scene, cache: "SolutionCache", motor: Prescribed, *, speed: Speed = 0.0) -> float:
         from verify.motor.curves import REASONS
 
         value = read(motor.state(scene, cache, speed, *figures))
@@ -137,6 +132,14 @@ def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
     if (time := free.run(scene, cache).time_constant()) is None:
         raise InputError(f"periods = {free.periods!r}: {REASONS['start']}")
     return time
+
+
+@quantity("motor.multiplier", unit="1")
+def multiplier(scene: Scene, cache: "SolutionCache", motor: MotorOptions, *, speed: Speed = 0.0) -> float:
+    """Largest Floquet multiplier of the periodic motion at a prescribed speed: below 1 disturbances decay."""
+    from verify.motor.periodic_orbit import periodic_orbit
+
+    return float(max(abs(cached(cache, periodic_orbit, motor.case(scene), speed).multipliers)))
 
 
 @quantity("motor.contact_imbalance", unit="1")

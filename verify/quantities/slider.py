@@ -1,6 +1,5 @@
 """Quantities in time: a slider on the driven beam, its energy balance and coupling, and the beam alone."""
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
@@ -23,6 +22,8 @@ Time = Annotated[float, Meta(gt=0, description="s; default: the scene's motion.d
 Window = Annotated[tuple[float, float], Meta(description="m, start and end")]
 SAMPLES_PER_PERIOD, POINTS = 32, 40
 """Instants and positions of a motion in which waves are measured."""
+SOFT_START_PERIODS = 2.0
+"""From rest: forces that act at once excite all modes, under which a slider's path does not converge."""
 
 
 class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
@@ -57,18 +58,14 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
         scene.slider.check_stays()
-        if self.law == "coulomb" and self.slope is not None:
-            raise InputError(f"slope = {self.slope!r} is K of law = 'tanh': law = 'coulomb' has none, leave it out")
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
-    from verify.dynamics.request import soft_start
-
     motion, soft = scene.motion, by.soft_start_periods
-    time = by.time if by.time is not None or motion is None else motion.duration
+    time = by.time if motion is None else by.time or motion.duration
     if time is None:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
     opt.check_count(by.model, by.count)
@@ -77,30 +74,23 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     opt.check_forces(scene, "motion in time")
     start = by.start or (motion.start if motion else "rest")
     if soft is None:
-        soft = soft_start(start, motion.soft_start_periods if motion and start == "rest" else None)
+        soft = motion.soft_start_periods if motion and start == "rest" else None
+        soft = (SOFT_START_PERIODS if start == "rest" else 0.0) if soft is None else soft
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
-    return {
-        "beam": scene.beam,
-        "forces": by.forces(scene, by.force),
-        "frequency_hz": opt.drive_frequency(scene, by.frequency_hz),
-        "duration": time,
-        "model": by.model,
-        "count": by.count,
-        "modes": by.modes,
-        "start": start,
-        "soft_start_periods": soft,
-        "modal_damping": damping,
-    }
+    forces, hertz = by.forces(scene, by.force), opt.drive_frequency(scene, by.frequency_hz)
+    own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "soft_start_periods": soft}
+    driven = {"beam": scene.beam, "forces": forces, "frequency_hz": hertz, "duration": time}
+    return {**driven, **own, "modal_damping": damping}
 
 
 def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -> "Motion":
     """A simulation, from the cache where it is there."""
-    key = tuple((arguments | more).items())
-    if key not in cache.motions:
-        from verify.dynamics.simulate import simulate
+    from verify.dynamics.simulate import simulate
 
-        more = {"samples": 2} | more
-        cache.motions[key] = simulate(**arguments, **more, progress=cache.progress)
+    arguments = arguments | {"samples": 2} | more
+    key = tuple(arguments.items())
+    if key not in cache.motions:
+        cache.motions[key] = simulate(**arguments, progress=cache.progress)
     return cache.motions[key]
 
 
@@ -108,46 +98,34 @@ def slider_run(
     scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, reverse: bool = False, **more: Any
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
-    from verify.dynamics.request import STEPS_PER_PERIOD
     from verify.dynamics.step_control import CONVERGED
 
     arguments = motion_arguments(scene, by)
     if reverse:
         arguments["forces"] = tuple(replace(one, phase_deg=-one.phase_deg) for one in arguments["forces"])
-    steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
+    steps = scene.motion.steps_per_period if scene.motion else None
     run = _simulated(cache, arguments, slider=slider.of(scene), step=slider.step, steps_per_period=steps, **more)
     status = run.statistics
-    if status.interrupted:
-        raise KeyboardInterrupt
     if not status.finished:
-        raise InputError(
-            f"time = {arguments['duration']:.12g} s: the slider {status.stopped} after {run.end.time:.6g} s, give a "
-            "shorter time or another slider_position"
-        )
+        raise InputError(f"time = {arguments['duration']:.12g} s: the slider {status.stopped}, give a shorter time")
     if status.step_change is not None and status.step_change > CONVERGED:
-        raise InputError(
-            f"step = {status.step_s:.3g} s, the default: halving it changes the displacement by "
-            f"{100.0 * status.step_change:.2g} %, give a shorter step or time"
-        )
+        raise InputError(f"step = {status.step_s:.3g} s, the default, has not converged: give a shorter step or time")
     return run
 
 
-def _run_figure(attribute: str) -> Callable[..., float]:
-    def run_figure(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
-        return float(getattr(slider_run(scene, cache, by, slider), attribute))
+def _of_run(name: str, unit: str, summary: str) -> None:
+    """Register an attribute of the run."""
 
-    return run_figure
+    @quantity(f"slider.{name}", unit=unit, summary=summary)
+    def of_run(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
+        return float(getattr(slider_run(scene, cache, by, slider), name))
 
 
-RUN_FIGURES = {
-    "displacement": ("m", "Displacement of the scene's slider along +x after a time."),
-    "mean_speed": ("m/s", "Displacement of the slider over time."),
-    "largest_friction": ("N", "Largest friction force on the slider."),
-    "mean_friction": ("N", "Friction force on the slider along +x, mean over time."),
-    "mean_surface_speed": ("m/s", "Tangential velocity of the surface under the slider, mean over time."),
-}
-for _name, (_unit, _text) in RUN_FIGURES.items():
-    quantity(f"slider.{_name}", unit=_unit, summary=_text)(_run_figure(_name))
+_of_run("displacement", "m", "Displacement of the scene's slider along +x after a time.")
+_of_run("mean_speed", "m/s", "Displacement of the slider over time.")
+_of_run("largest_friction", "N", "Largest friction force on the slider.")
+_of_run("mean_friction", "N", "Friction force on the slider along +x, mean over time.")
+_of_run("mean_surface_speed", "m/s", "Tangential velocity of the surface under the slider, mean over time.")
 
 
 @quantity("slider.reversal", unit="1")
@@ -174,21 +152,23 @@ def order(
     def displacement(by: TimeOptions, step: float | None = None) -> float:
         return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
 
-    if counts is not None and steps is None:
-        check_sizes("counts", counts)
-        if by.count is not None or not MODELS.named(by.model).sized:
-            raise InputError(f"counts = {list(counts)}: an order over counts is of a discrete model without count")
-        exact = displacement(replace(by, model="analytic"))
-        errors = [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
-        return asymptotic_order(counts, errors)
-    if steps is None or counts is not None:
+    if (counts is None) == (steps is None):
         raise InputError(f"counts = {counts!r} and steps = {steps!r}: give one of the two")
-    check_sizes("steps", steps)
-    if slider.step is not None:
-        raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
-    exact = displacement(by, min(steps) / 16.0)
-    errors = [relative_error(displacement(by, step), exact) for step in steps]
-    return asymptotic_order([1.0 / step for step in steps], errors, given=f"steps = {list(steps)}")
+    if steps is not None:
+        check_sizes("steps", steps)
+        if slider.step is not None:
+            raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
+        exact = displacement(by, min(steps) / 16.0)
+        errors = [relative_error(displacement(by, step), exact) for step in steps]
+        return asymptotic_order([1.0 / step for step in steps], errors, given=f"steps = {list(steps)}")
+    assert counts is not None
+    check_sizes("counts", counts)
+    if by.count is not None or not MODELS.named(by.model).sized:
+        raise InputError(f"counts = {list(counts)}: an order over counts is of a discrete model without count")
+    exact = displacement(replace(by, model="analytic"))
+    return asymptotic_order(
+        counts, [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
+    )
 
 
 @quantity("slider.deflection", unit="m")
@@ -199,21 +179,9 @@ def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: Sl
 
 def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "EnergyBalance":
     run = slider_run(scene, cache, by, slider)
-    balance = run.energy
-    if balance is None or run.end.steady:
+    if run.energy is None or run.end.steady:
         raise InputError("start = 'steady': the energy balance is of a run from rest, give start = 'rest'")
-    return balance
-
-
-ENERGIES = {
-    "external_work": "drive_work",
-    "damping_loss": "damping_loss",
-    "friction_loss": "friction_loss",
-    "slider": "slider",
-    "friction_on_beam": "friction_on_beam",
-    "normal_on_beam": "normal_on_beam",
-}
-"""Attributes of the energy balance by the name of the term."""
+    return run.energy
 
 
 @quantity("slider.energy", unit="J")
@@ -229,7 +197,8 @@ def energy(
     ],
 ) -> float:
     """A term of the energy balance of beam and slider from rest."""
-    return float(getattr(_energy_balance(scene, cache, by, slider), ENERGIES[of]))
+    balance = _energy_balance(scene, cache, by, slider)
+    return float(getattr(balance, "drive_work" if of == "external_work" else of))
 
 
 @quantity("slider.imbalance", unit="1")
@@ -281,11 +250,11 @@ def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window:
     from verify.travelling_wave import measure_series
     from verify.waves.window import check_span, check_waves
 
-    arguments = motion_arguments(scene, by)
+    arguments, beam = motion_arguments(scene, by), scene.beam
     hertz = arguments["frequency_hz"]
-    check_span(scene.beam, [force.position for force in arguments["forces"]], window)
-    check_waves(scene.beam, hertz, window)
-    x = positions_on("window", np.linspace(*window, POINTS), scene.beam.length)
+    check_span(beam, [force.position for force in arguments["forces"]], window)
+    check_waves(beam, hertz, window)
+    x = positions_on("window", np.linspace(*window, POINTS), beam.length)
     samples = int(SAMPLES_PER_PERIOD * arguments["duration"] * hertz) + 1
     run = _simulated(cache, arguments, at=tuple(map(float, x)), samples=samples)
-    return measure_series(scene.beam, x, run.times, run.deflection, hertz).reflection
+    return measure_series(beam, x, run.times, run.deflection, hertz).reflection

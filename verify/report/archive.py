@@ -1,8 +1,8 @@
 """Saved runs: a folder for each with its page and its data, and a copy of the latest page above them.
 
 reports/paper.html                            the latest page, a copy: one file can be sent or served
-reports/paper/2026-03-01_14-05-09/index.html  the page of a saved run
-reports/paper/2026-03-01_14-05-09/run.json    its data (`report.summary.run_data`)
+reports/paper/2026-03-01_14-05-09-271828/index.html  the page of a saved run
+reports/paper/2026-03-01_14-05-09-271828/run.json    its data (`report.summary.run_data`)
 """
 
 import json
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 DATA, PAGE = "run.json", "index.html"
 KEEP = 5
 """Saved runs of one name."""
-_TIME = re.compile(r"\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2}(-\d+)?")
+_TIME = re.compile(r"\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2}-\d{6}")
 
 
 class Saved(NamedTuple):
@@ -56,9 +56,9 @@ def save_run(run: "RunResult", reports: Path, name: str, command: str = "", keep
             raise InputError(
                 f"reports = {str(home)!r} is no folder, and runs are saved there: move it, or give --keep 0"
             )
-        stamp = datetime.now(UTC).strftime("%Y-%m-%d_%H-%M-%S")
+        folder = home / datetime.now(UTC).strftime("%Y-%m-%d_%H-%M-%S-%f")
         data = to_json(run_data(run, command) | {"report": name})
-        folder = write_folder(home / stamp, {PAGE: page, DATA: data}, "reports")
+        write_folder(folder, {PAGE: page, DATA: data}, "reports")
         for old in saved_in(home)[:-keep]:
             shutil.rmtree(old, ignore_errors=True)
     write_whole(reports / f"{name}.html", page, "reports")
@@ -67,12 +67,8 @@ def save_run(run: "RunResult", reports: Path, name: str, command: str = "", keep
 
 def saved_in(home: Path) -> list[Path]:
     """Folders with a saved run, from the oldest to the newest."""
-
-    def when(folder: Path) -> tuple[str, int]:
-        return folder.name[:19], int(folder.name[20:] or 1)
-
     found = [one.parent for one in home.glob(f"*/{DATA}") if _TIME.fullmatch(one.parent.name)]
-    return sorted((one for one in found if not one.is_symlink()), key=when)
+    return sorted(one for one in found if not one.is_symlink())
 
 
 def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:

@@ -7,8 +7,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verify.report.plotting import figure_files, figure_svg, movie_image
-from verify.report.result import Figure, Movie, Result, Table
+from verify.report.plotting import figure_svg, movie_image
+from verify.report.result import Figure, Movie, Result, Table, to_json
 from verify.report.summary import (
     environment,
     expected,
@@ -51,18 +51,11 @@ class Section:
     folded: bool = False
 
 
-def write_page(run: "RunResult", path: Path, command: str = "") -> None:
-    """Write the report of a run, whole or not at all. Raises InputError where the file cannot be written."""
-    from verify.files import write_whole
-
-    write_whole(path, run_page(run, command), "report")
-
-
 def run_page(run: "RunResult", command: str = "") -> str:
     """The report of a run as HTML."""
     from verify.report.beam_drawing import beam_figure
 
-    scene = run.scene
+    scene, beam = run.scene, beam_figure(run.scene)
     studies = [_study_section(run, name, result) for name, result in run.results.items()]
     void = void_results(run)
     summaries = [(section.title, section.id, " ".join(section.paragraphs)) for section in studies if section.paragraphs]
@@ -70,7 +63,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
     sections += studies
     if run.skipped:
         sections.append(Section("skipped", "Not run", tables=[skipped_table(run)]))
-    sections.append(Section("inputs", "Inputs", code=_inputs(scene), folded=True))
+    sections.append(Section("inputs", "Inputs", code=to_json(scene), folded=True))
     worst = worst_gate(run)
     return render(
         name=scene.name,
@@ -83,8 +76,8 @@ def run_page(run: "RunResult", command: str = "") -> str:
         problems=[f"{study_title(run, name)}: {why}" for name, why in void.items()]
         + [f"{one.gate.id}: {one.reason}" for one in run.failed],
         warnings=list(dict.fromkeys(getattr(run, "warnings", ()))),
-        drawings=[figure_svg(beam_figure(scene, width)) for width in (8.4, 4.2)],
-        drawing_caption=beam_figure(scene).caption,
+        drawing=figure_svg(beam),
+        drawing_caption=beam.caption,
         summaries=summaries,
         worst=None if worst is None else (worst, value_text(worst.value), expected(worst.gate)),
         sections=sections,
@@ -99,12 +92,6 @@ def _study_section(run: "RunResult", name: str, result: Result) -> Section:
     return Section(name, study_title(run, name), summary, result.warnings, figures, movies, result.tables)
 
 
-def _inputs(scene: Any) -> str:
-    from verify.report.result import to_json
-
-    return to_json(scene)
-
-
 def render(name: str, sections: Sequence[Section], **values: Any) -> str:
     """A page of sections below a verdict; `values` are the template's other variables."""
     shown = [
@@ -117,7 +104,8 @@ def render(name: str, sections: Sequence[Section], **values: Any) -> str:
         }
         for section in sections
     ]
-    return _template().render(name=name, sections=shown, environment=environment(), css=_css(), **values)
+    css = Path(__file__).with_name("page.css").read_text("utf-8")
+    return _template().render(name=name, sections=shown, environment=environment(), css=css, **values)
 
 
 @lru_cache
@@ -125,13 +113,8 @@ def _template() -> "Template":
     from jinja2 import Environment, FileSystemLoader
 
     loader = FileSystemLoader(Path(__file__).parent)
-    return Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True).get_template(
-        "page.html.j2"
-    )
-
-
-def _css() -> str:
-    return Path(__file__).with_name("page.css").read_text("utf-8")
+    made = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    return made.get_template("page.html.j2")
 
 
 def data_uri(kind: str, content: str | bytes) -> str:
@@ -141,9 +124,8 @@ def data_uri(kind: str, content: str | bytes) -> str:
 
 
 def _figure(figure: Figure, page: str) -> dict[str, Any]:
-    svg, csv = figure_files(figure)
-    links = {"CSV": data_uri("text/csv", csv), "SVG": data_uri("image/svg+xml", svg)}
-    return {"figure": figure, "svg": svg, "file": f"{page}-{figure.id}", "links": links}
+    svg = figure_svg(figure)
+    return {"figure": figure, "svg": svg, "file": f"{page}-{figure.id}", "link": data_uri("image/svg+xml", svg)}
 
 
 def _movie(movie: Movie, page: str) -> dict[str, Any]:

@@ -1,15 +1,13 @@
-"""Charts as SVG, PNG and CSV, movies as animated images: colours and style for both, in one place.
+"""Charts as SVG and PNG, movies as animated images: colours and style for both, in one place.
 
 Studies draw on the `Axes` that they receive, in `MODEL_COLORS` and the colour cycle. Colours of text, axes and paper
 are placeholders that `figure_svg` turns into CSS variables, so that one SVG serves light and dark pages.
 """
 
-import csv
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from itertools import count
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -34,26 +32,16 @@ def style(ink: str = INK, salt: str = "verify") -> Iterator[None]:
     import matplotlib as mpl
     from cycler import cycler
 
-    settings: Any = dict.fromkeys(
-        ("axes.edgecolor", "axes.labelcolor", "text.color", "xtick.color", "ytick.color"), ink
-    )
+    inked = ("axes.edgecolor", "axes.labelcolor", "text.color", "xtick.color", "ytick.color")
+    settings: Any = dict.fromkeys(inked, ink)
     settings |= {"axes.facecolor": "none", "figure.facecolor": "none", "savefig.facecolor": "none"}
     settings |= {"axes.prop_cycle": cycler(color=CYCLE), "axes.grid": True, "grid.linewidth": 0.6}
     settings |= {"grid.color": GRID} if ink == INK else {"grid.color": ink, "grid.alpha": 0.3}
     settings |= {"axes.spines.top": False, "axes.spines.right": False, "axes.titlesize": 10.0, "font.size": 10.0}
-    settings |= {
-        "legend.facecolor": PAPER,
-        "legend.edgecolor": "none",
-        "legend.framealpha": 0.8,
-        "legend.fontsize": 9.0,
-    }
+    settings |= {"legend.facecolor": PAPER, "legend.edgecolor": "none", "legend.framealpha": 0.8}
     settings |= {"lines.linewidth": 1.6, "lines.markersize": 4.5, "legend.fontsize": 9.0}
-    settings |= {
-        "axes.formatter.limits": (-4, 5),
-        "axes.formatter.useoffset": False,
-        "svg.fonttype": "none",
-        "svg.hashsalt": salt,
-    }
+    settings |= {"axes.formatter.limits": (-4, 5), "axes.formatter.useoffset": False}
+    settings |= {"svg.fonttype": "none", "svg.hashsalt": salt}
     with mpl.rc_context(settings):
         yield
 
@@ -81,12 +69,11 @@ def drawn(figure: "Figure") -> "MatplotlibFigure":
     return canvas
 
 
-def figure_svg(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> str:
+def figure_svg(figure: "Figure") -> str:
     """The chart as an SVG element without scripts.
 
     Colours of text and axes follow the page: they are CSS variables. Ids are prefixed with the figure's id, so
-    that several stand on one page. Its role is img, its accessible name the title and caption. `canvas` is the chart
-    where it is `drawn` already.
+    that several stand on one page. Its role is img, its accessible name the title and caption.
     """
     from html import escape
 
@@ -94,7 +81,7 @@ def figure_svg(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> st
 
     out = io.StringIO()
     with style(salt=figure.id):  # not by savefig, which draws twice: the layout engine runs in either draw
-        vector: Any = FigureCanvasSVG(canvas or drawn(figure))
+        vector: Any = FigureCanvasSVG(drawn(figure))
         vector.print_svg(out, metadata=NO_METADATA)
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
@@ -114,53 +101,6 @@ def figure_png(figure: "Figure", dpi: float = 160.0) -> bytes:
     with style():
         drawn(figure).savefig(out, format="png", dpi=dpi, facecolor="white", metadata={"Software": None})
     return out.getvalue()
-
-
-def figure_csv(figure: "Figure", canvas: "MatplotlibFigure | None" = None) -> str:
-    """The plotted data in the units of the axes: series, x, y, and the value of a map.
-
-    Lines over data coordinates, scattered points, bars and meshes count; guides (`gid="guide"`) do not.
-    """
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    with style():
-        axes = (canvas or drawn(figure)).axes
-    writer.writerow(["series", axes[0].get_xlabel() or "x", axes[0].get_ylabel() or "y", "value"])
-    for ax in axes:
-        if ax.get_label() != "<colorbar>":
-            writer.writerows(_points(ax))
-    return out.getvalue()
-
-
-def figure_files(figure: "Figure") -> tuple[str, str]:
-    """(SVG, CSV) of a chart that is drawn once."""
-    with style():
-        canvas = drawn(figure)
-    return figure_svg(figure, canvas), figure_csv(figure, canvas)
-
-
-def _points(ax: Any) -> Iterator[Sequence[Any]]:
-    def series(artist: Any) -> str:
-        label = str(artist.get_label())
-        return "" if label.startswith("_") else label
-
-    for line in ax.lines:
-        if line.get_gid() != "guide" and line.get_transform() == ax.transData:
-            yield from ((series(line), float(x), float(y), "") for x, y in zip(*line.get_data(orig=False), strict=True))
-    for bars in (one for one in ax.containers if hasattr(one, "orientation") and hasattr(one, "patches")):
-        lying = bars.orientation == "horizontal"
-        names = [text.get_text() for text in (ax.get_yticklabels() if lying else ax.get_xticklabels())]
-        for bar, name in zip(bars.patches, names if len(names) == len(bars.patches) else count(), strict=False):
-            yield series(bars), *((bar.get_width(), name) if lying else (name, bar.get_height())), ""
-    for one in ax.collections:
-        if hasattr(one, "get_coordinates"):  # a mesh: its values stand at cell centres, or at corners where shaded
-            places, values = one.get_coordinates(), one.get_array()
-            if values.size != places[..., 0].size:
-                places = 0.25 * (places[1:, 1:] + places[:-1, 1:] + places[1:, :-1] + places[:-1, :-1])
-            for (x, y), value in zip(places.reshape(-1, 2), values.reshape(-1), strict=True):
-                yield series(one), float(x), float(y), float(value)
-        elif type(one).__name__ == "PathCollection":
-            yield from ((series(one), float(x), float(y), "") for x, y in one.get_offsets())
 
 
 def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:

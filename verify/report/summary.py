@@ -1,5 +1,6 @@
 """What a run says in short: its verdict, its gates as a table, and everything as plain data."""
 
+from contextlib import suppress
 from datetime import UTC, datetime
 from math import ceil, log10
 from typing import TYPE_CHECKING, Any
@@ -93,14 +94,16 @@ def skipped_table(run: "RunResult") -> Table:
 def environment() -> dict[str, str]:
     """Versions, machine and date."""
     import platform
-    from importlib.metadata import version
+    from importlib.metadata import PackageNotFoundError, version
 
     from verify import __version__
 
-    packages = ("numpy", "scipy", "numba", "scikit-fem", "matplotlib")
     values = {"date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"), "verify": __version__}
     values |= {"Python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
-    return values | {name: version(name) for name in packages}
+    for name in ("numpy", "scipy", "numba", "scikit-fem", "matplotlib", "exudyn", "mujoco"):
+        with suppress(PackageNotFoundError):  # the engines are optional
+            values[name] = version(name)
+    return values
 
 
 def run_data(run: "RunResult", command: str = "") -> dict[str, Any]:

@@ -33,16 +33,6 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
         """Id of the gate."""
         return self.gate.id
 
-    @property
-    def expected(self) -> str:
-        """The band as text: '0.00428 ± 5e-09', 'at most 0.01', 'contains 4469.94'."""
-        gate = self.gate
-        if gate.expect is None:
-            return gate.limits
-        complex_ = isinstance(gate.expect, Complex)
-        value = f"{gate.expect.re!r} {gate.expect.im:+}i" if complex_ else repr(gate.expect)  # type: ignore[union-attr]
-        return f"contains {value}" if gate.within is None else f"{value} ± {gate.within:g}"
-
 
 def run_gate(gate: Gate, scene: Scene, cache: "SolutionCache") -> GateResult:
     """Evaluate one gate. Never raises: a gate that cannot be evaluated fails with the reason."""

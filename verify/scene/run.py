@@ -42,10 +42,6 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
     """Implausible units, and a deflection beyond small-amplitude theory."""
-    first_frequency_hz: float | None
-    """Exact Euler-Bernoulli frequency of mode 1; None where there is none."""
-    largest_deflection: float | None
-    """Amplitude of the exact steady field, its maximum along the beam, m; None without a drive."""
     seconds: float
 
     @property
@@ -86,15 +82,12 @@ def run_scene(
     for name, study in studies_of(loaded):
         progress(name)
         results[name] = study.run(loaded, cache, progress)
-    frequency, deflection = _frequency_and_deflection(loaded, cache)
     return RunResult(
         scene=loaded,
         gates=tuple(gates),
         results=results,
         skipped=tuple(row for row in rows if not row.runs),
-        warnings=(*unit_warnings(loaded), *deflection_warning(loaded, deflection)),
-        first_frequency_hz=frequency,
-        largest_deflection=deflection,
+        warnings=(*unit_warnings(loaded), *deflection_warning(loaded, _largest_deflection(loaded, cache))),
         seconds=perf_counter() - start,
     )
 
@@ -108,11 +101,8 @@ def _planned(scene: Scene | str | Path, overrides: Sequence[str]) -> tuple[Scene
     """The scene, and its gates in their order, then the studies."""
     from verify.studies.base import STUDIES, studies_of
 
-    if isinstance(scene, Scene):
-        loaded, effective = scene, tuple(overrides)
-    else:
-        loaded, effective = load_scene(scene, overrides), effective_overrides(scene, overrides)
-    skip = skipped_gates(loaded, effective)
+    loaded = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
+    skip = skipped_gates(loaded, overrides)
     rows = [PlanRow(gate.id, "gate", gate.id not in skip, skip.get(gate.id, gate.quantity)) for gate in loaded.gate]
     running = [name for name, _ in studies_of(loaded)]
     rows += [PlanRow(name, "study", True) for name in running]
@@ -145,27 +135,11 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
     return skip
 
 
-def effective_overrides(name_or_path: str | Path, overrides: Sequence[str]) -> tuple[str, ...]:
-    """Overrides without those that repeat what the file says: a beam of the same length is no other beam."""
-
-    def repeats(text: str) -> bool:
-        key = text.partition("=")[0].strip()
-        if key.startswith("gate.") and ".arguments" not in key:
-            return False  # a band that is stated counts even where it is the same
-        with suppress(InputError):  # alone it may be wrong
-            return load_scene(name_or_path, (text,)) == load_scene(name_or_path)
-        return False
-
-    return tuple(text for text in overrides if not repeats(text))
-
-
-def _frequency_and_deflection(scene: Scene, cache: "SolutionCache") -> tuple[float | None, float | None]:
-    """First frequency, Hz, and largest steady deflection, m; None without modes, without forces, or at a resonance."""
+def _largest_deflection(scene: Scene, cache: "SolutionCache") -> float | None:
+    """Amplitude of the exact steady field, its maximum along the beam, m; None without a drive, or at a resonance."""
     from verify.quantities.base import evaluate
 
-    frequency = deflection = None
+    places = [scene.beam.length * i / 200.0 for i in range(201)] if scene.forces else []
     with suppress(InputError):
-        frequency = cache.exact_hz(1)
-        places = [scene.beam.length * i / 200.0 for i in range(201)] if scene.forces else []
-        deflection = max((abs(evaluate("wave.deflection", {"x": x}, scene, cache)) for x in places), default=None)  # type: ignore[arg-type]
-    return frequency, deflection
+        return max((abs(evaluate("wave.deflection", {"x": x}, scene, cache)) for x in places), default=None)  # type: ignore[arg-type]
+    return None

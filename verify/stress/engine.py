@@ -14,7 +14,7 @@ import numpy as np
 
 from verify.errors import InputError, near_name
 
-MODULES = ("modes", "waves", "motion_chain", "scaling")
+MODULES = ("modes", "waves", "motion")
 DIGITS = 60
 HALVINGS = 8
 Error: TypeAlias = Callable[..., float]
@@ -27,10 +27,10 @@ class Outcome:
 
     id: str
     worst: float
-    """Largest error over the guaranteed range, or the exponent of a cost."""
+    """Largest error over the guaranteed range."""
     passed: bool
     points: Points
-    """(value, error or cost)."""
+    """(value, error)."""
     breaks_at: float | None
     """Value from which the tolerance is exceeded or the input refused; None where neither was reached."""
     breaks_by: str
@@ -57,8 +57,6 @@ class Check:
     """Whether the range may end only with a refusal."""
     baseline: tuple[Any, ...] = ()
     """(name, error, values if others) of the standard method, measured alike; it may fail in any way."""
-    rounds: int = 0
-    """From 1 on `error` is a cost, the least of so many rounds, and `tolerance` bounds its exponent."""
     slow: bool = False
 
     def run(self) -> Outcome:
@@ -66,10 +64,8 @@ class Check:
         start, baseline = perf_counter(), list[tuple[float, float]]()
         with localcontext() as context, warnings.catch_warnings():
             context.prec = DIGITS
-            # the sizes of a cost take turns, so that a busy machine slows none of them in all rounds
-            table = [[_error(self.error, value)[0] for value in self.values] for _ in range(max(self.rounds, 1))]
-            points = tuple(zip(self.values, map(min, zip(*table, strict=True)), strict=True))
-            worst = exponent(points) if self.rounds else max(error for _, error in points)
+            points = tuple((value, _error(self.error, value)[0]) for value in self.values)
+            worst = max(error for _, error in points)
             breaks_at, how = self._limit() if worst <= self.tolerance else (None, "")
             warnings.simplefilter("ignore")
             if self.baseline:
@@ -143,16 +139,11 @@ def select(ids: Sequence[str] = (), *, slow: bool = False) -> list[Check]:
 def run(
     checks: Sequence[Check], jobs: int | None = None, progress: Callable[[str], None] = lambda id: None
 ) -> list[Outcome]:
-    """Outcomes in the order of the checks: errors in `jobs` processes, then costs, each alone on the machine."""
+    """Outcomes in the order of the checks, on `jobs` processes, VERIFY_JOBS unless set."""
     from verify.parallel import map_processes
 
-    ids = [one.id for one in checks if not one.rounds]
-    found = dict(zip(ids, map_processes(_run_by_id, ids, lambda n: progress(ids[n - 1]), jobs), strict=True))
-    for one in checks:
-        if one.rounds:
-            found[one.id] = one.run()
-            progress(one.id)
-    return [found[one.id] for one in checks]
+    ids = [one.id for one in checks]
+    return map_processes(_run_by_id, ids, lambda n: progress(ids[n - 1]), jobs)
 
 
 def _run_by_id(name: str) -> Outcome:
@@ -168,12 +159,6 @@ def _error(error: Error, value: float) -> tuple[float, str]:
     except (ArithmeticError, ValueError, RuntimeError):  # a baseline overflows, is singular, or does not converge
         return inf, "error"
     return (found, "error") if isfinite(found) else (inf, "error")
-
-
-def exponent(points: Points) -> float:
-    """Slope of ln cost over ln size by least squares."""
-    sizes, costs = np.log(np.array(points)).T
-    return float(np.polyfit(sizes, costs, 1)[0])
 
 
 def worst(*errors: Any) -> float:

@@ -233,36 +233,10 @@ def tip_mass(ratio: float) -> Any:
     return replace(CANTILEVER, mass=(mass,)), equal(CANTILEVER, N)
 
 
-_SECOND = "Mode 2 of a cantilever of elements with a tip mass"
-matrix_check("tip-mass-mode-2", "m / (rho A L)", DECADES, 2, {"fem": ""}, title=_SECOND)(tip_mass)
-
-
-@matrix_check("tip-spring", "k L^3 / EI", DECADES, 2, {"fem": ""}, beyond=FAR)
-def tip_spring(ratio: float) -> Any:
-    """Mode 2 of a cantilever of elements with a tip spring."""
-    spring = PointSpring(position=TIP, stiffness=ratio * CANTILEVER.bending_stiffness / TIP**3)
-    return replace(CANTILEVER, spring=(spring,)), equal(CANTILEVER, N)
-
-
-@check("foundation", "k L^4 / EI", DECADES, 1e-12, beyond=FAR)
-def foundation(ratio: float) -> float:
-    """Mode 2 of pinned beams, three models: omega^2 grows by k / (rho A)."""
-    beam = replace(STRIP, foundation=ratio * STRIP.bending_stiffness / STRIP.length**4)
-    bare = {m: D(float(dispersion(m, N, 2)[1])) for m in DISCRETE} | {"analytic": reference.pinned_hertz(STRIP, 2)}
-    added = D(beam.foundation) / D(beam.mass_per_length)
-    exact = {m: ((2 * PI * hertz) ** 2 + added).sqrt() / (2 * PI) for m, hertz in bare.items()}
-    return worst([float(D(frequency(m, beam, 2)) / exact[m] - 1) for m in exact])
-
-
-def on_ground(softness: float) -> Beam:
-    """A free bar on a foundation, softness EI / (k L^4)."""
-    return replace(FREE, foundation=FREE.bending_stiffness / FREE.length**4 / softness)
-
-
 @check("nearly-free", "EI / (k L^4)", (1e-8, 1e-3, 1e3, 1e6), 1e-12, beyond=(1e9, 1e12, 1e15))
 def nearly_free(softness: float) -> float:
     """Modes 1-3 of free bars of 49 and 2000 parts on a foundation, two models."""
-    beam = on_ground(softness)
+    beam = replace(FREE, foundation=FREE.bending_stiffness / FREE.length**4 / softness)
     errors = [own_error(model, beam, equal(beam, 49), mode) for model in DISCRETE for mode in (1, 3)]
     own, added = D(beam.wave_constant), D(beam.foundation) / D(beam.mass_per_length)
     roots = D(0), D(0), D("4.7300407448627040260240481")  # cos y cosh y = 1
@@ -289,27 +263,12 @@ def nearly_floating(softness: float) -> float:
     return worst(errors)
 
 
-def buckling(model: str, beam: Beam, n: int = N) -> float:
-    """Newton."""
-    return float(MODELS[model].build(beam, None if model == "analytic" else n).buckling_load())
-
-
 @check("near-buckling", "1 - P / Pcr", (1, 1e-3, 1e-6, 1e-9), 1e-13, beyond=(1e-11, 1e-13, 1e-17))
 def near_buckling(left: float) -> float:
     """Mode 1 close to buckling, three models: error times the share of the load that is left."""
     errors = []
     for model in ALL:
-        beam = replace(STRIP, tension=-(1.0 - left) * buckling(model, STRIP))
+        load = MODELS[model].build(STRIP, None if model == "analytic" else N).buckling_load()
+        beam = replace(STRIP, tension=-(1.0 - left) * float(load))
         errors.append(pinned_error(beam, 1) if model == "analytic" else own_error(model, beam, equal(beam, N), 1))
     return left * worst(errors)
-
-
-@check("buckling-soft-ground", "EI / (k L^4)", (1e6, 1e9, 1e12, 1e15), 1e-12)
-def buckling_soft_ground(softness: float) -> float:
-    """Load at which free bars of 49 and 2000 parts on soft ground tip over, three models."""
-    beam = on_ground(softness)
-    exact = buckling("analytic", beam)
-    # the bar turns as a whole under k L^2 / 12, of which bending under k x takes the 2520th part of k L^4 / EI
-    tipping = beam.foundation * beam.length**2 / 12.0 * (1.0 - 1.0 / (2520.0 * softness))
-    loads = [buckling(model, beam, n) for model in DISCRETE for n in (49, 2000)]
-    return worst(np.array(loads) / exact - 1.0, exact / tipping - 1.0)

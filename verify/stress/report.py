@@ -1,23 +1,18 @@
-"""Outcomes of stress checks as a result: one table, two charts, data."""
+"""Outcomes of stress checks as a result: a table and data."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from verify.report.result import Column, Figure, Result, Table
+from verify.report.result import Column, Result, Table
 from verify.stress.engine import Outcome, registry
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 COLUMNS = [Column("check"), Column("parameter"), Column("range"), Column("tolerance", format=".3g")]
 COLUMNS += [Column("worst", format=".2g"), Column("breaks at"), Column("standard", format=".1g")]
-NOTE = "worst: largest error over the range, or exponent of a cost; standard: that of the standard method."
-RATIOS = ("tip-mass", "tip-mass-mode-2", "tip-spring", "foundation", "tension", "material-scale")
-"""Checks over a dimensionless ratio, which share a chart."""
+NOTE = "worst: largest error over the range; standard: that of the standard method."
 
 
 def record(outcome: Outcome) -> dict[str, Any]:
-    """An outcome as data; `worst` of a cost is its exponent."""
+    """An outcome as data."""
     check, names = registry()[outcome.id], ("worst", "passed", "breaks_at", "breaks_by", "seconds", "points")
     return {
         **{name: getattr(check, name) for name in ("id", "title", "parameter", "tolerance")},
@@ -29,7 +24,7 @@ def record(outcome: Outcome) -> dict[str, Any]:
 
 
 def result(outcomes: Sequence[Outcome]) -> Result:
-    """Table, charts and data of what was measured."""
+    """Table and data of what was measured."""
     records = [record(one) for one in outcomes]
     failed = [one["id"] for one in records if not one["passed"]]
     rows = [
@@ -38,33 +33,9 @@ def result(outcomes: Sequence[Outcome]) -> Result:
     ]
     for row, one in zip(rows, records, strict=True):
         row += [f"{one['breaks_at']:.3g} {one['breaks_by']}" if one["breaks_by"] else None, one["baseline"]]
-    caption = "Largest error over the guaranteed range, or the exponent of a cost, over its tolerance."
-    title, size = "Worst error as a fraction of the tolerance", (6.4, 0.6 + 0.17 * len(records))
-    figures = [Figure("stress-fraction", title, caption, lambda ax: _fractions(ax, records), size)]
-    if ratios := [one for one in outcomes if one.id in RATIOS]:
-        caption = "Relative error of a frequency over a property as a ratio to the beam's own; dashed: LAPACK."
-        figures.append(Figure("stress-ratio", "Error over a ratio", caption, lambda ax: _ratios(ax, ratios)))
     return Result(
         summary=f"{len(records) - len(failed)} of {len(records)} checks are within their tolerance.",
         tables=[Table("Stress checks", COLUMNS, rows, [NOTE])],
-        figures=figures,
         warnings=[f"{name} fails" for name in failed],
         data={"checks": records},
     )
-
-
-def _fractions(ax: "Axes", records: Sequence[dict[str, Any]]) -> None:
-    ax.barh([one["id"] for one in records], [max(one["worst"] / one["tolerance"], 1e-6) for one in records])
-    ax.axvline(1.0, linestyle="--", gid="guide")
-    ax.set(xscale="log", xlabel="worst / tolerance", xlim=(1e-6, 10.0))
-    ax.invert_yaxis()
-    ax.tick_params(axis="y", labelsize=7)
-
-
-def _ratios(ax: "Axes", outcomes: Sequence[Outcome]) -> None:
-    for one in outcomes:
-        (line,) = ax.loglog(*zip(*one.points, strict=True), "o-", label=one.id)
-        if one.baseline:
-            ax.loglog(*zip(*one.baseline, strict=True), "--", color=line.get_color(), label=f"{one.id}, LAPACK")
-    ax.set(xlabel="ratio", ylabel="relative error")
-    ax.legend()

@@ -1,8 +1,6 @@
 """Checks of driven fields (close to resonance, damped, slow, short waves, long beams) and of free vibration."""
 
-from collections.abc import Callable
 from math import atan, pi
-from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
@@ -53,25 +51,6 @@ def near_resonance(distance: float) -> float:
     return worst(errors)
 
 
-_LOSSES = (0.0, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 9.99)
-
-
-@check("loss-factor", "loss factor", _LOSSES, 1e-12, beyond=(10.0, 1e6), refused=True)
-def loss_factor(eta: float) -> float:
-    """Fields of the exact beam and of segments against their closed form and the sum over their modes."""
-    beam, hertz, h = replace(STRIP, loss_factor=eta), 1.37 * float(pinned_hertz(STRIP, MODE)), STRIP.length / N
-    stiffness, omega2 = beam.bending_stiffness * (1.0 + 1j * eta), (2.0 * pi * hertz) ** 2
-    k = (beam.mass_per_length * omega2 / stiffness) ** 0.25
-    waves = [of(k * AT * h) * of(k * (N - FROM) * h) / of(k * N * h) for of in (np.sin, np.sinh)]
-    # K_n = (2 sin a/2)^4, M_n = (2 + cos a) / 3 of a chain, a = n pi / N
-    angle = np.arange(1, N) * pi / N
-    inertia = beam.mass_per_length * h * (2.0 + np.cos(angle)) / 3.0 * omega2
-    modes = np.sin(AT * angle) * np.sin(FROM * angle) / (stiffness / h**3 * (2.0 * np.sin(angle / 2.0)) ** 4 - inertia)
-    exact = deflection("analytic", beam, hertz, FROM * h, AT * h) / (waves[0] - waves[1]) * 2.0 * stiffness * k**3
-    chain = deflection("segment", beam, hertz, FROM * h, AT * h, load="lever", reading="raw") / modes.sum() * N / 2.0
-    return worst(exact - 1.0, chain - 1.0)
-
-
 @check("slow-drive", "f, Hz", (1e-7, 1e-9, 1e-12, 1e-30, 1e-100), 1e-12)
 def slow_drive(hertz: float) -> float:
     """Cantilever's tip under a slow force against F L^3 / 3 EI, exact beam and elements."""
@@ -93,27 +72,12 @@ def short_waves(waves: float) -> float:
     return abs(field.real - float(exact)) / float(max(abs(exact), abs(moved)))
 
 
-@check("long-beam", "L, m", (1e-3, 1.0, 1e3, 1e6, 1e9), 1e-12)
-def long_beam(length: float) -> float:
-    """Field near the far end against its mirror image near the origin, three models."""
-    beam, x, at = replace(STRIP, length=length), 2 * length / N, 3 * length / N
-    hertz = 1.37 * 9.0 * pi / 2.0 * beam.wave_constant / length**2
-    pairs = [[deflection(m, beam, hertz, *ends) for ends in ((x, at), (length - x, length - at))] for m in ALL]
-    return worst([far / near - 1.0 for near, far in pairs])
-
-
 READ, DRIVEN, DAMPED = 0.45 * STRIP.length, 0.08 * STRIP.length, 0.19 * STRIP.length
-
-
-def beside_resonance(field: Callable[[float], Any], exact: Callable[[float], complex]) -> float:
-    """Error of a field of the strip read at one place, driven at and beside resonance 7 of the bare strip."""
-    drives = [float(pinned_hertz(STRIP, 7)) * (1.0 + part) for part in (0.0, 1e-12, -3e-10, 2e-9, -1e-7, 1e-5)]
-    return worst([field(hertz).shapes(np.array([READ]), 0)[0] / exact(hertz) - 1.0 for hertz in drives])
 
 
 @check("damped-resonance", "dashpot, N s/m", (100.0, 1.0, 1e-2, 1e-4), 1e-6, beyond=(1e-6, 1e-8))
 def damped_resonance(dashpot: float) -> float:
-    """Exact field of a strip with one dashpot where the bare strip resonates, against Green's function."""
+    """Exact field of a strip with one dashpot at and beside resonance 7 of the bare strip, by Green's function."""
 
     def exact(hertz: float) -> complex:
         resists, own = 2 * PI * D(hertz) * D(dashpot), green(STRIP, hertz, DAMPED, DAMPED)
@@ -122,19 +86,10 @@ def damped_resonance(dashpot: float) -> float:
         return complex(float(green(STRIP, hertz, READ, DRIVEN) - resists * own * lost), -float(lost))
 
     force, devices = (PointForce(position=DRIVEN),), (Device(position=DAMPED, dashpot=dashpot),)
-    return beside_resonance(
-        lambda hertz: MODELS["analytic"].build(STRIP).harmonic(force, hertz, devices=devices), exact
-    )
-
-
-@check("imposed-near-node", "half waves from a node", (0.3, 1e-2, 1e-3, 1e-4), 1e-7)
-def imposed_near_node(off: float) -> float:
-    """Exact field under a displacement imposed near a node of the bare strip's resonance, against Green's function."""
-    place = (3.0 + off) * STRIP.length / 7
-    return beside_resonance(
-        lambda hertz: MODELS["analytic"].build(STRIP).imposed((PointForce(position=place),), hertz),
-        lambda hertz: float(green(STRIP, hertz, READ, place) / green(STRIP, hertz, place, place)),
-    )
+    drives = [float(pinned_hertz(STRIP, 7)) * (1.0 + part) for part in (0.0, 1e-12, -3e-10, 2e-9, -1e-7, 1e-5)]
+    fields = [MODELS["analytic"].build(STRIP).harmonic(force, hertz, devices=devices) for hertz in drives]
+    values = [field.shapes(np.array([READ]), 0)[0] for field in fields]
+    return worst([value / exact(hertz) - 1.0 for value, hertz in zip(values, drives, strict=True)])
 
 
 def newmark_error(periods: float) -> float:

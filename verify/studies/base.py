@@ -48,7 +48,6 @@ STUDIES: Registry[type[Study]] = Registry(
         "wave": "verify.studies.wave:Wave",
         "motion": "verify.studies.motion:Motion",
         "motor": "verify.studies.motor:Motor",
-        "axial_inertia": "verify.studies.axial_inertia:AxialInertia",
         "claims": "verify.studies.claims:Claims",
         "sweep": "verify.studies.sweep:Sweep",
     },

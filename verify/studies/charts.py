@@ -1,6 +1,6 @@
 """What the tables and charts of several studies share: columns, lines in suitable units, movies."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from verify.analysis.variants import Variant
-    from verify.report.result import Column, Movie
+    from verify.report.result import Column, Movie, Table
 
 THIN, BROAD = 1.4, 4.0
 """Widths of lines of discrete models, and of the exact beam below them."""
@@ -28,6 +28,13 @@ def percent(name: str, form: str = "+.4g") -> "Column":
     from verify.report.result import Column
 
     return Column(name, format=form, percent=True)
+
+
+def table(title: str, items: Iterable[Any], columns: "Mapping[Column, Callable[[Any], Any]]", *notes: str) -> "Table":
+    """A row of each item; every column with the function that reads its value from an item."""
+    from verify.report.result import Table
+
+    return Table(title, list(columns), [[read(item) for read in columns.values()] for item in items], notes)
 
 
 def sized_title(model: str, count: int | None) -> str:

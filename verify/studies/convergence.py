@@ -1,6 +1,5 @@
 """Frequency errors over the number of segments or elements: orders, grid convergence index, bound, solve times."""
 
-from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 from math import log, log10
@@ -31,11 +30,10 @@ NOTES = [
     "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
     "Time: warm solve of all modes, assembly included, median of repeats.",
 ]
-CAPTIONS = {
-    "errors-over-size": "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of "
-    "segments and Hermite elements cancel.",
-    "bracket": "The exact frequency (zero) lies in the band for every N; no reference solution is needed for that.",
-}
+CAPTION = (
+    "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of segments and Hermite "
+    "elements cancel."
+)
 
 
 class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -67,19 +65,17 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         cells = [tuple(list(row.values())[:9]) for row in rows]
         title, draw = "Frequency error over N", partial(self._draw_errors, cache, rows, bounds)
         tables = [Table(title, columns, cells, NOTES)]
-        figures = [Figure("errors-over-size", title, CAPTIONS["errors-over-size"], draw)]
         if bounds:
             columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
             columns += [percent("width", ".4g"), percent("error of the mean")]
-            title = "Two-sided bound: segments below, Hermite elements above"
-            tables.append(Table(title, columns, [tuple(row.values()) for row in bounds]))
-            title, draw = f"Two-sided bound on mode {max(self.modes)}", partial(self._draw_bound, cache, bounds)
-            figures.append(Figure("bracket", title, CAPTIONS["bracket"], draw))
+            bound = "Two-sided bound: segments below, Hermite elements above"
+            note = "The exact frequency lies in it for every N; no reference solution is needed for that."
+            tables.append(Table(bound, columns, [tuple(row.values()) for row in bounds], [note]))
         errors = ", ".join(settled)
         return Result(
             summary=f"Mode {max(self.modes)}, N = {self.counts[-1]}, error: {errors}." if settled else "",
             tables=tables,
-            figures=figures,
+            figures=[Figure("errors-over-size", title, CAPTION, draw)],
             warnings=[*warnings, *no_bound, *left_out.values()],
             data={"rows": rows, "bounds": bounds},
         )
@@ -171,6 +167,8 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         return settled, list(warnings)
 
     def _draw_errors(self, cache: "SolutionCache", rows: list[Row], bounds: list[Row], ax: "Axes") -> None:
+        from matplotlib.ticker import NullLocator
+
         from verify.report.plotting import slope_guide
 
         mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
@@ -185,7 +183,10 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             label, errors = "mean of both" if first and bounds else "", [100 * abs(row["mean_error"]) for row in own]
             ax.loglog([row["N"] for row in own], errors, style, color=mean, label=label)
             ax.plot([], [], style, color="#7d8590", label=f"mode {mode}")
-        _label_sizes(ax, self.counts, "|frequency error|, %")
+        ax.set_xticks(self.counts, [str(count) for count in self.counts])
+        ax.xaxis.set_minor_locator(NullLocator())
+        ax.set(xlabel="number of segments or elements N", ylabel="|frequency error|, %")
+        ax.legend(ncols=2)
         guides = {
             one.expected_order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors
         }
@@ -194,25 +195,3 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         for order, own in guides.items():
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)
-
-    def _draw_bound(self, cache: "SolutionCache", bounds: list[Row], ax: "Axes") -> None:
-        from verify.report.plotting import MODEL_COLORS
-
-        own = [row for row in bounds if row["mode"] == max(self.modes)]
-        exact, counts = cache.exact_hz(max(self.modes)), [row["N"] for row in own]
-        lower, upper = ([100 * (row[key] / exact - 1.0) for row in own] for key in ("lower_hz", "upper_hz"))
-        ax.fill_between(counts, lower, upper, color=MODEL_COLORS["mean"], alpha=0.15, linewidth=0)
-        ax.semilogx(counts, upper, "-o", color=MODEL_COLORS["fem"], label="upper bound, Hermite elements")
-        ax.plot(counts, lower, "-o", color=MODEL_COLORS["segment"], label="lower bound, segments")
-        ax.plot(counts, [100 * row["mean_error"] for row in own], "-o", color=MODEL_COLORS["mean"], label="mean")
-        ax.axhline(0.0, color=MODEL_COLORS["analytic"], linewidth=1.0)
-        _label_sizes(ax, counts, "against the exact frequency, %")
-
-
-def _label_sizes(ax: "Axes", counts: Sequence[int], ylabel: str) -> None:
-    from matplotlib.ticker import NullLocator
-
-    ax.set_xticks(counts, [str(count) for count in counts])
-    ax.xaxis.set_minor_locator(NullLocator())
-    ax.set(xlabel="number of segments or elements N", ylabel=ylabel)
-    ax.legend(ncols=2)

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title
+from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title, table
 from verify.validation import Relative, check_number
 
 if TYPE_CHECKING:
@@ -44,6 +44,21 @@ NOTES = [
 ]
 
 
+Damping = Annotated[Relative, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")]
+
+
+def check_start(table: str, start: Start, soft_start_periods: float | None) -> None:
+    """Raise InputError for forces that grow in a steady beam."""
+    if start == "steady" and soft_start_periods:
+        raise InputError(f"{table}.soft_start_periods = {soft_start_periods!r}: a steady beam has no start, drop it")
+
+
+def check_driven(table: str, scene: "Scene") -> None:
+    """Raise InputError for a scene without forces."""
+    if not scene.forces or scene.drive is None or scene.drive.kind != "force":
+        raise InputError(f"{table}: a beam moves in time under a [drive] of kind force, add its forces")
+
+
 class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The driven beam in time with the scene's slider; also the settings of quantities in time."""
 
@@ -55,9 +70,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     soft_start_periods: Annotated[
         float | None, Meta(description="Periods over which the forces grow; 2 from rest unless set, 0 is a step load.")
     ] = None
-    modal_damping: Annotated[
-        Relative | None, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")
-    ] = None
+    modal_damping: Damping | None = None
     count: Annotated[int, Meta(ge=1, description="Segments and elements.")] = 49
     steps_per_period: Annotated[int, Meta(ge=1, description="Steps of the slider in a period, at least.")] = 128
     samples: Annotated[int, Meta(ge=2, le=100_000, description="Stored instants, ends included.")] = 1001
@@ -68,21 +81,13 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_number("motion.soft_start_periods", self.soft_start_periods, "periods", at_least=0)
         if self.modal_damping is not None:
             check_number("motion.modal_damping", self.modal_damping, "ratio", at_least=0, below=1)
-        if self.start == "steady" and self.soft_start_periods:
-            raise InputError(
-                f"motion.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
-                "start, leave it out"
-            )
+        check_start("motion", self.start, self.soft_start_periods)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces, and for steps without a slider."""
-        if not scene.forces or scene.drive is None or scene.drive.kind != "force":
-            raise InputError("motion: a beam moves in time under a [drive] of kind force, add its forces")
+        check_driven("motion", scene)
         if scene.slider is None and self.steps_per_period != STEPS_PER_PERIOD:
-            raise InputError(
-                f"motion.steps_per_period = {self.steps_per_period!r} belongs to a slider: a beam alone takes no "
-                "steps, leave it out or add [slider]"
-            )
+            raise InputError(f"motion.steps_per_period = {self.steps_per_period!r}: only a slider takes steps, drop it")
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Simulate the slider on every model. Raises InputError."""
@@ -109,29 +114,24 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2),
                 steps_per_period=self.steps_per_period,
             )
-            if runs[model].statistics.interrupted:
-                raise KeyboardInterrupt
         chain = runs[bounding()[0].name]
         warnings, valid = _warnings(runs)
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{scene.slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
-        paths = [(_title(run), run.times, run.travelled, model_style(run.model)) for run in runs.values()]
-        forces = [(_title(run), run.times, run.friction, model_style(run.model)) for run in runs.values()]
+
+        def figure(name: str, title: str, unit: str, lines: list[Any]) -> Figure:
+            drawn = partial(plot_lines, lines=lines, x=("time", "s"), y=(name, unit))
+            return Figure(f"slider-{name.split(maxsplit=1)[0]}", title, "Along +x.", drawn)
+
+        def of_all(name: str) -> list[Any]:
+            return [(_title(run), run.times, getattr(run, name), model_style(run.model)) for run in runs.values()]
+
         surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
         velocity = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
-        lines = [
-            ("slider-displacement", f"Displacement of the slider, N = {self.count}", paths, ("displacement", "m")),
-            (
-                "slider-velocity",
-                f"Velocity of the slider and the surface, {_title(chain)}",
-                velocity,
-                ("velocity", "m/s"),
-            ),
-            ("slider-friction", f"Friction force on the slider, N = {self.count}", forces, ("friction force", "N")),
-        ]
         figures = [
-            Figure(key, title, "Along +x.", partial(plot_lines, lines=own, x=("time", "s"), y=y))
-            for key, title, own, y in lines
+            figure("displacement", f"Displacement of the slider, N = {self.count}", "m", of_all("travelled")),
+            figure("velocity", f"Velocity of the slider and the surface, {_title(chain)}", "m/s", velocity),
+            figure("friction force", f"Friction force on the slider, N = {self.count}", "N", of_all("friction")),
         ]
         keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
         keys += ["coupling", "margins", "energy", "statistics", "notes"]
@@ -151,9 +151,8 @@ def _title(run: "Run") -> str:
 
 def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
     """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
-    from verify.dynamics.coupling import COUPLED
     from verify.dynamics.step_control import CONVERGED
-    from verify.dynamics.validity import NONLINEAR
+    from verify.dynamics.validity import COUPLED, NONLINEAR
 
     stopped = [
         f"{_title(run)}: the slider {run.statistics.stopped}, after {1e3 * run.end.time:.4g} ms."
@@ -165,39 +164,42 @@ def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
     change = max(run.statistics.step_change or 0.0 for run in runs.values())
     one_way = [run.coupling for run in runs.values() if run.coupling and not run.coupling.two_way]
     normal = max((coupling.normal_size for coupling in one_way), default=0.0)
-    limits = {
-        "lift-off": (lift_off, 1.0),
-        "coupling": (normal, COUPLED),
-        "axial": (axial, NONLINEAR),
-        "step": (change, CONVERGED),
-    }
-    warnings = [WARNINGS[key].format(value) for key, (value, limit) in limits.items() if value > limit]
+    sizes = zip(WARNINGS.values(), (lift_off, normal, axial, change), (1.0, COUPLED, NONLINEAR, CONVERGED), strict=True)
+    warnings = [text.format(value) for text, value, limit in sizes if value > limit]
     valid = not stopped and lift_off <= 1.0 and max(normal, axial) < LARGE and change <= CONVERGED
     return [*stopped, *warnings], valid
 
 
 def _tables(runs: "dict[str, Run]") -> "list[Table]":
-    from verify.report.result import Column, Table
+    from verify.report.result import Column
 
-    exact = runs["analytic"].displacement
-    rows, validity = [], []
-    for run in runs.values():
-        error = run.displacement / exact - 1.0 if exact and run.model != "analytic" else None
-        balance = run.energy.residual / run.energy.drive_work if run.energy and run.energy.drive_work else None
-        own = (run.displacement, error, run.mean_speed, run.largest_friction, run.statistics.steps, balance)
-        rows.append((_title(run), *own))
-        coupling, margins = run.coupling, run.margins
-        assert coupling is not None
-        sizes = ("two-way" if coupling.two_way else "one-way", coupling.friction_size, coupling.normal_size)
-        frequency = (margins.model_form, margins.discretisation)
-        validity.append((_title(run), *sizes, margins.lift_off, margins.nonlinearity, *frequency))
-    results = [Column("model"), si("displacement", "m", "+.5g"), percent("error", "+.3g")]
-    results += [si("mean speed", "m/s", "+.5g"), si("largest friction", "N"), Column("steps")]
-    results += [Column("energy imbalance", format=".1e")]
-    limits = [Column("model"), Column("coupling"), Column("friction coupling", format=".1e")]
-    limits += [Column("normal coupling", format=".1e"), Column("lift-off", format=".3g")]
-    limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), percent("theory", "+.3g"), percent("discretisation", "+.3g")]
-    return [Table("Slider on each model", results, rows), Table("Validity of these runs", limits, validity, NOTES)]
+    exact, all_runs = runs["analytic"].displacement, runs.values()
+
+    def imbalance(run: "Run") -> float | None:
+        return run.energy.residual / run.energy.drive_work if run.energy and run.energy.drive_work else None
+
+    results = {
+        Column("model"): _title,
+        si("displacement", "m", "+.5g"): lambda run: run.displacement,
+        percent("error", "+.3g"): lambda run: (
+            run.displacement / exact - 1.0 if exact and run.model != "analytic" else None
+        ),
+        si("mean speed", "m/s", "+.5g"): lambda run: run.mean_speed,
+        si("largest friction", "N"): lambda run: run.largest_friction,
+        Column("steps"): lambda run: run.statistics.steps,
+        Column("energy imbalance", format=".1e"): imbalance,
+    }
+    limits = {
+        Column("model"): _title,
+        Column("coupling"): lambda run: "two-way" if run.coupling.two_way else "one-way",
+        Column("friction coupling", format=".1e"): lambda run: run.coupling.friction_size,
+        Column("normal coupling", format=".1e"): lambda run: run.coupling.normal_size,
+        Column("lift-off", format=".3g"): lambda run: run.margins.lift_off,
+        Column("(kL)² ⟨θ²⟩", format=".1e"): lambda run: run.margins.nonlinearity,
+        percent("theory", "+.3g"): lambda run: run.margins.model_form,
+        percent("discretisation", "+.3g"): lambda run: run.margins.discretisation,
+    }
+    return [table("Slider on each model", all_runs, results), table("Validity of these runs", all_runs, limits, *NOTES)]
 
 
 def _movie(run: "Run") -> "Callable[[Axes], Any]":

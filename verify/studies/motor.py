@@ -1,18 +1,19 @@
 """The motor of a scene: force over speed, no load, start, stop and reversal, phase portrait, on every model."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from math import copysign
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, percent, plot_lines, si, sized_title
-from verify.validation import Relative
+from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
+from verify.studies.motion import Damping, check_driven, check_start
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
@@ -83,9 +84,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     periods: Annotated[int, Meta(ge=20, le=100_000, description="Periods of a free run, at most of stopping.")] = 2000
     start: Annotated[Start, Meta(description="Beam at the start of the free run: steady or at rest.")] = "steady"
     soft_start_periods: Annotated[float, Meta(ge=0, description="Periods over which forces from rest grow.")] = 0.0
-    modal_damping: Annotated[
-        Relative | None, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")
-    ] = None
+    modal_damping: Damping | None = None
     steps_per_period: Annotated[int, Meta(ge=16, le=4096, description="Steps in a period, at least.")] = 61
 
     def __post_init__(self) -> None:
@@ -93,18 +92,13 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         for model in self.models:
             ModelName("time_basis").check(model, "motor.models")
-        if self.start == "steady" and self.soft_start_periods:
-            raise InputError(
-                f"motor.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
-                "start, leave it out"
-            )
+        check_start("motor", self.start, self.soft_start_periods)
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
         from verify.dynamics.contact_assembly import check_sliders
 
-        if not scene.forces or scene.drive is None or scene.drive.kind != "force":
-            raise InputError("motor: the beam moves under a [drive] of kind force, add its forces")
+        check_driven("motor", scene)
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
         check_sliders(scene.beam, (scene.slider,), (scene.slider.start_on(scene.beam),))
@@ -118,11 +112,10 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         fields: list[Field] = []
         for model in self.models:
-            count = self.count if MODELS[model].sized else None
-            options = MotorOptions(
-                model=model, count=count, modal_damping=self.modal_damping, steps_per_period=self.steps_per_period
-            )
-            fields.append(self._field(options.case(scene), fields[0].curve if fields else [], cache, progress))
+            count, options = self.count if MODELS[model].sized else None, asdict(self)
+            own = {name: options[name] for name in ("modal_damping", "steps_per_period")}
+            case = MotorOptions(model=model, count=count, **own).case(scene)
+            fields.append(self._field(case, fields[0].curve if fields else [], cache, progress))
         first, (invalid, warnings) = fields[0], _validity(fields)
         converged = all(field.free.converged and field.curve[0].converged("force") for field in fields)
         speed, force = 100 * first.free.speed, first.curve[0].means.force
@@ -165,26 +158,15 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             periods = min(int(shown), self.periods)
             stop = None if rings else curves.stop(case, free, periods)
             reversal = curves.reversal(case, free, periods)
-        times: dict[str, float | None] = {"start": begin, "stop": None, "reversal": None}
+        times: dict[str, float | None] = dict.fromkeys(("start", "stop", "reversal"))
         if free.converged:
-            times["stop"] = stop.time_constant(0.0) if stop else None
-            times["reversal"] = reversal.time_constant(-free.speed) if reversal else None
-            runs = {"start": free, "stop": stop, "reversal": reversal}
-            missing += [key for key, one in runs.items() if one and times[key] is None]
+            ends = ("start", free, free.speed), ("stop", stop, 0.0), ("reversal", reversal, -free.speed)
+            times |= {key: one.time_constant(target) if one else None for key, one, target in ends}
+            missing += [key for key, one, _ in ends if one and times[key] is None]
         else:
             missing.append("free speed" if finished else "left")
         missing += ["ringing"] * rings
-        return Field(
-            case=case,
-            name=name,
-            curve=curve,
-            no_load=unloaded,
-            free=free,
-            stop=stop,
-            reversal=reversal,
-            times=times,
-            missing=missing,
-        )
+        return Field(case, name, curve, unloaded, free, stop, reversal, times, missing)
 
 
 def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
@@ -207,56 +189,68 @@ def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
 
 def _tables(fields: list[Field]) -> "list[Table]":
     from verify.motor.steady_state import surface_motion
-    from verify.report.result import Column, Table
+    from verify.report.result import Column
 
-    overview, rows, validity = [], [], []
-    for field in fields:
-        run, last = field.free.run, field.free.last
-        pushing = [at for at in field.curve if at.converged("force")]
-        most = max((at.power for at in pushing if at.power > 0.0), default=None)
-        best = max((at.efficiency for at in pushing if at.converged("powers") and at.efficiency), default=None)
-        stall = field.curve[0].means.force if field.curve[0].converged("force") else None
-        amplitude, crest = surface_motion(field.case)
-        own = (crest, field.no_load, field.free.speed if field.free.converged else None, stall)
-        shares = (float(run.contact_share[-last:].mean()), float(run.stuck_share[-last:].mean()))
-        assert run.energy is not None
-        losses = (run.energy.friction_loss / run.duration, run.energy.contact_loss / run.duration)
-        overview.append((field.name, *own, most, best, *shares, *field.times.values(), *losses))
-        for at in field.curve:
-            power = at.power if at.converged("force") else None
-            efficiency = at.efficiency if at.converged("force", "powers") else None
-            force, shares = (at.means.force, at.errors.force), (at.means.contact_share, at.means.stuck_share)
-            rows.append((field.name, at.speed, *force, power, efficiency, *shares, at.converged()))
-        margins, coupling = run.margins, run.coupling
-        assert coupling is not None
-        sag = (
-            None if margins.static_deflection is None else round(margins.static_deflection, 12)
-        )  # of balanced loads rounding is left
-        sizes = (
-            coupling.normal_size,
-            coupling.friction_size,
-            margins.nonlinearity,
-            margins.contact_step,
-            field.free.error,
-        )
-        validity.append((field.name, margins.presliding, sag, amplitude, *sizes))
-    columns = [Column("model"), si("crest speed", "m/s", ".5g"), si("no-load speed", "m/s", "+.5g")]
-    columns += [si("free speed", "m/s", "+.5g"), si("stall force", "N", "+.4g"), si("largest power", "W")]
-    columns += [percent("best efficiency", ".3g"), percent("contact", ".3g"), percent("stick", ".3g")]
-    columns += [si("start", "s", ".3g"), si("stop", "s", ".3g"), si("reversal", "s", ".3g")]
-    columns += [si("friction power", "W"), si("dashpot power", "W")]
-    curve = [Column("model"), si("speed", "m/s", "+.4g"), si("force", "N", "+.4g"), si("±", "N", ".1g")]
-    curve += [si("power", "W", "+.4g"), percent("efficiency", ".3g"), percent("contact", ".3g")]
-    curve += [percent("stick", ".3g"), Column("converged")]
-    limits = [Column("model"), Column("epsilon", format=".3g"), si("sag", "m", ".3g"), si("amplitude", "m")]
-    limits += [Column("normal coupling", format=".1e"), Column("friction coupling", format=".1e")]
-    limits += [Column("(kL)² ⟨θ²⟩", format=".1e"), Column("contact phase per step", "rad", ".2g")]
-    limits += [si("speed error", "m/s", ".1e")]
+    def last(field: Field, share: str) -> float:
+        return float(getattr(field.free.run, share)[-field.free.last :].mean())
+
+    def power(field: Field, loss: str) -> float:
+        return float(getattr(field.free.run.energy, loss)) / field.free.run.duration
+
+    def sag(field: Field) -> float | None:
+        size = field.free.run.margins.static_deflection
+        return None if size is None else round(size, 12)  # of balanced loads rounding is left
+
+    model: dict[Any, Callable[[Field], Any]] = {Column("model"): lambda field: field.name}
+    overview = model | {
+        si("crest speed", "m/s", ".5g"): lambda field: surface_motion(field.case)[1],
+        si("no-load speed", "m/s", "+.5g"): lambda field: field.no_load,
+        si("free speed", "m/s", "+.5g"): lambda field: field.free.speed if field.free.converged else None,
+        si("stall force", "N", "+.4g"): lambda field: _if(field.curve[0], field.curve[0].means.force),
+        si("largest power", "W"): lambda field: max(_if(at, at.power) or 0.0 for at in field.curve) or None,
+        percent("best efficiency", ".3g"): lambda field: (
+            max(_if(at, at.efficiency, "powers") or 0.0 for at in field.curve) or None
+        ),
+        percent("contact", ".3g"): lambda field: last(field, "contact_share"),
+        percent("stick", ".3g"): lambda field: last(field, "stuck_share"),
+        si("start", "s", ".3g"): lambda field: field.times["start"],
+        si("stop", "s", ".3g"): lambda field: field.times["stop"],
+        si("reversal", "s", ".3g"): lambda field: field.times["reversal"],
+        si("friction power", "W"): lambda field: power(field, "friction_loss"),
+        si("dashpot power", "W"): lambda field: power(field, "contact_loss"),
+    }
+    curve: dict[Any, Callable[[Any], Any]] = {
+        Column("model"): lambda row: row[0],
+        si("speed", "m/s", "+.4g"): lambda row: row[1].speed,
+        si("force", "N", "+.4g"): lambda row: row[1].means.force,
+        si("±", "N", ".1g"): lambda row: row[1].errors.force,
+        si("power", "W", "+.4g"): lambda row: _if(row[1], row[1].power),
+        percent("efficiency", ".3g"): lambda row: _if(row[1], row[1].efficiency, "powers"),
+        percent("contact", ".3g"): lambda row: row[1].means.contact_share,
+        percent("stick", ".3g"): lambda row: row[1].means.stuck_share,
+        Column("converged"): lambda row: row[1].converged(),
+    }
+    limits = model | {
+        Column("epsilon", format=".3g"): lambda field: field.free.run.margins.presliding,
+        si("sag", "m", ".3g"): sag,
+        si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
+        Column("normal coupling", format=".1e"): lambda field: field.free.run.coupling.normal_size,
+        Column("friction coupling", format=".1e"): lambda field: field.free.run.coupling.friction_size,
+        Column("(kL)² ⟨θ²⟩", format=".1e"): lambda field: field.free.run.margins.nonlinearity,
+        Column("contact phase per step", "rad", ".2g"): lambda field: field.free.run.margins.contact_step,
+        si("speed error", "m/s", ".1e"): lambda field: field.free.error,
+    }
+    rows = [(field.name, at) for field in fields for at in field.curve]
     return [
-        Table("The motor on each model", columns, overview, [NOTE]),
-        Table("Force over speed, slider at a fixed position", curve, rows),
-        Table("Validity of these runs", limits, validity),
+        table("The motor on each model", fields, overview, NOTE),
+        table("Force over speed, slider at a fixed position", rows, curve),
+        table("Validity of these runs", fields, limits),
     ]
+
+
+def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
+    """A value of a steady state whose force, and these figures, have converged."""
+    return value if at.converged("force", *figures) else None
 
 
 def _figures(fields: list[Field]) -> "list[Figure]":

@@ -26,9 +26,8 @@ MOST_PLATES = 60
 """The same for plate theory, about 0.1 s a mode."""
 THEORY_COLORS = {"rayleigh": "#8f5bd1", "timoshenko": "#cc3f76", "plate": "#008f8f"}
 CAPTIONS = {
-    "mode-errors": "Signed, against the exact beam of the same theory.",
-    "model-form": "Solid: discretisation. Dashed: what Euler-Bernoulli theory neglects, rotary inertia (Rayleigh), "
-    "shear as well (Timoshenko), bending across the width (Plate).",
+    "mode-errors": "Solid: against the exact beam of the same theory. Dashed: what Euler-Bernoulli theory neglects, "
+    "rotary inertia (Rayleigh), shear as well (Timoshenko), bending across the width (Plate).",
     "mode-shapes": "Normalised to the same modal mass. Lines: exact. Markers: joints or element ends; the joints of a "
     "chain raw, and corrected (y + second difference / 12).",
 }
@@ -81,13 +80,14 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             summary=f"Mode {self.modes}, {size}, against the exact beam: {summary}." if known else "",
             tables=[Table(f"Frequency errors, {size}", columns, rows, [note] * bool(theories))],
             figures=[
-                Figure(key, f"{title}, {size}", CAPTIONS[key], partial(draw_errors, errors, beside))
-                for key, title, beside in (
-                    ("mode-errors", "Frequency error over mode number", {}),
-                    ("model-form", "Discretisation error and model-form error", theories),
-                )
-            ]
-            + self._shapes(cache, variants),
+                Figure(
+                    "mode-errors",
+                    f"Frequency error over mode number, {size}",
+                    CAPTIONS["mode-errors"],
+                    partial(draw_errors, errors, theories),
+                ),
+                *self._shapes(cache, variants),
+            ],
             warnings=[*warnings, *left_out.values()],
             data={
                 "count": self.count,
@@ -154,18 +154,16 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 def draw_errors(errors: dict[Variant, list[float | None]], theories: dict[str, list[float]], ax: "Axes") -> None:
-    """Errors in per cent over mode number: signed alone, as absolute values on a logarithmic axis beside theories."""
+    """Sizes of the errors over mode number, beside what other theories change."""
     from verify.formatting import theory_name
 
     def values(own: "list[float] | list[float | None]") -> list[float]:
-        return [float("nan") if v is None else 100 * (abs(v) if theories else v) for v in own]
+        return [float("nan") if v is None else 100 * abs(v) for v in own]
 
     for one, color in variant_colors(tuple(errors)).items():
         ax.plot(range(1, len(errors[one]) + 1), values(errors[one]), "-o", color=color, label=one.title, markersize=3.5)
     for name, own in theories.items():
         label = f"{theory_name(name)} theory"
         ax.plot(range(1, len(own) + 1), values(own), "--", color=THEORY_COLORS[name], label=label)
-    ax.set(xlabel="mode number", ylabel="|frequency error|, %" if theories else "frequency error, %")
-    if theories:
-        ax.set_yscale("log")
+    ax.set(xlabel="mode number", ylabel="|frequency error|, %", yscale="log")
     ax.legend()

@@ -200,28 +200,43 @@ def _cell(value: Any) -> Any:
 
 
 def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: "Axes") -> None:
-    """A line over one list, a colour map over two; gaps where there is no value."""
+    """A line over one list, lines or a colour map over two, by whether the second has words; gaps without a value."""
     import numpy as np
 
     unit = "" if quantity.unit == "1" else f", {quantity.unit}"
     values = np.array([row[quantity.name] if _number(row[quantity.name]) else np.nan for row in rows], dtype=float)
-    places = []
-    for axis, (key, given) in zip("xy", study.over.items(), strict=False):
-        getattr(ax, f"set_{axis}label")(key)
-        if all(map(_number, given)) and sorted(set(given)) == given:
-            places.append(given)
-            if given[0] > 0.0 and given[-1] / given[0] > WIDE:
-                getattr(ax, f"set_{axis}scale")("log")
-        else:
-            places.append(list(range(len(given))))
-            getattr(ax, f"set_{axis}ticks")(range(len(given)), [_label(value) for value in given])
-    if len(places) == 1:
-        ax.plot(places[0], values, "-o")
-        ax.set_ylabel(f"{quantity.name}{unit}")
+    first, *second = study.over.items()
+    places = [_place(ax, "x", *first)]
+    label = f"{quantity.name}{unit}"
+    if second and _rising(second[0][1]):
+        places.append(_place(ax, "y", *second[0]))
+        mesh = ax.pcolormesh(*places, values.reshape(len(places[0]), -1).T, shading="nearest", cmap="viridis")
+        ax.figure.colorbar(mesh, ax=ax, label=label)
+        ax.grid(False)
         return
-    mesh = ax.pcolormesh(*places, values.reshape(len(places[0]), -1).T, shading="nearest", cmap="viridis")
-    ax.figure.colorbar(mesh, ax=ax, label=f"{quantity.name}{unit}")
-    ax.grid(False)
+    names = [f"{second[0][0]} = {_label(value)}" for value in second[0][1]] if second else [""]
+    for name, own in zip(names, values.reshape(len(places[0]), -1).T, strict=True):
+        ax.plot(places[0], own, "-o", label=name)
+    if np.nanmin(values) > 0.0 and np.nanmax(values) > WIDE * np.nanmin(values):
+        ax.set_yscale("log")
+    ax.set_ylabel(label)
+    if second:
+        ax.legend()
+
+
+def _rising(given: list[Any]) -> bool:
+    return all(map(_number, given)) and sorted(set(given)) == given
+
+
+def _place(ax: "Axes", axis: str, key: str, given: list[Any]) -> list[Any]:
+    """Label and scale an axis for a list; the coordinates of its values."""
+    getattr(ax, f"set_{axis}label")(key)
+    if not _rising(given):
+        getattr(ax, f"set_{axis}ticks")(range(len(given)), [_label(value) for value in given])
+        return list(range(len(given)))
+    if given[0] > 0.0 and given[-1] / given[0] > WIDE:
+        getattr(ax, f"set_{axis}scale")("log")
+    return given
 
 
 def _label(value: Any) -> str:

@@ -64,9 +64,7 @@ def efficiency(phi: float, r: float) -> float:
 
     supplied = 2.0 * power(psi) - power(phi)
     if supplied <= 0.0:
-        raise InputError(
-            f"speed_ratio = {r!r}: the slider drives the layer at half angle {phi!r}, no efficiency exists; lower it"
-        )
+        raise InputError(f"speed_ratio = {r!r}: the slider drives the layer, no efficiency exists; lower it")
     return r * (2.0 * normal_integral(psi, phi) - normal_integral(phi, phi)) / supplied
 
 

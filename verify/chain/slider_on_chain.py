@@ -1,0 +1,234 @@
+"""Sliders and feet on the nonlinear chain: the contact of `dynamics`, one-way or acting on the chain.
+
+The joints define the paper's C2 contact line over the material coordinate; the links shorten the chain, and the surface
+moves along with every point of them. Steps, margins, coupling and result are those of a run on the linear chain.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace as changed
+from time import perf_counter, thread_time
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from msgspec.structs import replace
+
+from verify.arrays import Array, ComplexArray
+from verify.chain.kinematics import at_rest, energies
+from verify.chain.motion import ElasticMotion, elastic_step_limit, from_rest, highest_frequency, step_limit
+from verify.chain.statics import solve_static
+from verify.chain.system import ChainState, LinkLoad, axial_stiffness, build_system, straight_chain
+from verify.dynamics import layout as lay
+from verify.dynamics.initial_state import PASSES, set_down
+from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
+from verify.dynamics.request import request_of
+from verify.dynamics.result import END, Motion
+from verify.dynamics.slider_run import Progress, SliderRun
+from verify.dynamics.stepping import Contacts, Run
+from verify.errors import InputError
+from verify.linear.positions import Forces, Numbers
+from verify.options import LINKS, Links
+from verify.problem.beam import Beam
+from verify.problem.slider import Slider
+from verify.segments.reading import contact_line
+from verify.validation import check_number, check_whole, check_word
+
+RADIANS = 0.5
+"""Phase of the highest mode in a step of the two-way march."""
+CHUNK, MARCHED = 20_000, 200
+"""Steps between two checks for an interrupt, one-way and two-way."""
+
+
+def slide_on_chain(
+    beam: Beam,
+    forces: Forces,
+    frequency_hz: float,
+    duration: float,
+    *,
+    slider: Slider | Sequence[Slider],
+    count: int,
+    links: Links = "rigid",
+    joint_dashpot: float = 0.0,
+    prescribed_speed: float | Sequence[float | None] | None = None,
+    fixed_position: bool | Sequence[bool] = False,
+    at: Numbers = (),
+    samples: int = 201,
+    step: float | None = None,
+    steps_per_period: int | None = None,
+    tolerance: float = 1e-9,
+    progress: Callable[[float], None] = lambda part: None,
+) -> Motion:
+    """Sliders, with or without feet, on a chain of `count` links from rest under forces that act at once.
+
+    Arguments are those of `simulate`, and `links`, rigid or stretching by the beam's own EA / l; `joint_dashpot`,
+    N m s, of every joint with a spring. One-way the chain moves by adaptive steps of `tolerance`; two-way by steps that
+    resolve its highest mode, from its equilibrium under feet. `coupling` and `margins` are those of the linear chain;
+    energies of stretching links are not in the balance.
+
+    Raises InputError as `simulate` does; for a hard contact and the straight edges of links; two-way for normal =
+    "held", for feet on stretching links or with a preload that depends on the deflection; for a motion of the chain
+    that is not resolved.
+    """
+    began = perf_counter()
+    check_word("links", links, LINKS)
+    check_whole("count", count, 2)
+    check_number("tolerance", tolerance, "relative", above=0, below=0.1)
+    request = request_of(
+        beam, forces, frequency_hz, duration, model="segment", count=count, modes=None, start="rest",
+        soft_start_periods=0.0, envelope=(), modal_damping=None, slider=slider, prescribed_speed=prescribed_speed,
+        fixed_position=fixed_position, at=at, samples=samples, step=step, steps_per_period=steps_per_period,
+        continue_from=None,
+    )  # fmt: skip
+    if not request.sliders:
+        raise InputError("slider is missing: give one, or `verify.chain.motion.from_rest` for a chain alone")
+    for one in request.sliders:
+        if one.contact is not None and one.contact.hard:
+            raise InputError("slider.contact is hard: on a nonlinear chain feet have springs, give contact.stiffness")
+        if one.line != "spline":
+            raise InputError(f"slider.line = {one.line!r}: contact with a nonlinear chain is along its spline")
+        if request.two_way and one.contact is None and one.normal == "held":
+            raise InputError("slider.normal = 'held': a nonlinear chain responds to friction alone, give 'massless'")
+        if request.two_way and one.contact is not None and links == "stretching":
+            raise InputError("slider.coupling = 'two-way': stretching links carry feet one-way, give links = 'rigid'")
+        if request.two_way and (one.preload_stiffness or any(foot.mirrored for foot in one.feet)):
+            raise InputError(
+                "slider.preload depends on the deflection, by preload_stiffness or a mirrored foot: the equilibrium of "
+                "a nonlinear chain is under constant loads, give coupling = 'one-way'"
+            )
+    system = build_system(beam, count, request.forces, frequency_hz, load="reciprocal", joint_dashpot=joint_dashpot)
+    basis = basis_of(beam, "segment", count, None, "spline")
+    stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
+    notes = (f"the nonlinear chain of {links} links from rest; coupling and margins are those of the linear one",)
+    run = ChainRun.of(request, basis, stages, notes, sequence=not isinstance(slider, Slider))
+    up = np.triu(np.ones((count, count + 1)), 1)  # joints beyond a unit step across rise with it
+    line = contact_line(straight_chain(system), up)
+    motion = replace(run, system=system, line=line, links=links, tolerance=tolerance).converged(progress)
+    statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
+    return replace(motion, model="chain", statistics=statistics, end=replace(motion.end, model="chain"))
+
+
+class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
+    """Sliders on the nonlinear chain before the first step; basis and stage are those of the linear chain."""
+
+    system: Any = None
+    """ChainSystem."""
+    line: Any = None
+    """Contact line by unit steps across from joint to joint, (x, derivative) -> (N, len(x))."""
+    links: Links = "rigid"
+    tolerance: float = 1e-9
+
+    def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
+        z = super()._initial(contacts, loaded)
+        if loaded and contacts.presses:
+            rises = self._rises(contacts)
+            ground: Any = SimpleNamespace(
+                edges=self.stages[0].edges, columns=self.line, factors=lambda z, t: rises[None],
+                rates_at_start=lambda z: 0.0 * rises,
+            )  # fmt: skip
+            set_down(contacts, ground, z)
+        return z
+
+    def _rises(self, contacts: Contacts) -> Array:
+        """Steps across from joint to joint of the equilibrium, (N,), m."""
+        return np.asarray(self.system.lengths * np.sin(np.cumsum(self._static(contacts).angles)))
+
+    def _static(self, contacts: Contacts) -> ChainState:
+        """Equilibrium of the chain under the load of feet, shared equally among the points on either face."""
+        system, p, state = self.system, contacts.points, at_rest(self.system)
+        if not contacts.presses:
+            return state
+        side, x = p[:, lay.FACE] * p[:, lay.IMAGE], contacts.start + p[:, lay.OFFSET]
+        group = 2 * contacts.indices[:, lay.OF_FOOT] + (p[:, lay.FACE] > 0.0)
+        total = np.bincount(group, p[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[group]
+        push = total * p[:, lay.WEIGHT] * side / np.bincount(group)[group]
+        for _ in range(PASSES):
+            lean, rises = 0.0 * x, system.lengths * np.sin(np.cumsum(state.angles))
+            for _ in range(PASSES):
+                lean = p[:, lay.LEVER] * (rises @ self.line(x + lean, 1))
+            beyond = (self.line(x + lean) + lean * self.line(x, 1)) @ push
+            across, ends = np.diff(beyond, append=0.0), system.lengths
+            loads = [LinkLoad(link=j + 1, at=float(ends[j]), force=(0.0, float(f))) for j, f in enumerate(across)]
+            state = solve_static(changed(system, loads=(*system.loads, *loads)), state)
+        return state
+
+    def _states(self, steps: Steps, contacts: Contacts, numbers: Array, progress: Progress) -> tuple[Array, float]:
+        """States of the chain at half steps, two-way of the first alone, and the step of the march, s."""
+        from verify.chain.rigid_links import begin
+
+        system, rigid = self.system, self.links == "rigid"
+        axial = axial_stiffness(self.request.beam, system.n_links)
+        if contacts.two_way:
+            states, limit = np.zeros((3, 4 * system.n_links + 4)), elastic_step_limit(system, axial) / 4.0
+            if rigid:
+                states = np.zeros((3, 2 * system.n_links + 2))
+                states[0] = begin(system, self._static(contacts), numbers)
+                limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
+            return states, float(0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit))
+        times = np.linspace(0.0, steps.duration, 2 * steps.n + 1)
+        moved = from_rest(system, self.links, axial, times, tolerance=self.tolerance, progress=progress)
+        if isinstance(moved, ElasticMotion):
+            parts = [part.reshape(len(times), -1) for part in (moved.displacements, moved.velocities)]
+        else:
+            works = np.stack([moved.dissipated, moved.work_in], axis=1)
+            parts = [moved.directions(), np.cumsum(moved.rates, axis=1), works]
+        return np.concatenate(parts, axis=1), steps.dt
+
+    def _marched(
+        self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
+    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
+        from verify.chain import elastic_links, rigid_links
+        from verify.chain.runge_kutta import DORMAND_PRINCE
+        from verify.chain.slider_kernels import STALE, advance
+
+        (stage,), system, began = stages, self.system, thread_time()
+        steps, count, rigid, two_way = stage.steps, system.n_links, self.links == "rigid", contacts.two_way
+        axial = axial_stiffness(self.request.beam, count)
+        flat = rigid_links.flatten(system) if rigid else elastic_links.flatten(system, axial, False)
+        links, loads, numbers, scratch = flat
+        if two_way:  # dead loads at the far joints
+            spare = np.zeros((count, 7))
+            spare[:, 0], spare[:, 6] = 0.5 * system.lengths if rigid else 1.0, np.arange(count)
+            loads = np.concatenate([loads, spare])
+        states, substep = self._states(steps, contacts, numbers, progress)
+        n, points, columns, width = (states.shape[1] - 2 * rigid) // 2, len(contacts.points), 2 * count, states.shape[1]
+        tableau, run, first = DORMAND_PRINCE, Run(stages, contacts, self.request.points, False), states[0].copy()
+        powers = self.line.c[::-1] * system.lengths[:, None] ** np.arange(4)[:, None, None]
+        places, codes = np.zeros((len(self.request.points), columns)), np.zeros(lay.CODES, dtype=np.int64)
+        places[:, :count] = self.line(self.request.points).T
+        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES, lay.FOLLOWING]] = (
+            contacts.law, two_way, contacts.presses, contacts.following,
+        )  # fmt: skip
+        arrays = (
+            steps.every, steps.dt, contacts.gravity, max(one.normal_force for one in self.request.sliders),
+            stage.edges[[0, -1]] - contacts.start, links, loads, numbers, scratch, tableau.a, tableau.c, n, substep,
+            np.zeros(0), np.zeros((len(tableau.c) + 3, width)), np.zeros(2), np.array([0.0, 0.0, 0.0, np.pi, 0, 0, 0]),
+            np.zeros(4, dtype=np.int64), np.zeros(width), np.zeros(2), states, np.zeros((2, width)), codes,
+            np.ascontiguousarray(np.moveaxis(powers, 0, 1)), system.nodes - contacts.start, contacts.sliders,
+            contacts.feet, contacts.points, contacts.contacts, contacts.indices, run.feet_of,
+            np.zeros((4, 2, columns)), np.zeros((count, 2, 4)), np.zeros(count, dtype=np.int64),
+            np.zeros((4, points, columns)), np.zeros(columns), run.couplings, run.spans, run.block,
+            contacts.sliders.copy(), contacts.feet.copy(), contacts.contacts.copy(), np.zeros((points, 2)),
+            np.array([STALE + 1]), places, run.samples, run.heights, run.pressures, run.deflections, run.events,
+            run.tally, run.sums, run.before, run.balance,
+        )  # fmt: skip
+        run.sample_first()
+        deflection = (places[:, :count] @ self._rises(contacts))[None]
+        run.set_up_s, began = thread_time() - began, thread_time()
+        reason, stopped, chunk = lay.DONE, END, MARCHED if two_way else CHUNK
+        while reason == lay.DONE and run.tally[lay.STEP] < steps.n:
+            reason = advance(min(chunk, steps.n - int(run.tally[lay.STEP])), *arrays)
+            progress(float(run.tally[lay.STEP]) / steps.n if two_way else 1.0)
+        run.n_steps, run.loop_s = int(run.tally[lay.STEP]), thread_time() - began
+        if reason == lay.NOT_FINITE:
+            stopped = "diverged"
+        elif reason == lay.OFF_PIECES:
+            x = contacts.start + run.positions()
+            stopped = stage.beyond(float(x.min()), float(x.max()))
+        gains = (0.0, 0.0, 0.0)
+        if rigid:
+            ends = np.array([first, states[0 if two_way else 2 * run.n_steps]])
+            angles, rates = (np.diff(part, prepend=0.0) for part in (ends[:, :n], ends[:, n : 2 * n]))
+            (k0, k1), (e0, e1), _ = energies(system, np.zeros(2), angles, rates)
+            gains = float(k1 - k0), float(e1 - e0), float(k0 + e0)
+            run.balance[[lay.LOST, lay.DRIVEN]] += ends[1, 2 * n :]
+        return run.recorded(z, steps.dt, stopped), deflection, gains, rigid

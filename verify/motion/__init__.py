@@ -1,1 +1,0 @@
-"""Steps of a one-way slider on the given surface of a nonlinear chain."""
