@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from tests.beams import PAPER
 from verify import Beam, PointForce, PointMass
 from verify.analytic_modes import ExactModel
-from verify.errors import InputError, NoFigureError
+from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.fem_beam import HermiteModel
 from verify.linear.field import point_force
 from verify.linear.registry import MODELS
@@ -77,6 +77,17 @@ def test_the_fastest_point_is_no_slower_than_any_of_a_fine_grid(titanium_strip, 
     if limit == 0.1:
         assert best.at_edge == (edge is not None)
         assert edge is None or best.frequency_hz == pytest.approx(edge * middle, rel=1e-6)
+
+
+@pytest.mark.parametrize("model", ["analytic", "fem", "segment"])
+def test_a_resonance_is_a_gap_among_other_frequencies_and_refused_alone(titanium_strip, model):
+    case = case_of(titanium_strip, model, None if model == "analytic" else 90)
+    resonance = float(case.model.modes(18).frequencies_hz[17])
+    gamma, speed = over(case, np.array([resonance, resonance + 1.0]), np.array([77.0]))
+    assert np.isnan([gamma[0, 0], speed[0, 0]]).all()
+    assert 0.0 < gamma[1, 0] < 1.0
+    with pytest.raises(ResonanceError, match="undamped resonance"):
+        over(case, np.array([resonance]), np.array([77.0]))
 
 
 # --- Best drive ---
