@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from verify import Beam, Device, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
+PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 BAR = Beam(length=0.41, width=0.03, thickness=0.037, youngs_modulus=206e9, density=7850.0, poissons_ratio=0.29)
 ENDS = ("pinned", "clamped", "free", "guided")
 PAIRS = [(left, right) for left in ENDS for right in ENDS]

@@ -15,9 +15,6 @@ DATA = Path(__file__).parent / "data"
 STRIP = {"length": 0.3, "width": 0.025, "thickness": 0.003, "youngs_modulus": 206e9, "density": 7850.0}
 CANTILEVER = Beam(**STRIP, supports=("clamped", "free"))
 PROPPED = Beam(**STRIP, supports=("clamped", "pinned"))
-PAPER = Beam(
-    length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0, supports=("pinned", "pinned")
-)
 HELD = Beam(**STRIP, supports=("clamped", "clamped"))
 FREE = Beam(**STRIP, supports=("free", "free"))
 STEPS = (Section(length=0.125, thickness=0.004), Section(length=0.175, youngs_modulus=70e9, density=2700.0))

@@ -48,8 +48,7 @@ def test_bad_list_is_one_sentence(tmp_path, text, message):
 
 
 @pytest.mark.parametrize(
-    ("text", "message"),
-    [("0.2;1\n0.1;2\n0.3;1\n", "rising places"), ("0.1;0\n0.2;0\n0.3;0\n", "zero or not finite")],
+    ("text", "message"), [("0.2;1\n0.1;2\n0.3;1\n", "rising places"), ("0.1;0\n0.2;0\n0.3;0\n", "zero or not finite")]
 )
 def test_bad_shapes_are_one_sentence(tmp_path, text, message):
     (tmp_path / "shapes.csv").write_text(text)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from tests.beams import BAR, BEAMS, DEVICES, FORCES, HELD, LADEN, MASSES, MODELS, PAIRED, PAIRS, STRIP, close, over
+from tests.beams import BAR, BEAMS, DEVICES, FORCES, LADEN, MODELS, PAIRED, PAIRS, STRIP, close, over
 from tests.reference import dense, transfer
 from verify import Beam, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 from verify.errors import InputError
@@ -20,12 +20,24 @@ OMEGA = 2.0 * np.pi * HERTZ
 # --- The exact beam against transfer matrices in 30 digits -----------------------------------------------------------
 
 
-@over(BEAMS)
+EXTREME = {
+    "taut": replace(STRIP, supports=("clamped", "clamped"), tension=2e4 * STRIP.bending_stiffness / STRIP.length**2),
+    "on-soft-springs": replace(
+        STRIP,
+        supports=("free", "free"),
+        spring=(soft := PointSpring(position=0.0, stiffness=19.0), replace(soft, position=0.73)),
+    ),
+}
+
+
+@over(BEAMS | EXTREME)
 def test_exact_frequencies_are_roots(name):
-    beam = replace(BEAMS[name], loss_factor=0.0)
+    beam = replace((BEAMS | EXTREME)[name], loss_factor=0.0)
     frequencies = ExactModel(beam).modes(23).frequencies_hz
-    for mode in (3, 4, 6) if name in LADEN else (1, 2, 3, 7, 23):
-        assert transfer.has_frequency_within(beam, EULER, float(frequencies[mode - 1]), 1e-14, 50)
+    first = 3 if name == "free-on-foundation" else 1  # its first two coincide
+    for mode in (first, 4, 6) if name in LADEN else (1, 2, 3, 7, 23):
+        digits = 120 if name in EXTREME else 50  # e^140 in high tension
+        assert transfer.has_frequency_within(beam, EULER, float(frequencies[mode - 1]), 1e-14, digits)
 
 
 @over(BEAMS)
@@ -38,8 +50,12 @@ def test_the_exact_model_misses_no_frequency(name):
 @pytest.mark.parametrize("theory", THICK)
 @pytest.mark.parametrize("supports", PAIRS, ids="-".join)
 def test_thick_beams_have_the_roots_of_their_theory(supports, theory):
+    """The fourth lies above the cut-off, where no part of a Timoshenko shape decays."""
     beam = replace(BAR, supports=supports)
-    for hertz in ExactModel(beam, theory).modes(5).frequencies_hz[[0, 2, 4]]:
+    frequencies = ExactModel(beam, theory).modes(40).frequencies_hz
+    own = beam.own
+    assert frequencies[16] > np.sqrt(own.shear_stiffness / own.rotary_inertia) / (2 * np.pi)
+    for hertz in frequencies[[0, 2, 4, 39]]:
         assert transfer.has_frequency_within(beam, theory, float(hertz), 2e-14)
 
 
@@ -90,13 +106,6 @@ def test_thick_fields_deflect_and_rotate_as_the_transfer(theory):
     assert field.rotation(0.17)[0] == pytest.approx(expected[1], rel=1e-11)
 
 
-@over(["clamped-free", "clamped-pinned", "stepped", "springs", "foundation"])
-def test_exact_buckling_load_is_a_root(name):
-    beam = replace(BEAMS[name], tension=0.0)
-    load = ExactModel(beam).buckling_load()
-    assert transfer.buckling_load(beam, load) == pytest.approx(load, rel=1e-11)
-
-
 # --- Hermite elements against the matrices of the textbook ------------------------------------------------------------
 
 
@@ -137,20 +146,6 @@ def test_driven_elements_are_those_of_the_textbook(name, damping, devices):
     close(field.slope(X * beam.length), written.values_at(vector, X * beam.length, 1))
 
 
-@over(["free-free", "pinned-guided", "springs", "compression"])
-def test_element_sweeps_include_rigid_motion(name):
-    frequencies, written = [1.3, 2.9, 97.0, 211.0, 613.0, 1777.0], elements(BEAMS[name])
-    model = HermiteModel(BEAMS[name], 14)
-    sweep, unit = (
-        model.harmonic(FORCES, frequencies).deflection(PLACES),
-        model.receptance([0.37], frequencies, PLACES)[:, 0],
-    )
-    for i, hertz in enumerate(frequencies):
-        for found, forces in ((sweep[i], FORCES), (unit[i], [PointForce(position=0.37)])):
-            expected = written.values_at(written.harmonic(written.load(forces), hertz), PLACES, 0)
-            assert found == pytest.approx(expected, rel=1e-8)
-
-
 @over(["pinned-pinned", "clamped-free", "clamped-guided", "stepped", "springs", "foundation"])
 def test_elements_buckle_as_those_of_the_textbook(name):
     beam = replace(BEAMS[name], tension=0.0)
@@ -158,42 +153,18 @@ def test_elements_buckle_as_those_of_the_textbook(name):
     assert HermiteModel(beam, 14).buckling_load() == pytest.approx(written.buckling(written.geometric), rel=1e-9)
 
 
-@pytest.mark.parametrize("beam", [replace(BAR, supports=("clamped", "free")), replace(BAR, foundation=2e7)])
-def test_elements_with_shear_are_tied_polynomials(beam):
-    modes = HermiteModel(beam, 9, theory="timoshenko").modes(5)
-    written = dense.TimoshenkoElements(beam, modes.nodes)
-    assert modes.frequencies_hz == pytest.approx(written.frequencies_hz(5), rel=1e-9)
-
-
 # --- Rigid links against springs and masses written out --------------------------------------------------------------
 
 
 @pytest.mark.parametrize("wall", ["gregory", "half"])
-@over([*("-".join(pair) for pair in PAIRS), "stepped", "tension", "compression", "foundation", "losses"])
+@over([*("-".join(pair) for pair in PAIRS), *LADEN])
 def test_links_are_springs_and_masses(name, wall):
-    """On four links the corrections of both clamps add up."""
+    """On four links the corrections of both clamps add up. Attachments by lever move with their link."""
     for count in (4, 17):
-        model = SegmentModel(BEAMS[name], count, wall=wall)
+        model = SegmentModel(BEAMS[name], count, wall=wall, attachment="lever")
         modes = model.modes(min(model.n_elastic, 5))
         written = dense.Links(BEAMS[name], modes.nodes, dense.GREGORY if wall == "gregory" else np.array([0.5]))
         assert modes.frequencies_hz == pytest.approx(written.frequencies_hz(len(modes.frequencies_hz)), rel=1e-10)
-
-
-@over(["masses", "springs", "masses-springs-steps", "tip-mass"])
-def test_attachments_by_lever_move_with_their_link(name):
-    modes = SegmentModel(LADEN[name], 17, attachment="lever").modes(5)
-    written = dense.Links(LADEN[name], modes.nodes)
-    assert modes.frequencies_hz == pytest.approx(written.frequencies_hz(5), rel=1e-10)
-
-
-@pytest.mark.parametrize("damping", [0.0, 0.021])
-@over(["pinned-pinned", "clamped-free", "guided-pinned", "tension", "foundation"])
-def test_driven_links_share_forces_on_four_joints(name, damping):
-    beam = BEAMS[name]
-    field = SegmentModel(beam, 23).harmonic(FORCES, HERTZ, modal_damping=damping)
-    written = dense.ReciprocalLinks(beam, np.linspace(0.0, beam.length, 24))
-    vector = written.harmonic(written.load(FORCES), HERTZ, damping)
-    close(field.deflection(X * beam.length), written.values_at(vector, X * beam.length, 0))
 
 
 @over(["clamped-free", "clamped-pinned", "stepped", "foundation"])
@@ -215,14 +186,6 @@ def test_bodies_on_a_hard_foundation_lower_local_modes(name, mass):
     few, many = (MODELS[name](beam, 300).modes(n).frequencies_hz for n in (4, 299))
     assert few == pytest.approx(many[:4], rel=1e-12)
     assert few == pytest.approx(ExactModel(beam).modes(4).frequencies_hz, rel=4e-3)
-
-
-@pytest.mark.parametrize("count", [13, 100, 300])
-def test_dense_and_lanczos_modes_agree_under_compression(count):
-    model = HermiteModel(replace(HELD, tension=-19.0, mass=MASSES), count)
-    few, many = model.modes(5).frequencies_hz, model.modes(model.n_elastic).frequencies_hz
-    assert many[:5] == pytest.approx(few, rel=1e-12)
-    assert (np.diff(many) > 0.0).all()
 
 
 @pytest.mark.parametrize("letters", ["pinned-free", "free-free"])
@@ -262,9 +225,6 @@ def test_sizes_beyond_the_memory_are_an_input_error():
     for work in (lambda: HermiteModel(STRIP, 10**9), lambda: SegmentModel(STRIP, 10**9), lambda: large.modes(10**5)):
         with pytest.raises(InputError, match="exceed the largest system of 10 GB"):
             work()
-    for count, message in ((1, "at least 2"), (2.5, "whole number")):
-        with pytest.raises(InputError, match=message):
-            SegmentModel(STRIP, count)
     with pytest.raises(InputError, match="more than 2000"):
         HermiteModel(STRIP, 1100).time_basis()
     assert HermiteModel(replace(STRIP, supports=("free", "free")), 10**6).n_elastic == 2 * 10**6

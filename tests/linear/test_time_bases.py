@@ -70,12 +70,6 @@ def test_the_tail_of_the_exact_modes_exists_at_an_undamped_resonance_of_one_of_t
         assert found == pytest.approx(expected, abs=2e-7 * abs(expected).max())
 
 
-def test_models_of_a_stepped_beam_agree():
-    exact = ExactModel(BEAMS["stepped"]).time_basis(modes=30).omegas[:3]
-    for model in (SegmentModel, HermiteModel):
-        assert model(BEAMS["stepped"], 80).time_basis().omegas[:3] == pytest.approx(exact, rel=1e-3)
-
-
 @pytest.mark.parametrize("position", [0.11, 0.43])
 def test_a_body_rotates_as_the_beam_does(position):
     """Inside by its weights of the links, at an end beyond the end joint."""

@@ -6,16 +6,15 @@ import numpy as np
 from msgspec.structs import replace
 from reference.motor import Waves, waves_of
 
-from verify.analytic_modes import ExactModel
-from verify.dynamics.simulate import simulate
-from verify.problem.beam import Beam, PointForce
+from tests.beams import PAPER as STRIP
+from verify import Contact, ExactModel, PointForce, Slider, simulate
 
-STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 HERTZ = 4276.0
 OMEGA, PERIOD = 2.0 * np.pi * HERTZ, 1.0 / HERTZ
 PLACES = (0.0116, 0.5 - 0.0173)
 MIDDLE = 0.2437
 HALF = 0.5 * STRIP.thickness
+PAIR = (PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0))
 
 
 @cache
@@ -38,3 +37,11 @@ def on_strip(slider, amplitude=1e-6, backward=0.0, periods=5, steps=None, **aske
     slider = replace(slider, position=MIDDLE) if slider.position is None else slider
     given = {"model": "analytic", "samples": 11, "step": PERIOD / steps if steps else None, **asked}
     return simulate(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)
+
+
+def slider_of(point, **own):
+    """The slider of a point of the reference, with further fields."""
+    given = {"mass": point.mass, "mu": point.mu, "slope": point.slope, "gravity": 0.0, "coupling": "one-way"}
+    given |= {"preload": point.load, "preload_stiffness": point.load_stiffness, "pull": point.pull}
+    contact = Contact(stiffness=point.stiffness, damping=point.damping, tangential_stiffness=point.give)
+    return Slider(**{"law": "tanh" if point.slope else "coulomb", "contact": contact, **given, **own})

@@ -13,7 +13,7 @@ from verify import Beam, Contact, Foot, InputError, PointForce, Slider, simulate
 from verify.exact.contact import layer
 from verify.motor.curves import no_load, phase_portrait, reversal, stop, transient
 from verify.motor.periodic_orbit import periodic_orbit
-from verify.motor.steady_state import FIRST, MotorCase, batch_error, crest_speed, presliding_speed, steady_state
+from verify.motor.steady_state import MotorCase, batch_error, crest_speed, steady_state
 from verify.motor.travelling_wave import foot_on_wave
 
 HEIGHT, KAPPA, MU = 1e-8, 2e9, 0.2
@@ -96,15 +96,6 @@ def test_a_motor_of_one_point_gives_the_same_in_the_default_steps_and_in_many(la
     assert speeds[0] == pytest.approx(speeds[1], abs=0.006)
 
 
-def test_friction_that_the_beam_feels_is_that_of_many_steps_in_the_default_ones():
-    coarse, fine = (
-        steady_state(one_point(steps_per_period=n, model="fem", count=9, slider={"coupling": "two-way"}), 0.0)
-        for n in (61, 900)
-    )
-    assert coarse.means.force == pytest.approx(fine.means.force, abs=2e-4 * 0.25 * 8.0)
-    assert abs(fine.means.force) > 0.02 * 0.25 * 8.0
-
-
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
 def test_the_crest_speed_is_what_the_slider_sees_with_damping(model, count):
     slow, damped = (one_point(model=model, count=count, modal_damping=zeta) for zeta in (None, 0.05))
@@ -155,10 +146,12 @@ def test_a_motor_starts_by_the_layers_force_over_its_mass():
 def test_a_motor_stops_by_friction_alone():
     """1/e of the speed is left after (1 - 1/e) m v/(mu N)."""
     case, load = motor(1.0, mass=40.0)
-    before = transient(replace(case, slider=replace(case.slider, speed=-0.8 * CRESTS)), 2)
+    feet = (replace(case.slider.foot[0], points=9),)
+    case = replace(case, slider=replace(case.slider, speed=-0.8 * CRESTS, foot=feet))
+    before = transient(case, 2)
     found = stop(case, before, 200)
     wanted = (1.0 - exp(-1.0)) * 40.0 * abs(before.run.speed[-1]) / (MU * load)
-    assert found.time_constant(0.0) == pytest.approx(wanted, rel=2e-2)
+    assert found.time_constant(0.0) == pytest.approx(wanted, rel=5e-3)
     assert abs(found.speed) < 1e-6 * CRESTS
 
 
@@ -325,16 +318,6 @@ def test_a_free_run_in_flight_at_its_end_has_come_to_no_speed():
     assert transient(bouncing(0.4, contact=SPRING), 60).converged
 
 
-@pytest.mark.parametrize("feet", [(Foot(face="lower"),), (Foot(), Foot(face="lower"))], ids=["below", "clasp"])
-def test_a_free_run_on_the_lower_face_carries_the_preload_less_the_weight(feet):
-    case = bouncing(0.4, contact=SPRING, gravity=0.1 * PRELOAD / MASS, foot=feet)
-    run = case.run(200, 201)
-    presses = (0.9 if len(feet) == 1 else 1.0) * PRELOAD
-    assert case.slider.normal_force == pytest.approx(presses, rel=1e-12)
-    assert run.normal_force[0] == pytest.approx(presses, rel=1e-12)
-    assert float(run.normal_force[-20:].mean()) == pytest.approx(presses, rel=0.01)
-
-
 # --- a slider held at a speed so small that what gives way under it takes long to slip
 
 STIFF, DASHPOT, GRIP, PLACE = 6.1e4, 8.0, 3.3e5, MIDDLE + 0.0061
@@ -376,15 +359,6 @@ def test_a_creeping_slider_has_the_force_of_one_that_slips(speed):
     found = steady_state(CREEPING, speed)
     assert found.converged()
     assert found.means.force == pytest.approx(played(speed), rel=4e-3)
-
-
-def test_the_first_window_is_run_until_the_softest_of_unlike_points_slips():
-    """Under one force a foot of 0.4 mm of a layer is stretched 17 times as far as a third of one of 20 mm."""
-    feet = (Foot(length=0.02, points=3), Foot(length=4e-4, offset=0.017))
-    contact = Contact(layer_stiffness=3.1e6, layer_tangential_stiffness=1.65e7)
-    seconds, full = FIRST / HERTZ, 0.0713 / (1.65e7 * 4e-4)
-    speed = presliding_speed(replace(CREEPING.slider, contact=contact, foot=feet), seconds)
-    assert 2.0 * full < speed * seconds < 20.0 * full
 
 
 # --- refusals

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.linalg import eigh, null_space
+from scipy.linalg import eigh
 
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Piece
@@ -25,7 +25,7 @@ def phasor(force: PointForce) -> complex:
 
 HELD = {"pinned": (0,), "clamped": (0, 1), "guided": (1,), "free": ()}
 """Deflection 0 and slope 1 that an end prescribes."""
-WALLS, MIRRORS = ("clamped", "guided"), ("pinned", "guided")
+WALLS = ("clamped", "guided")
 GREGORY = np.array([3.0 / 8.0, 7.0 / 6.0, 23.0 / 24.0])
 """Compliance of the joints next to a clamp over that of inner joints."""
 CUBICS = np.array([[1.0, 0.0, -3.0, 2.0], [0.0, 1.0, -2.0, 1.0], [0.0, 0.0, 3.0, -2.0], [0.0, 0.0, -1.0, 1.0]])
@@ -202,67 +202,3 @@ class Links(DenseModel):
         still = np.zeros(solution.shape[1:])
         ends = tuple((1 if support in WALLS else 2, still) for support in self.beam.supports)
         return np.asarray(CubicSpline(self.nodes, solution, bc_type=ends)(x, derivative))
-
-
-class ReciprocalLinks(Links):
-    """Equal links: loads on four joints, and a line through corrected joints, mirrored at ends."""
-
-    def row(self, x: float) -> Array:
-        """Cubic Lagrange shares of the four joints around a place and a twelfth of their second derivative."""
-        n, (left, right) = len(self.lengths), self.beam.supports
-        first = int(np.clip(self._link(x) - 1, -(left in MIRRORS), n - 3 + (right in MIRRORS)))
-        z, row = x / float(self.lengths[0]) - first, np.zeros(n + 1)
-        for j in range(4):
-            others = [k for k in range(4) if k != j]
-            lagrange = np.polynomial.Polynomial.fromroots(others) / float(np.prod([j - k for k in others]))
-            share, at, sign = lagrange(z) + lagrange.deriv(2)(z) / 12.0, first + j, 1.0
-            if at < 0 or at > n:
-                support = left if at < 0 else right
-                at, sign = (-at if at < 0 else 2 * n - at), -1.0 if support == "pinned" else 1.0
-            row[at] += sign * share
-        return row
-
-    def values_at(self, solution: Any, x: Array, derivative: int) -> Any:
-        """At places of the same spline through y + delta^2 y / 12, the joint of a guided end next to its image."""
-        bends = np.zeros(solution.shape, dtype=solution.dtype)
-        bends[1:-1] = np.diff(solution, 2, axis=0)
-        for end, inner, support in ((0, 1, self.beam.supports[0]), (-1, -2, self.beam.supports[1])):
-            bends[end] = 2.0 * (solution[inner] - solution[end]) if support == "guided" else 0.0
-        return super().values_at(solution + bends / 12.0, x, derivative)
-
-
-class TimoshenkoElements(DenseModel):
-    """Elements of cubic deflection and linear shear strain without attachments, tied at their ends."""
-
-    def __init__(self, beam: Beam, nodes: Array) -> None:
-        super().__init__(beam, nodes)
-        count = len(self.lengths)
-        bent, rest, mass = np.zeros((3, 6 * count, 6 * count))
-        points, weights = np.polynomial.legendre.leggauss(5)
-        ties: list[Array] = []
-        for i, (piece, length) in enumerate(zip(self.pieces, self.lengths, strict=True)):
-            shear, turning = float(piece.shear_stiffness or 0.0), float(piece.rotary_inertia or 0.0)
-            for z, weight in zip(0.5 + 0.5 * points, 0.5 * length * weights, strict=True):
-                w, turn, bend, strain = self._rows(i, float(z))
-                bent += weight * (piece.bending_stiffness * np.outer(bend, bend) + shear * np.outer(strain, strain))
-                rest += weight * beam.foundation * np.outer(w, w)
-                mass += weight * (piece.mass_per_length * np.outer(w, w) + turning * np.outer(turn, turn))
-            ties += (
-                [a - b for a, b in zip(self._rows(i, 0.0)[:2], self._rows(i - 1, 1.0)[:2], strict=True)] if i else []
-            )
-        for end, z, support in ((0, 0.0, beam.supports[0]), (count - 1, 1.0, beam.supports[1])):
-            ties += [self._rows(end, z)[k] for k in HELD[support]]
-        basis = null_space(np.array(ties))
-        self.bending, self.rest, self.mass = (basis.T @ one @ basis for one in (bent, rest, mass))
-        self.free = list(range(len(self.mass)))
-
-    def _rows(self, i: int, z: float) -> tuple[Array, Array, Array, Array]:
-        """Of deflection, turn, bend and shear strain at a share of an element, over all coefficients."""
-        length = float(self.lengths[i])
-        w, slope, bend, strain = np.zeros((4, 6 * len(self.lengths)))
-        at = slice(6 * i, 6 * i + 4)
-        w[at], slope[at] = (1.0, z, z**2, z**3), np.array([0.0, 1.0, 2.0 * z, 3.0 * z**2]) / length
-        bend[at] = np.array([0.0, 0.0, 2.0, 6.0 * z]) / length**2
-        strain[6 * i + 4 : 6 * i + 6] = 1.0, z
-        bend[6 * i + 5] -= 1.0 / length
-        return w, slope - strain, bend, strain

@@ -1,7 +1,5 @@
 """Models of uniform beams in the literature: the dense links and elements with other masses and walls, hertz."""
 
-from itertools import pairwise
-
 import numpy as np
 from scipy.linalg import eigh
 
@@ -55,21 +53,16 @@ def lumped_elements(beam, n, rotary=0.0):
     return np.sqrt(abs(eigh(condensed, np.diag(masses[moves]), eigvals_only=True))) / (2 * np.pi)
 
 
-def printed_chain(pieces, supports, n):
-    """Sections of links, clamped with 2EI/l at the left and pinned at the right, joints by Eq. (1) as printed.
+def printed_chain(beam, n):
+    """Links of two sections, clamped with 2EI/l at the left and pinned at the right, joints by Eq. (1) as printed.
 
-    `pieces` are (length, E, I, rho A); k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i).
+    k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i).
     """
-    assert supports == ("clamped", "pinned")
-    parts = [(length / count, *rest) for (length, *rest), count in zip(pieces, n, strict=True) for _ in range(count)]
-    size, (length, e, i, _) = len(parts), parts[0]
-    k = [2 * e * i / length]
-    for (l1, e1, i1, _), (l2, e2, i2, _) in pairwise(parts):
-        k.append(2 * e1 * e2 * i1 * i2 / (e1 * i2 * l2 + e2 * i1 * l1))
-    lengths, lines = np.array([one[0] for one in parts]), np.array([one[3] for one in parts])
-    eye = np.eye(size + 1)
-    slopes, middles = np.diff(eye, axis=0) / lengths[:, None], 0.5 * (eye[1:] + eye[:-1])
-    angles = np.diff(slopes, axis=0, prepend=np.zeros((1, size + 1)))
-    stiffness = angles.T @ np.diag(k) @ angles
-    mass = middles.T @ np.diag(lines * lengths) @ middles + slopes.T @ np.diag(lines * lengths**3 / 12) @ slopes
-    return hertz(stiffness, mass, list(range(1, size)))
+    ends = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
+    parts = [np.linspace(*span, count + 1) for *span, count in zip(ends[:-1], ends[1:], n, strict=True)]
+    chain = Links(beam, np.unique(np.concatenate(parts)), np.array([0.5]))
+    e, i = np.transpose([(piece.youngs_modulus, piece.second_moment) for piece in chain.pieces])
+    k = 2 * e[:-1] * e[1:] * i[:-1] * i[1:]
+    k /= e[:-1] * i[1:] * chain.lengths[1:] + e[1:] * i[:-1] * chain.lengths[:-1]
+    chain.compliance[1:] = 1 / k
+    return hertz((chain.bend.T / chain.compliance) @ chain.bend, chain.mass, chain.free)

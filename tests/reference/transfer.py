@@ -43,29 +43,6 @@ def deflection(beam: Beam, theory: str, hertz: float, forces: tuple[PointForce, 
     )
 
 
-def buckling_load(beam: Beam, guess: float) -> float:
-    """The compression nearest to a guess at which the beam is in neutral equilibrium, N."""
-    from msgspec.structs import replace
-
-    with mp.workdps(DIGITS):
-
-        def determinant(load: Any) -> Any:
-            return _determinant(_Compressed(replace(beam, tension=0.0), -load), "euler-bernoulli", mp.mpf(0))
-
-        guesses = (mp.mpf(guess), mp.mpf(guess) * (1 + mp.mpf(10) ** -6))
-        return float(mp.findroot(determinant, guesses, solver="secant", tol=1e-30, verify=False))
-
-
-class _Compressed:
-    """A beam under an axial force in extended precision, which the value type would round."""
-
-    def __init__(self, beam: Beam, tension: Any) -> None:
-        self._beam, self.tension = beam, tension
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._beam, name)
-
-
 def _determinant(beam: Any, theory: str, hertz: Any) -> Any:
     return mp.det(_at_right_end(beam, _states(beam, theory, hertz)[:, :2]))
 

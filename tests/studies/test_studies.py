@@ -116,11 +116,7 @@ def test_wave_renders(run, renders):
 
 
 @pytest.mark.parametrize(
-    ("scene", "study", "word"),
-    [
-        ("stepped-beam", Wave(), "wave"),
-        ("paper-wave", Wave(counts=(7,)), "count"),
-    ],
+    ("scene", "study", "word"), [("stepped-beam", Wave(), "wave"), ("paper-wave", Wave(counts=(7,)), "count")]
 )
 def test_refusals_name_the_field(scene, study, word):
     with pytest.raises(InputError, match=word):

@@ -126,7 +126,7 @@ def test_a_device_without_parameters_or_with_negative_ones_is_an_input_error():
         Device(position=0.2)
     with pytest.raises(InputError, match="no forces or displacements and no device with an amplitude"):
         ExactModel(STRIP).harmonic([], 700.0, devices=SPRING_AND_DASHPOT)
-    with pytest.raises(InputError, match="gives energy"):
+    with pytest.raises(InputError, match=r"impedance = .* gives energy"):
         of_impedance(0.3, -1.0 + 2.0j, 700.0)
     with pytest.raises(InputError, match=r"drive\.kind = 'displacement': .* leave drive\.device\.amplitude out"):
         DrivenCase(model=ExactModel(STRIP), forces=FORCES, frequency_hz=9.0, kind="displacement", devices=SEVERAL)
@@ -173,20 +173,6 @@ def test_the_reflection_of_a_device_is_that_of_six_waves(hertz, d, resistance, r
     beam, impedance = replace(STRIP, loss_factor=loss), complex(resistance, reactance) / (k**2 if turning else 1.0)
     found = reflection(impedance, ending(beam, hertz, d, support, turning=turning))
     assert found == pytest.approx(wave_reflection(beam, hertz, d, impedance, support, turning), abs=3e-7)
-
-
-def test_matched_impedances_of_free_and_pinned_ends():
-    """Free: a dashpot EI k^3/(2 omega) and a spring EI k^3/2. Pinned, rotational: EI k/omega and EI k/omega^2."""
-    hertz, ei = 1873.0, STRIP.bending_stiffness
-    omega = 2.0 * np.pi * hertz
-    k = (STRIP.mass_per_length * omega**2 / ei) ** 0.25
-    across, turning = matched_device(PINNED_FREE, hertz, L), matched_device(STRIP, hertz, L, turning=True)
-    assert across.dashpot == pytest.approx(ei * k**3 / (2 * omega), rel=1e-12)
-    assert (across.stiffness, across.mass) == (pytest.approx(ei * k**3 / 2, rel=1e-12), 0.0)
-    assert turning.rotational_dashpot == pytest.approx(ei * k / omega, rel=1e-12)
-    assert (turning.rotary_inertia, turning.rotational) == (pytest.approx(ei * k / omega**2, rel=1e-12), 0.0)
-    for end in (ending(PINNED_FREE, hertz, 0.0, "free"), ending(STRIP, hertz, 0.0, turning=True)):
-        assert reflection(complex(abs(end.own)), end) == pytest.approx(np.sqrt(2) - 1, rel=1e-12)
 
 
 @pytest.mark.parametrize(("ratio", "loss"), [(1.0, 0.1), (1.3, 0.02), (1.3, 0.1)])

@@ -6,15 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from tests.beams import PAPER
 from verify import Beam, PointForce, PointMass
-from verify.analysis.solution_cache import SolutionCache
 from verify.analytic_modes import ExactModel
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.fem_beam import HermiteModel
 from verify.linear.field import point_force
+from verify.linear.registry import MODELS
 from verify.problem.device import Device
-from verify.quantities.base import evaluate
-from verify.scene.load import scene_from
 from verify.segment_model import SegmentModel
 from verify.travelling_wave import DrivenCase, best_drive, maximum_crest_speed, measure, middle_half
 from verify.waves.driven_case import unit_waves
@@ -27,15 +26,9 @@ WINDOW = (0.1825, 0.5475)
 """The middle half of 0.73 m."""
 
 
-def built(model, beam, count):
-    return (
-        ExactModel(beam) if model == "analytic" else {"segment": SegmentModel, "fem": HermiteModel}[model](beam, count)
-    )
-
-
 def case_of(beam, model="analytic", count=None, frequency=1510.0, second=1.3):
     drives = (PointForce(position=0.021, amplitude=1.3), PointForce(position=0.709, amplitude=second))
-    return DrivenCase(model=built(model, beam, count), forces=drives, frequency_hz=frequency)
+    return DrivenCase(model=MODELS[model].build(beam, count), forces=drives, frequency_hz=frequency)
 
 
 def over(case, frequencies, phases_deg):
@@ -158,19 +151,6 @@ def test_the_best_ratio_of_all_models_under_forces_displacements_and_devices_lea
     assert best.equal_standing_wave_ratio > 1.02
 
 
-def test_the_best_ratio_is_a_quantity():
-    table = {"position": 0.3, "mass": 0.002}
-    beam = {"length": 0.3, "width": 0.012, "thickness": 0.0008, "youngs_modulus": 100e9, "density": 8500.0}
-    drive = {"frequency_hz": 2000.0, "force": [{"position": 0.02}, {"position": 0.28, "phase_deg": 90.0}]}
-    beam |= {"supports": ["clamped", "free"], "mass": [table]}
-    scene = scene_from({"name": "brass", "beam": beam, "drive": drive})
-    cache, best = SolutionCache(scene.beam), best_drive(brass_case())
-    for model in ({}, {"model": "segment", "count": 80}, {"model": "fem", "count": 80}):
-        assert evaluate("wave.best_ratio", model, scene, cache) == pytest.approx(best.ratio, rel=2e-4)
-        assert evaluate("wave.best_ratio_phase", model, scene, cache) == pytest.approx(best.phase_deg, rel=2e-3)
-    assert evaluate("wave.best_ratio_phase", {"direction": "-x"}, scene, cache) == pytest.approx(-best.phase_deg)
-
-
 def test_the_ratio_for_a_band_is_the_best_in_the_mean_square():
     case, band = brass_case(), np.linspace(1950.0, 2050.0, 7)
     best = best_drive(case, frequencies_hz=band)
@@ -207,7 +187,6 @@ def test_near_a_resonance_the_unit_waves_are_proportional_and_at_it_no_ratio_exi
 
 SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
 STRIP = Beam(**SIZES)
-PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 TWO = [PointForce(position=0.0116), PointForce(position=0.5 - 0.0116, phase_deg=90.0)]
 
 
