@@ -16,7 +16,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.kinematics import at_rest, energies, hub, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
-from verify.dynamics.result import END, INTERRUPTED, Statistics
+from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
 from verify.options import LINKS, Links
 from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
@@ -323,7 +323,7 @@ def _statistics(
 ) -> ChainStatistics:
     """Cost and end of a run; `took` are the seconds before and in it."""
     steps, rejected, evaluations, _ = (int(count) for count in run.counts)
-    reasons = (f"{INTERRUPTED} at", "", "diverged at", "the step became too small at")
+    reasons = ("", "", "diverged at", "the step became too small at")
     return ChainStatistics(
         method=method,
         steps=steps,
@@ -339,9 +339,7 @@ def _statistics(
 
 
 def check_moved(moved: ChainMotion | ElasticMotion) -> None:
-    """Raise InputError for a motion that did not reach its end, KeyboardInterrupt for one that was interrupted."""
-    if moved.statistics.interrupted:
-        raise KeyboardInterrupt
+    """Raise InputError for a motion that did not reach its end."""
     if not moved.finished:
         raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces or a smaller step")
 

@@ -225,7 +225,7 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                         moved = shapes[s, i, j] * (factors[END, VALUE, j] - factors[START, VALUE, j])
                         balance[lay.DRIVEN] += points[i, lay.WEIGHT] * forces[i, s] * moved
             copy(states[2:], states)
-        add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, sums, balance)
+        add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, spans, sums, balance)
         move(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(step * dt, dt, codes, sliders, points, contacts, indices, spans, events, tally)
         tally[lay.STEP] += 1
