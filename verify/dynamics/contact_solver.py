@@ -206,7 +206,8 @@ def slide(
         most += touch[lay.NORMAL] * slider[lay.MU_STATIC]
         gained += light * touch[lay.WAS_FRICTION]
         work[START] = v - touch[lay.MEAN] + 0.5 * touch[lay.RISE]
-        if touch[lay.WAS_STUCK] > 0.0 and touch[lay.NORMAL] > 0.0:
+        still = abs(work[START]) <= 1e-13 * light * slider[lay.MU] * touch[lay.NORMAL]
+        if (touch[lay.WAS_STUCK] > 0.0 or still) and touch[lay.NORMAL] > 0.0:
             rest, resting = touch[lay.RISE] - work[START], True
     low, high = pulled - 1.001 * light * most, pulled + 1.001 * light * most
     gained = min(max(rest if resting else gained, low), high)  # between the limits of friction a point at rest stays
