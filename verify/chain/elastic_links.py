@@ -75,7 +75,7 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, gravi
             force[2 * j + axis] -= links[j + 1, column] * force[2 * j + 2 + axis]
 
 
-def flatten(system: ChainSystem, stiffness: Array, immovable: bool) -> tuple[Array, Array, Array, Array]:
+def flatten(system: ChainSystem, stiffness: Array) -> tuple[Array, Array, Array, Array]:
     """(links, loads, gravity, scratch) of a chain, the data of `accelerate`; `stiffness` is EA, N, (N,)."""
     n, lengths = system.n_links, system.lengths
     loads = [
@@ -88,7 +88,7 @@ def flatten(system: ChainSystem, stiffness: Array, immovable: bool) -> tuple[Arr
     )
     # L D L^T of the mass matrix: the pivot of a joint that is not free has the reciprocal 0
     diagonal, coupling = joint_masses(system.masses, system.inertias, lengths)
-    for axis, fixed in enumerate((immovable, system.tip == "roller")):
+    for axis, fixed in enumerate((False, system.tip == "roller")):
         reciprocal = 0.0
         for j in range(1, n + 1):
             factor = coupling[j - 1] * reciprocal

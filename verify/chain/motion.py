@@ -16,7 +16,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.kinematics import at_rest, energies, hub, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
-from verify.dynamics.result import END, INTERRUPTED, Statistics
+from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
 from verify.options import LINKS, Links
 from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
@@ -215,8 +215,8 @@ def simulate(
     """The motion from `start`, at `times` (ascending, from start.time on), of which the last is a step's exact end.
 
     "rk4" takes a fixed `step`, at most `step_limit`; "adaptive" is Dormand and Prince's pair of orders 5 and 4, its
-    error per step at most `tolerance` of the largest motion so far. A start off the roller is projected. An interrupt
-    returns the states so far. Raises InputError.
+    error per step at most `tolerance` of the largest motion so far. A start off the roller is projected. Raises
+    InputError.
     """
     began = perf_counter()
     check_word("method", method, get_args(Method))
@@ -266,14 +266,13 @@ def simulate_elastic(
     times: Sequence[float] | Array,
     *,
     step: float | None = None,
-    immovable: bool = False,
     deflected: Array | None = None,
 ) -> ElasticMotion:
     """The motion of stretching links from rest, straight or from joint deflections (N + 1,), at even `times` from 0.
 
     `axial_stiffness` is EA in newton, of all links or of each (N,); `step` of RK4 is at most `elastic_step_limit`, half
-    of it unless given, shortened to divide the spacing of the times; `immovable` fixes the tip along x too. Raises
-    InputError, also for a rotating hub, an axial spring and links without inertia along x.
+    of it unless given, shortened to divide the spacing of the times. Raises InputError, also for a rotating hub, an
+    axial spring and links without inertia along x.
     """
     began = perf_counter()
     stiffness = np.asarray(axial_stiffness, dtype=float)
@@ -285,10 +284,7 @@ def simulate_elastic(
         check_number("axial_stiffness", value, "newton", above=0)
     turned = system.rotation.rate or system.rotation.amplitude or system.rotation.offset
     if turned or system.axial_spring or not system.axial_inertia:
-        raise InputError(
-            "chain: stretching links take no rotation, no axial_spring (give immovable = True) and no axial_inertia = "
-            "False"
-        )
+        raise InputError("chain: stretching links take no rotation, no axial_spring and no axial_inertia = False")
     check_unmasked("times", times, "seconds")
     samples = np.asarray(times, dtype=float)
     if samples.ndim != 1 or len(samples) < 2 or samples[0] != 0.0 or np.ptp(np.diff(samples)) > 1e-9 * samples[1]:
@@ -300,7 +296,7 @@ def simulate_elastic(
     from verify.chain.runge_kutta import RK4, integrate
 
     size, stiffness = 2 * system.n_links + 2, np.broadcast_to(stiffness, system.n_links)
-    model, y = elastic_links.flatten(system, stiffness, immovable), np.zeros(2 * size)
+    model, y = elastic_links.flatten(system, stiffness), np.zeros(2 * size)
     y[1:size:2] = 0.0 if deflected is None else deflected
     spacing, ready = float(samples[1]), perf_counter()
     step = spacing / np.ceil(spacing / step - 1e-9)
@@ -323,7 +319,7 @@ def _statistics(
 ) -> ChainStatistics:
     """Cost and end of a run; `took` are the seconds before and in it."""
     steps, rejected, evaluations, _ = (int(count) for count in run.counts)
-    reasons = (f"{INTERRUPTED} at", "", "diverged at", "the step became too small at")
+    reason = {2: "diverged", 3: "the step became too small"}
     return ChainStatistics(
         method=method,
         steps=steps,
@@ -332,16 +328,14 @@ def _statistics(
         step_s=run.step,
         set_up_s=took[0],
         wall_s=took[1],
-        stopped=END if run.status == 1 else f"{reasons[run.status]} t = {run.time:.6g} s",
+        stopped=END if run.status == 1 else f"{reason[run.status]} at t = {run.time:.6g} s",
         correction=correction,
         furthest=furthest,
     )
 
 
 def check_moved(moved: ChainMotion | ElasticMotion) -> None:
-    """Raise InputError for a motion that did not reach its end, KeyboardInterrupt for one that was interrupted."""
-    if moved.statistics.interrupted:
-        raise KeyboardInterrupt
+    """Raise InputError for a motion that did not reach its end."""
     if not moved.finished:
         raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces or a smaller step")
 

@@ -196,7 +196,7 @@ class Marched(NamedTuple):
     kept: Array
     """(samples reached, y.size), states."""
     status: int
-    """DONE, DIVERGED, TOO_SMALL, or RUNNING where it was interrupted."""
+    """DONE, DIVERGED or TOO_SMALL."""
     time: float
     """Where the march ended, s."""
     step: float
@@ -222,18 +222,14 @@ def integrate(
     """March from `y` at `start`, s, until all ascending `samples` are kept or the march ends; `y` becomes the end.
 
     `control` is the relative tolerance, those of coordinates and rates, and the mean change of a coordinate in a step
-    at which it has diverged. An interrupt returns what is kept. `progress` is called with the fraction of time done.
+    at which it has diverged. `progress` is called with the fraction of time done.
     """
     k, kept, clock = np.zeros((len(tableau.c) + 3, y.size)), np.zeros((len(samples), y.size)), np.array([start, step])
     counts, numbers = np.zeros(4, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])
-    # some tens of milliseconds between two looks at the keyboard
-    budget, status = max(200_000 // y.size, 16), RUNNING
+    budget, status = max(200_000 // y.size, 16), RUNNING  # some tens of milliseconds between two interrupts
     run: Any = march
-    try:
-        while status == RUNNING:
-            status = run(accelerate, *model, *tableau, n, y, k, clock, samples, kept, numbers, counts, budget)
-            progress((float(clock[TIME]) - start) / max(float(samples[-1]) - start, 1e-300))
-    except KeyboardInterrupt:
-        status = RUNNING
+    while status == RUNNING:
+        status = run(accelerate, *model, *tableau, n, y, k, clock, samples, kept, numbers, counts, budget)
+        progress((float(clock[TIME]) - start) / max(float(samples[-1]) - start, 1e-300))
     end, last = clock.tolist()
     return Marched(kept[: counts[KEPT]], status, end, last, counts, float(numbers[FURTHEST]))

@@ -22,7 +22,7 @@ from verify.dynamics import layout as lay
 from verify.dynamics.initial_state import PASSES, set_down
 from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
 from verify.dynamics.request import request_of
-from verify.dynamics.result import END, INTERRUPTED, Motion
+from verify.dynamics.result import END, Motion
 from verify.dynamics.slider_run import Progress, SliderRun
 from verify.dynamics.stepping import Contacts, Recorded, Run
 from verify.errors import InputError
@@ -36,7 +36,7 @@ from verify.validation import check_number, check_whole, check_word
 RADIANS = 0.5
 """Phase of the highest mode in a step of the two-way march."""
 CHUNK, MARCHED = 20_000, 200
-"""Steps between two checks for an interrupt, one-way and two-way."""
+"""Steps between two interrupts, one-way and two-way."""
 
 
 def slide_on_chain(
@@ -183,7 +183,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         (stage,), system, began = stages, self.system, thread_time()
         steps, count, rigid, two_way = stage.steps, system.n_links, self.links == "rigid", contacts.two_way
         axial = axial_stiffness(self.request.beam, count)
-        flat = rigid_links.flatten(system) if rigid else elastic_links.flatten(system, axial, False)
+        flat = rigid_links.flatten(system) if rigid else elastic_links.flatten(system, axial)
         links, loads, numbers, scratch = flat
         if two_way:  # dead loads at the far joints
             spare = np.zeros((count, 7))
@@ -215,12 +215,9 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         deflection = (places[:, :count] @ self._rises(contacts))[None]
         run.set_up_s, began = thread_time() - began, thread_time()
         reason, stopped, chunk = lay.DONE, END, MARCHED if two_way else CHUNK
-        try:
-            while reason == lay.DONE and run.tally[lay.STEP] < steps.n:
-                reason = advance(min(chunk, steps.n - int(run.tally[lay.STEP])), *arrays)
-                progress(float(run.tally[lay.STEP]) / steps.n if two_way else 1.0)
-        except KeyboardInterrupt:
-            stopped = INTERRUPTED
+        while reason == lay.DONE and run.tally[lay.STEP] < steps.n:
+            reason = advance(min(chunk, steps.n - int(run.tally[lay.STEP])), *arrays)
+            progress(float(run.tally[lay.STEP]) / steps.n if two_way else 1.0)
         run.n_steps, run.loop_s = int(run.tally[lay.STEP]), thread_time() - began
         if reason == lay.NOT_FINITE:
             stopped = "diverged"

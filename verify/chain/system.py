@@ -159,7 +159,6 @@ def build_system(
     load: Load = "lever",
     wall: Wall = "gregory",
     joints: Joints = "series",
-    grading: float = 1.0,
     joint_dashpot: float = 0.0,
     axial_inertia: bool = True,
     immovable: bool = False,
@@ -184,7 +183,7 @@ def build_system(
         )
     beam.check_added("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
-    chain = SegmentModel(beam, n_segments, wall=wall, joints=joints, grading=grading).chain
+    chain = SegmentModel(beam, n_segments, wall=wall, joints=joints).chain
     unit, mass = chain.unit, beam.mass_per_length
     stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
     system = ChainSystem(
@@ -216,9 +215,9 @@ def build_system(
     return replace(system, loads=tuple(loads))
 
 
-def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
+def axial_stiffness(beam: Beam, n_segments: int) -> Array:
     """EA of every link, each of its own section, (N,), newton. Raises InputError as `divide` does."""
-    return divide(beam, n_segments, grading).axial_stiffnesses * beam.own.axial_stiffness
+    return divide(beam, n_segments, 1.0).axial_stiffnesses * beam.own.axial_stiffness
 
 
 def straight_chain(system: ChainSystem) -> Chain:

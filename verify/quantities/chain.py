@@ -160,8 +160,6 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
                 scene.beam, *drive, **case, steps_per_period=steps, samples=2, progress=cache.progress
             )
         motion: Motion = cache.motors[key]
-        if motion.statistics.interrupted:
-            raise KeyboardInterrupt
         if not motion.statistics.finished:
             raise InputError(
                 f"duration = {drive[2]:.12g} s: the slider {motion.statistics.stopped} after {motion.end.time:.6g} s, "
