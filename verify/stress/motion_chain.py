@@ -253,7 +253,7 @@ def rk4_stability(part: float) -> float:
     motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step)
     kinetic, elastic, _ = motion.energies()
     total = kinetic + elastic
-    return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.finished else inf
+    return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.statistics.finished else inf
 
 
 @check("rk4-limit", "N", (8, 20, 49, 200, 1000), 1e-3)
