@@ -9,18 +9,19 @@ SCENES = """# Scene reference
 
 Reference, generated from the package. A scene is a TOML file with a beam, its drive and slider (`[beam]`, `[drive]`,
 `[slider]`), acceptance criteria (`[[gate]]`), published statements (`[[claim]]`) and studies, each a section. Only the
-sections of a scene run. A list of tables is written as `[[beam.mass]]` or as a list of inline tables. `verify schema SECTION`
-prints the same tables.
+sections of a scene run. A list of tables is written as `[[beam.mass]]` or as a list of inline tables.
+`verify schema SECTION` prints the same tables.
 """
 QUANTITIES = """# Quantities
 
-Reference, generated from the package. A quantity has a name, a unit and typed arguments. `verify measure SCENE NAME KEY=VALUE ...`
-evaluates one, a gate states its tolerance, and `verify sweep` varies its arguments. `verify quantities NAME` lists the arguments.
+Reference, generated from the package. A quantity has a name, a unit and typed arguments.
+`verify measure SCENE NAME KEY=VALUE ...` evaluates one, a gate states its tolerance, and `verify sweep` varies its
+arguments. `verify quantities NAME` lists the arguments.
 """
 GATES = """# Gates
 
-Reference, generated from the package: all gates of the packaged scenes. `verify run SCENE` evaluates those of a scene, `verify run`
-all of them.
+Reference, generated from the package: all gates of the packaged scenes. `verify run SCENE` evaluates those of a scene,
+`verify run` all of them.
 """
 
 
