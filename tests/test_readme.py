@@ -32,7 +32,7 @@ def rows_of(page):
         elif cells[-1] in ("gate", "where"):
             inside = True
         elif inside and not line.startswith("|--"):
-            names = re.findall(r"`([^`]+)`", cells[2])
+            names = re.findall(r"`([^`]+)`", cells[-1])
             own = names.pop(0) if names[0] in packaged_scenes() else scene
             rows.append((cells[0], cells[1], own, tuple(names)))
     return rows

@@ -7,18 +7,21 @@ from pathlib import Path
 MADE = Path(__file__).parent.parent / "made"
 SCENES = """# Scene reference
 
-A scene is a TOML file: what exists (`[beam]`, `[drive]`, `[slider]`), acceptance criteria (`[[gate]]`), published
-statements (`[[claim]]`), and studies, each a section. What a scene does not contain does not run. Lists of tables are
-written `[[beam.mass]]` or as a list of inline tables. `verify schema SECTION` prints the same tables.
+Reference, generated from the package. A scene is a TOML file with a beam, its drive and slider (`[beam]`, `[drive]`,
+`[slider]`), acceptance criteria (`[[gate]]`), published statements (`[[claim]]`) and studies, each a section. Only the
+sections of a scene run. A list of tables is written as `[[beam.mass]]` or as a list of inline tables.
+`verify schema SECTION` prints the same tables.
 """
 QUANTITIES = """# Quantities
 
-Every quantity has a name, a unit and typed arguments: `verify measure SCENE NAME KEY=VALUE ...` evaluates one, a gate
-states a band for one, `verify sweep` varies its arguments. `verify quantities NAME` explains the arguments.
+Reference, generated from the package. A quantity has a name, a unit and typed arguments.
+`verify measure SCENE NAME KEY=VALUE ...` evaluates one, a gate states its tolerance, and `verify sweep` varies its
+arguments. `verify quantities NAME` lists the arguments.
 """
 GATES = """# Gates
 
-All gates of the packaged scenes. `verify run SCENE` evaluates those of a scene, `verify run` all of them.
+Reference, generated from the package: all gates of the packaged scenes. `verify run SCENE` evaluates those of a scene,
+`verify run` all of them.
 """
 
 
@@ -78,7 +81,7 @@ def gates():
 
 
 def plain(_app, _what, _name, _obj, _options, lines):
-    """Escape what reStructuredText would read as markup outside of `code` and underlines of headings."""
+    """Escape characters that are markup in reStructuredText, outside of `code` and underlines of headings."""
     for i, line in enumerate(lines):
         if line.strip(" -"):
             parts = re.split(r"(`[^`]+`)", line)
@@ -93,7 +96,7 @@ def make(_app):
 
 
 def setup(app):
-    """Make the pages before any is read."""
+    """Write the generated pages before Sphinx reads any."""
     app.connect("builder-inited", make)
     app.connect("autodoc-process-docstring", plain, priority=400)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
