@@ -98,7 +98,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 cache.modes(one.model, count, n, one.settings)
                 solves.append(lambda m=model, k=count, n=n, how=how: m.build(cache.beam, k, **how).modes(n))
             seconds |= zip(((one, count) for one in variants), interleaved_medians(solves), strict=True)
-        rows = []
+        rows: list[Row] = []
         for mode in self.modes:
             for one in variants:
                 theory = one.expected_order(cache.beam)
