@@ -15,15 +15,14 @@ scene = load_scene("preloaded-motor")
 frequency, slider = scene.drive.frequency_hz, scene.slider
 
 # %%
-# From standstill to the speed of the crests, against the wave. Each run continues the one before: eight periods settle,
-# the next eight are averaged.
-crest = -0.0283
-speeds = np.linspace(0.0, crest, 9)
+# From standstill to the speed of the crests, 2.83 cm/s against the wave. Each run continues the one before: 32 periods
+# settle, the next 32 are averaged.
+speeds = np.linspace(0.0, -0.0283, 17)
 forces, before = [], None
 for speed in speeds:
     for _ in range(2):
         before = simulate(
-            scene.beam, scene.forces, frequency, 8 / frequency, model="analytic", slider=slider, start="steady",
+            scene.beam, scene.forces, frequency, 32 / frequency, model="analytic", slider=slider, start="steady",
             prescribed_speed=float(speed), fixed_position=True, continue_from=before,
         )  # fmt: skip
     forces.append(before.mean_friction)
