@@ -34,6 +34,8 @@ for name, values in errors.items():
     ax.axvline(sufficient[name], color=line.get_color(), linestyle=":")
 ax.axhline(100.0 * limit, color="grey", linestyle="--")
 ax.set(xlabel="number of parts", ylabel=f"|frequency error| of mode {mode}, %")
+ax.set_xticks(ticks := [25, 35, 42, 60, 80, 120], map(str, ticks))
+ax.minorticks_off()
 ax.legend(title="parts for 1 %")
 plt.show()
 

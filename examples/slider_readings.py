@@ -3,7 +3,7 @@ One slider, three readings
 ==========================
 
 "The speed of the slider" depends on what a slider is. Tangential: it moves by the friction law alone. Following: its path is
-the surface, whose slope pushes it. On feet: it may lose contact, and touches the crests. All three are on the same steady wave.
+the surface, whose slope acts on it. On feet: it may lose contact, and touches the crests. All three are on the same steady wave.
 """
 
 import matplotlib.pyplot as plt
@@ -29,8 +29,8 @@ clasp = Slider(
 readings = {"tangential": point, "following": replace(point, kinematics="following"), "feet": clasp}
 
 # %%
-# Displacement over time. Only the feet come near the speed of the crests: a slider that never leaves the surface is
-# carried back in the troughs as far as it is carried on at the crests.
+# Displacement over 200 periods. The feet alone come near the speed of the crests: a point that never leaves the surface
+# moves back in the troughs almost as far as on at the crests.
 fig, ax = plt.subplots(layout="constrained")
 speeds = {}
 for name, slider in readings.items():
