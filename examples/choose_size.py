@@ -2,8 +2,9 @@
 Choose the number of segments or elements
 =========================================
 
-How many parts keep mode 22 of the paper's beam within 1 %? The first size within the limit is not enough: the error has to
-stay within it for all larger sizes. ``verify choose paper --mode 22 --error 1%`` gives the same, with solve times.
+How many parts keep mode 22 of the paper's beam within 1 %? The first size within the limit is not enough: the error
+has to stay within it for all larger sizes. ``verify choose paper --mode 22 --error 1%`` gives the same, with solve
+times.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 A chain for another engine, its modes for ParaView
 ==================================================
 
-A multibody program needs lengths, masses, inertias and joint springs of the links. They are written as JSON, and a stand-in
-for the program reads them again: its frequencies have to be those of the model. The mode shapes go to a vtu file.
+A multibody program needs lengths, masses, inertias and joint springs of the links. They are written as JSON, and a
+stand-in for the program reads them again: its frequencies have to be those of the model. The mode shapes go to a vtu
+file.
 """
 
 import json
@@ -17,7 +18,7 @@ from scipy.linalg import eigh
 
 from verify import Beam, SegmentModel
 
-beam = Beam(length=0.31, width=0.025, thickness=0.0032, youngs_modulus=205e9, density=7850.0, supports=("clamped", "free"))
+beam = Beam(length=0.31, width=0.025, thickness=0.003, youngs_modulus=205e9, density=7850, supports=("clamped", "free"))
 n, folder = 24, Path(tempfile.mkdtemp())
 model = SegmentModel(beam, n)
 modes = model.modes(5)
@@ -28,7 +29,8 @@ link = beam.length / n
 mass = beam.mass_per_length * link
 factors = np.ones(n)
 factors[:3] = 3 / 8, 7 / 6, 23 / 24
-chain = {"length": link, "mass": mass, "inertia": mass * link**2 / 12, "springs": (beam.bending_stiffness / link / factors).tolist()}
+springs = beam.bending_stiffness / link / factors
+chain = {"length": link, "mass": mass, "inertia": mass * link**2 / 12, "springs": springs.tolist()}
 (folder / "chain.json").write_text(json.dumps(chain))
 
 # %%
@@ -36,7 +38,8 @@ chain = {"length": link, "mass": mass, "inertia": mass * link**2 / 12, "springs"
 read = json.loads((folder / "chain.json").read_text())
 lever = read["length"] * (np.tril(np.ones((n, n)), -1) + 0.5 * np.eye(n))
 turn = np.eye(n) - np.eye(n, k=-1)
-stiffness, inertia = turn.T @ np.diag(read["springs"]) @ turn, read["mass"] * lever.T @ lever + read["inertia"] * np.eye(n)
+stiffness = turn.T @ np.diag(read["springs"]) @ turn
+inertia = read["mass"] * lever.T @ lever + read["inertia"] * np.eye(n)
 frequencies = np.sqrt(eigh(stiffness, inertia, eigvals_only=True)[:5]) / (2 * np.pi)
 difference = float(abs(frequencies / modes.frequencies_hz - 1.0).max())
 

@@ -2,8 +2,8 @@
 Force over speed of a motor
 ===========================
 
-A clasp of two feet is pressed on the upper and the lower face of the beam of the scene ``preloaded-motor``. Its mean friction
-force is computed at prescribed speeds, as on a test bench; the load line of a motor is read from it.
+A clasp of two feet is pressed on the upper and the lower face of the beam of the scene ``preloaded-motor``. Its mean
+friction force is computed at prescribed speeds, as on a test bench; the load line of a motor is read from it.
 """
 
 import matplotlib.pyplot as plt
@@ -29,8 +29,8 @@ for speed in speeds:
 forces = np.array(forces)
 
 # %%
-# At standstill all points slip in one direction: the stall force is mu N. Power is largest at three quarters of the crest
-# speed; without load the points near the crests drive as much as those beside them brake.
+# At standstill all points slip in one direction: the stall force is mu N. Power is largest at three quarters of the
+# crest speed; without load the points near the crests drive as much as those beside them brake.
 no_load = float(np.interp(0.0, forces, speeds))
 fig, ax = plt.subplots(layout="constrained")
 ax.plot(100 * speeds, 1e3 * forces, "o-", label="force")

@@ -2,8 +2,9 @@
 One slider, three readings
 ==========================
 
-"The speed of the slider" depends on what a slider is. Tangential: it moves by the friction law alone. Following: its path is
-the surface, whose slope acts on it. On feet: it may lose contact, and touches the crests. All three are on the same steady wave.
+"The speed of the slider" depends on what a slider is. Tangential: it moves by the friction law alone. Following: its
+path is the surface, whose slope acts on it. On feet: it may lose contact, and touches the crests. All three are on
+the same steady wave.
 """
 
 import matplotlib.pyplot as plt

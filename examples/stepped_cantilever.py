@@ -2,8 +2,8 @@
 Order of convergence on a stepped cantilever
 ============================================
 
-A step in section costs a chain two orders: it converges with order 2 and not 4, and with the joint as the paper prints it
-(Eq. (1), two indices exchanged) with order 1. Hermite elements keep order 4, their nodes lie on the step.
+A step in section costs a chain two orders: it converges with order 2 and not 4, and with the joint as the paper
+prints it (Eq. (1), two indices exchanged) with order 1. Hermite elements keep order 4, their nodes lie on the step.
 """
 
 import matplotlib.pyplot as plt

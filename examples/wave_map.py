@@ -2,8 +2,9 @@
 Wave map and best drive
 =======================
 
-Two actuators make a travelling wave where frequency and phase suit each other. The map shows the reflection, the weaker wave
-over the stronger: 0 is a travelling wave, 1 a standing one. Superposition gives all phases from two unit fields.
+Two actuators make a travelling wave where frequency and phase suit each other. The map shows the reflection, the
+weaker wave over the stronger: 0 is a travelling wave, 1 a standing one. Superposition gives all phases from two unit
+fields.
 """
 
 import matplotlib.pyplot as plt
@@ -35,7 +36,7 @@ best = travelling_wave.best_drive(case)
 fig, ax = plt.subplots(layout="constrained")
 mesh = ax.pcolormesh(frequencies, phases, np.array(reflection).T, vmin=0.0, vmax=1.0, cmap="viridis_r", rasterized=True)
 fig.colorbar(mesh, label="reflection")
-ax.plot(4276.0, best.phase_deg, "o", color="white", markeredgecolor="black", label=f"best: {best.phase_deg:.2f} degrees")
+ax.plot(4276.0, best.phase_deg, "o", color="white", markeredgecolor="black", label=f"best: {best.phase_deg:.2f}°")
 ax.plot(4276.0, 90.0, "+", color="red", markersize=10, label="the paper's drive")
 ax.set(xlabel="frequency, Hz", ylabel="lead of the right actuator, degrees")
 ax.legend(loc="lower left")

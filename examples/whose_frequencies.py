@@ -3,8 +3,8 @@ Whose discretisation are these frequencies?
 ===========================================
 
 Eight natural frequencies of a steel cantilever come from another program. Their errors against the exact beam are a
-fingerprint of its discretisation: wall rule and number of parts. ``verify compare`` does this with some forty candidates and
-tests for wrong units, a missing mode and a compliant clamp.
+fingerprint of its discretisation: wall rule and number of parts. ``verify compare`` does this with some forty
+candidates and tests for wrong units, a missing mode and a compliant clamp.
 """
 
 import matplotlib.pyplot as plt
@@ -12,7 +12,7 @@ import numpy as np
 
 from verify import Beam, ExactModel, HermiteModel, SegmentModel
 
-beam = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850.0, supports=("clamped", "free"))
+beam = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850, supports=("clamped", "free"))
 given = np.array([27.570, 172.561, 482.627, 944.652, 1559.74, 2327.21, 3246.43, 4316.71])  # Hz
 
 # %%
