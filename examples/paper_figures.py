@@ -23,8 +23,8 @@ errors = {name: model.modes(30).frequencies_hz / reference - 1.0 for name, model
 error_22 = errors["49 segments"][21]
 
 # %%
-# The slider of Figures 3 and 4 at 30 N, switched on as a step load: it follows the surface and moves to the left, against
-# the wave. The paper states neither force nor start nor kinematics; the speed depends on all three.
+# The slider of Figures 3 and 4 at 30 N, switched on as a step load: it follows the surface and moves to the left,
+# against the wave. The paper states neither force nor start nor kinematics; the speed depends on all three.
 strong = [PointForce(position=f.position, amplitude=30.0, phase_deg=f.phase_deg) for f in forces]
 slider = Slider(mass=1.0193679918450561e-3, mu=0.2, kinematics="following", normal="massless", coupling="one-way")
 motion = simulate(beam, strong, 4276.0, 1e-3, count=49, slider=slider)
