@@ -57,7 +57,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         variants = self.variants(models)
         rows = self._rows(cache, variants, progress)
         bounds, no_bound = self._bounds(cache)
-        errors, warnings = self._summarise(cache, rows)
+        settled, warnings = self._summarise(cache, rows)
         finest = [row for row in rows if row["N"] == max(self.counts) and row["error"] is not None]
         own = {mode: [row["error"] for row in finest if row["mode"] == mode] for mode in self.modes}
         warnings += plate_warnings(cache.beam, own)
@@ -73,8 +73,9 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             bound = "Two-sided bound: segments below, Hermite elements above"
             note = "The exact frequency lies in it for every N; no reference solution is needed for that."
             tables.append(Table(bound, columns, [tuple(row.values()) for row in bounds], [note]))
+        errors = ", ".join(settled)
         return Result(
-            summary=f"Mode {max(self.modes)}, N = {self.counts[-1]}, error: {', '.join(errors)}." if errors else "",
+            summary=f"Mode {max(self.modes)}, N = {self.counts[-1]}, error: {errors}." if settled else "",
             tables=tables,
             figures=[Figure("errors-over-size", title, CAPTION, draw)],
             warnings=[*warnings, *no_bound, *left_out.values()],
