@@ -77,6 +77,8 @@ def test_orders_outside_the_asymptotic_range_are_marked(run, renders):
     assert marks == {"segments": False, "segments, wall half": True, "Hermite elements": True}
     assert "segments -1.879e-05 % (order 6.44, 5.46: not asymptotic)" in result.summary
     assert any("order not converged" in warning for warning in result.warnings)
+    table = run("steel-cantilever", Convergence(modes=(3,), counts=(10, 20, 40, 160, 320))).tables[0]
+    assert [row["in range"] for row in rows_of(table, model="segments")] == [None, False, False, False, True]
     lines = renders(result)["errors-over-size"].lines
     assert sorted(len(line.get_xdata()) for line in lines if line.get_label().startswith("_child"))[-2:] == [2, 2]
 

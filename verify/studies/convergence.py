@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from functools import partial
+from itertools import pairwise
 from math import log, log10
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
@@ -126,10 +127,13 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                     rows.append(row | {"run_time_s": time, "variant": one, "why": why})
                     before = None if error is None else (count, error)
                 within, expected = True, theory
-                for finer in reversed(rows[-len(self.counts) :]):
-                    if (seen := finer["order"]) is not None:
+                for last, finer in reversed(list(pairwise(rows[-len(self.counts) :]))):
+                    two, seen = (last["error"] or 0.0, finer["error"] or 0.0), finer["order"]
+                    if seen is not None:
                         expected = seen if expected is None else expected
                         finer["asymptotic"] = within = within and abs(seen - expected) <= ORDER_TOLERANCE
+                    elif two[0] * two[1] < 0.0 and min(map(abs, two)) >= ORDER_FLOOR:  # the error changes its sign
+                        finer["asymptotic"] = within = False
         return rows
 
     def _printed_joints(self, beam: "Beam") -> list[str]:
