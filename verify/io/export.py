@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 DATA, PICTURES = ("modes", "wave", "motion"), ("png", "gif", "webp")
 CHART = "convergence"
+METADATA: dict[str, Any] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
 TYPES = {
     "vtu": ("modes", "wave"),
     **dict.fromkeys(("xdmf", "csv", "json", "npz", "gif", "webp"), DATA),
@@ -63,7 +64,7 @@ def _convergence(scene: "Scene", path: Path, request: Request, progress: Callabl
     from msgspec.structs import replace
 
     from verify.analysis.solution_cache import SolutionCache
-    from verify.report.plotting import figure_png, figure_svg
+    from verify.report.plotting import drawn, style
     from verify.studies.convergence import Convergence
 
     if request.count is not None or request.samples is not None:
@@ -72,9 +73,9 @@ def _convergence(scene: "Scene", path: Path, request: Request, progress: Callabl
     if request.mode is not None:
         study = replace(study, modes=(request.mode,))
     result = study.run(scene, SolutionCache(scene.beam), progress)
-    svg = path.suffix.lower() == ".svg"
-    with whole(path, "to") as part:
-        part.write_bytes(figure_svg(result.figures[0]).encode() if svg else figure_png(result.figures[0]))
+    kind = path.suffix.lower().removeprefix(".")
+    with whole(path, "to") as part, style(salt=CHART):
+        drawn(result.figures[0]).savefig(part, format=kind, dpi=160, facecolor="white", metadata=METADATA[kind])
     return f"{result.figures[0].title}. {result.summary}"
 
 

@@ -207,11 +207,11 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             for one, color in colors.items():
                 own = [row for row in rows if row["variant"] == one and row["mode"] == mode and row["error"]]
                 errors = [100 * abs(row["error"]) for row in own]
-                label = one.title if first else ""
-                (line,) = ax.loglog([row["N"] for row in own], errors, style, color=color, label=label)
-                line.set_markerfacecolor(PAPER)
-                inside = [i for i, row in enumerate(own) if row["asymptotic"]]
-                ax.loglog([own[i]["N"] for i in inside], [errors[i] for i in inside], style[-1], color=color)
+                begin = next((i for i, row in enumerate(own) if row["asymptotic"]), len(own))
+                coarse, fine = slice(begin + 1), slice(begin, None)
+                label, sizes = one.title if first else "", [row["N"] for row in own]
+                ax.loglog(sizes[coarse], errors[coarse], style, color=color, label=label, markerfacecolor=PAPER)
+                ax.loglog(sizes[fine], errors[fine], style, color=color)
             own = [row for row in bounds if row["mode"] == mode and row["mean_error"]]
             label, errors = "mean of both" if first and bounds else "", [100 * abs(row["mean_error"]) for row in own]
             ax.loglog([row["N"] for row in own], errors, style, color=mean, label=label)
