@@ -223,8 +223,10 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         guides = {
             one.expected_order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors
         }
-        if bounds:
-            guides.setdefault(6, [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]])
+        means = [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]]
+        if len(means) > 1 and means[-1]["N"] > means[-2]["N"]:  # of the highest mode
+            ratio, growth = (means[-2]["error"] / means[-1]["error"], means[-1]["N"] / means[-2]["N"])
+            guides |= {6: means} if abs(log(abs(ratio)) / log(growth) - 6.0) <= ORDER_TOLERANCE else {}
         for order, own in guides.items():
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)
