@@ -30,7 +30,7 @@ forces = np.array(forces)
 
 # %%
 # At standstill all points slip in one direction: the stall force is mu N. Power is largest at three quarters of the
-# crest speed; without load the points near the crests drive as much as those beside them brake.
+# crest speed; without load the points near the crests drive as much as their neighbours brake.
 no_load = float(np.interp(0.0, forces, speeds))
 fig, ax = plt.subplots(layout="constrained")
 ax.plot(100 * speeds, 1e3 * forces, "o-", label="force")

@@ -128,10 +128,10 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                     before = None if error is None else (count, error)
                 within, expected = True, theory
                 for last, finer in reversed(list(pairwise(rows[-len(self.counts) :]))):
-                    two, seen = (last["error"] or 0.0, finer["error"] or 0.0), finer["order"]
-                    if seen is not None:
-                        expected = seen if expected is None else expected
-                        finer["asymptotic"] = within = within and abs(seen - expected) <= ORDER_TOLERANCE
+                    two, observed = (last["error"] or 0.0, finer["error"] or 0.0), finer["order"]
+                    if observed is not None:
+                        expected = observed if expected is None else expected
+                        finer["asymptotic"] = within = within and abs(observed - expected) <= ORDER_TOLERANCE
                     elif two[0] * two[1] < 0.0 and min(map(abs, two)) >= ORDER_FLOOR:  # the error changes its sign
                         finer["asymptotic"] = within = False
         return rows
@@ -189,9 +189,9 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             if orders and all(row["asymptotic"] for row in orders[-2:]):
                 errors.append(f"{one.title} {100 * last:+.4g} % (order {orders[-1]['order']:.2f})")
                 continue
-            seen = ", ".join(f"{row['order']:.2f}" for row in orders) or "none"
-            errors.append(f"{one.title} {100 * last:+.4g} % (order {seen}: not asymptotic)")
-            known = f"observed {seen}; {one.expected_order(cache.beam)}"
+            observed = ", ".join(f"{row['order']:.2f}" for row in orders) or "none"
+            errors.append(f"{one.title} {100 * last:+.4g} % (order {observed}: not asymptotic)")
+            known = f"observed {observed}; {one.expected_order(cache.beam)}"
             warnings[f"{one.title}, mode {max(self.modes)}: order not converged ({known})."] = None
         return errors, list(warnings)
 
