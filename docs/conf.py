@@ -11,9 +11,11 @@ author = "The verify developers"
 project_copyright = "the verify developers, MIT licence"
 release = version = installed("fem-segment-verify")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "made_pages"]
+extensions = [
+    "myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "made_pages", "sphinx_gallery.gen_gallery",
+]  # fmt: skip
 default_role = "code"
-source_suffix = {".md": "markdown"}
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_build", "_ext"]
 nitpicky = False
 
@@ -30,6 +32,19 @@ html_show_sourcelink = False
 html_copy_source = False
 pygments_style = "tango"
 pygments_dark_style = "monokai"
+
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples",
+    "gallery_dirs": "gallery",
+    "filename_pattern": "",  # all of them run
+    "ignore_pattern": "notebooks",
+    "nested_sections": False,
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "min_reported_time": 1e9,
+    "abort_on_example_error": True,
+}
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"

@@ -15,8 +15,8 @@ DOCS = Path(__file__).parents[2] / "docs"
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """(folder of the built pages, warnings)."""
-    for package in ("sphinx", "furo", "myst_parser"):
-        pytest.importorskip(package, reason="pip install '.[docs]' installs Sphinx, furo and myst-parser")
+    for package in ("sphinx", "furo", "myst_parser", "sphinx_gallery"):
+        pytest.importorskip(package, reason="pip install '.[docs]' installs Sphinx and its extensions")
     from sphinx.application import Sphinx
 
     def refuse(*_):

@@ -107,13 +107,27 @@ def test_pictures_open(moving, tmp_path, kind, what, frames):
         assert len(image.convert("RGB").getcolors(1 << 20)) > 10
 
 
+@pytest.mark.parametrize("kind", ["png", "svg"])
+def test_the_chart_of_convergence_is_a_picture(scene, tmp_path, kind):
+    path = tmp_path / f"a.{kind}"
+    title = write(scene, path, Request(what="convergence", mode=2))
+    assert title.startswith("Frequency error over N. Mode 2")
+    if kind == "svg":
+        assert "number of segments or elements" in path.read_text()
+    else:
+        with Image.open(path) as image:
+            assert len(image.convert("RGB").getcolors(1 << 20)) > 10
+
+
 REFUSED = [
     ("a.doc", {}, "no file type"),
     ("a.toml", {}, "give one of .vtu"),
     ("a.vtu", {"what": "motion"}, ".xdmf, .csv"),
-    ("a.csv", {"what": "tables"}, "known are modes, wave, motion"),
+    ("a.csv", {"what": "tables"}, "known are modes, wave, motion, convergence"),
     ("a.csv", {"what": "mode"}, "did you mean 'modes'"),
     ("a.csv", {"what": "motion"}, r"\[motion\]"),
+    ("a.gif", {"what": "convergence"}, "give one of .png, .svg"),
+    ("a.png", {"what": "convergence", "count": 9}, "convergence.counts"),
     ("a.csv", {"model": "analytic", "count": 4}, "leave it out"),
     ("a.csv", {"what": "modes", "count": 12, "mode": 400}, "400"),
     ("a.csv", {"model": "fen"}, "did you mean 'fem'"),

@@ -71,10 +71,25 @@ def test_two_sided_bound_contains_the_exact_frequency(run):
         assert abs(row["error of the mean"]) < row["width"]
 
 
-def test_orders_outside_the_asymptotic_range_void_the_summary(run):
-    result = run("paper", Convergence(modes=(9,), counts=(10, 11)))
-    assert "segments" not in result.summary
+def test_orders_outside_the_asymptotic_range_are_marked(run, renders):
+    result = run("steel-cantilever", Convergence(modes=(5,), counts=(20, 40, 80), wall=("gregory", "half")))
+    marks = {row["model"]: row["in range"] for row in rows_of(result.tables[0], N=80)}
+    assert marks == {"segments": False, "segments, wall half": True, "Hermite elements": True}
+    assert "segments -1.879e-05 % (order 6.44, 5.46: not asymptotic)" in result.summary
     assert any("order not converged" in warning for warning in result.warnings)
+    table = run("steel-cantilever", Convergence(modes=(3,), counts=(10, 20, 40, 160, 320))).tables[0]
+    assert [row["in range"] for row in rows_of(table, model="segments")] == [None, False, False, False, True]
+    curves = [line for line in renders(result)["errors-over-size"].lines if len(line.get_xdata()) in (1, 2, 3)]
+    hollow = [list(line.get_xdata()) for line in curves if line.get_markerfacecolor() != line.get_color()]
+    assert hollow == [[20, 40, 80], [20, 40], [20, 40]]
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"), [("stepped-beam", "at x = 0.25 m alone"), ("steel-cantilever", "series nowhere")]
+)
+def test_printed_joints_say_where_they_differ(run, scene, words):
+    result = run(scene, Convergence(modes=(2,), counts=(20, 40), joints="printed"))
+    assert any(words in note for note in result.tables[0].notes)
 
 
 def test_variants_stand_side_by_side(run, renders):

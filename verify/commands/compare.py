@@ -4,7 +4,15 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import GATE_FAILED, format_options, overrides_option, scene_argument, show
+from verify.commands.shared import (
+    GATE_FAILED,
+    charts_option,
+    format_options,
+    overrides_option,
+    save_charts,
+    scene_argument,
+    show,
+)
 
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
@@ -30,6 +38,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
     show_default=True,
     help="Of the exact beam.",
 )
+@charts_option
 @format_options
 def compare(
     scene: str,
@@ -43,6 +52,7 @@ def compare(
     mode: int | None,
     within: str | None,
     theory: str,
+    charts: str | None,
     **formats: bool,
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
@@ -80,6 +90,7 @@ def compare(
 
         result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
     show(result, **formats)
+    save_charts(result, charts)
     if not result.data["passed"]:
         raise SystemExit(GATE_FAILED)
 

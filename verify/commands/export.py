@@ -11,7 +11,7 @@ from verify.errors import printable
 @click.command()
 @scene_argument
 @overrides_option
-@click.option("--what", metavar="WHAT", help="modes, wave or motion. Default: what the file type holds.")
+@click.option("--what", metavar="WHAT", help="modes, wave, motion or convergence. Default: what the file type holds.")
 @click.option("--to", "path", required=True, metavar="FILE", help="The suffix is the file type.")
 @click.option("--model", default="segment", show_default=True, metavar="NAME", help="segment, fem or analytic.")
 @click.option(
@@ -33,7 +33,8 @@ def export(
 ) -> None:
     """Write modes, the driven wave or the motion of SCENE to FILE.
 
-    vtu and xdmf (a series) for ParaView; csv, json and npz for data; png, gif and webp for pictures.
+    vtu and xdmf (a series) for ParaView; csv, json and npz for data; png, gif and webp for pictures. The chart of
+    convergence is written as png or svg.
     Example: `verify export paper --what modes --to modes.vtu`
     """
     from verify.io.data import Request

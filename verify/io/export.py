@@ -18,15 +18,19 @@ if TYPE_CHECKING:
     from verify.scene.model import Scene
 
 DATA, PICTURES = ("modes", "wave", "motion"), ("png", "gif", "webp")
+CHART = "convergence"
+METADATA: dict[str, Any] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
 TYPES = {
     "vtu": ("modes", "wave"),
-    **dict.fromkeys(("xdmf", "csv", "json", "npz", *PICTURES), DATA),
+    **dict.fromkeys(("xdmf", "csv", "json", "npz", "gif", "webp"), DATA),
+    "png": (*DATA, CHART),
+    "svg": (CHART,),
 }
 """What a file type holds."""
 
 
 def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:
-    """Write modes, wave or motion of a scene to a file, whole or not at all; returns what was written.
+    """Write modes, wave, motion or the chart of convergence to a file, whole or not at all; returns what was written.
 
     Raises InputError for an unknown file type, for content that it does not hold, and where the file cannot be written.
     """
@@ -34,14 +38,16 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
     if kind not in TYPES:
         raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give one of .{', .'.join(TYPES)}")
     there = [*["motion"] * (scene.motion is not None), *["wave"] * bool(scene.forces), "modes"]
-    what = request.what or next(what for what in there if what in TYPES[kind])
-    if what not in DATA:
-        raise InputError(f"what = {what!r} is not known: {near_name(what, DATA)}")
+    what = request.what or next(what for what in [*there, CHART] if what in TYPES[kind])
+    if what not in (*DATA, CHART):
+        raise InputError(f"what = {what!r} is not known: {near_name(what, (*DATA, CHART))}")
     if what not in TYPES[kind]:
         holding = ", ".join(f".{name}" for name, held in TYPES.items() if what in held)
         raise InputError(f"what = {what!r}: a .{kind} file does not hold it, give one of {holding}")
     writable_folder(path.parent, "to")
     progress(what)
+    if what == CHART:
+        return _convergence(scene, path, request, progress)
     data_ = dataset(scene, what, request)
     if kind in PICTURES:
         from verify.io.animate import write_picture
@@ -51,6 +57,26 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
         writers = {"vtu": _vtu, "xdmf": _xdmf, "csv": _csv, "json": _json, "npz": _npz}
         writers[kind](data_, path)
     return data_.title
+
+
+def _convergence(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None]) -> str:
+    """The chart of the frequency errors over N, of the scene's [convergence] or its defaults, or of one mode."""
+    from msgspec.structs import replace
+
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.report.plotting import drawn, style
+    from verify.studies.convergence import Convergence
+
+    if request.count is not None or request.samples is not None:
+        raise InputError(f"what = {CHART!r}: count and samples do not apply, --set convergence.counts=20,40,80")
+    study = scene.studies.get(CHART, Convergence())
+    if request.mode is not None:
+        study = replace(study, modes=(request.mode,))
+    result = study.run(scene, SolutionCache(scene.beam), progress)
+    kind = path.suffix.lower().removeprefix(".")
+    with whole(path, "to") as part, style(salt=CHART):
+        drawn(result.figures[0]).savefig(part, format=kind, dpi=160, facecolor="white", metadata=METADATA[kind])
+    return f"{result.figures[0].title}. {result.summary}"
 
 
 def _vectors(values: "Array", axis: int = 1) -> "Array":

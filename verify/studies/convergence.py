@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from functools import partial
+from itertools import pairwise
 from math import log, log10
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from verify.analysis.solution_cache import SolutionCache
+    from verify.problem.beam import Beam
     from verify.report.result import Result
     from verify.scene.model import Scene
 
@@ -28,11 +30,12 @@ STYLES = ("-o", "--s", ":^", "-.d", "-v")
 NOTES = [
     "Order: from the size before. GCI: grid convergence index of this size and the two before, the error bound that a "
     "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
+    "In range: asymptotic, from this size on all orders are within 1 of the theoretical order, or of the last.",
     "Time: warm solve of all modes, assembly included, median of repeats.",
 ]
 CAPTION = (
-    "Dashed: slopes of the theoretical orders. The mean is of order 6 where the leading errors of segments and Hermite "
-    "elements cancel."
+    "Filled markers: order from the size before in the asymptotic range. Dashed: slopes of the theoretical orders. The "
+    "mean is of order 6 where the leading errors of segments and Hermite elements cancel."
 )
 
 
@@ -60,11 +63,11 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         own = {mode: [row["error"] for row in finest if row["mode"] == mode] for mode in self.modes}
         warnings += plate_warnings(cache.beam, own)
         columns = [Column("mode"), Column("model"), Column("N"), Column("frequency", "Hz", ".8g"), percent("error")]
-        columns += [Column("order", format=".2f"), percent("GCI", ".3g"), percent("extrapolated", "+.3g")]
-        columns += [si("solve time", "s", ".3g")]
-        cells = [tuple(list(row.values())[:9]) for row in rows]
+        columns += [Column("order", format=".2f"), Column("in range"), percent("GCI", ".3g")]
+        columns += [percent("extrapolated", "+.3g"), si("solve time", "s", ".3g")]
+        cells = [tuple(list(row.values())[:10]) for row in rows]
         title, draw = "Frequency error over N", partial(self._draw_errors, cache, rows, bounds)
-        tables = [Table(title, columns, cells, NOTES)]
+        tables = [Table(title, columns, cells, [*NOTES, *self._printed_joints(cache.beam)])]
         if bounds:
             columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
             columns += [percent("width", ".4g"), percent("error of the mean")]
@@ -97,7 +100,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 cache.modes(one.model, count, n, one.settings)
                 solves.append(lambda m=model, k=count, n=n, how=how: m.build(cache.beam, k, **how).modes(n))
             seconds |= zip(((one, count) for one in variants), interleaved_medians(solves), strict=True)
-        rows = []
+        rows: list[Row] = []
         for mode in self.modes:
             for one in variants:
                 theory = one.expected_order(cache.beam)
@@ -120,10 +123,38 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                                 index, extrapolated = gci.index, relative_error(gci.extrapolated, exact)
                     row = {"mode": mode, "model": one.title, "N": count, "frequency_hz": frequency, "error": error}
                     time = None if error is None else seconds[one, count]
-                    row |= {"order": order, "gci": index, "extrapolated_error": extrapolated, "run_time_s": time}
-                    rows.append(row | {"variant": one, "why": why})
+                    row |= {"order": order, "asymptotic": None, "gci": index, "extrapolated_error": extrapolated}
+                    rows.append(row | {"run_time_s": time, "variant": one, "why": why})
                     before = None if error is None else (count, error)
+                within, expected = True, theory
+                for last, finer in reversed(list(pairwise(rows[-len(self.counts) :]))):
+                    two, observed = (last["error"] or 0.0, finer["error"] or 0.0), finer["order"]
+                    if observed is not None:
+                        expected = observed if expected is None else expected
+                        finer["asymptotic"] = within = within and abs(observed - expected) <= ORDER_TOLERANCE
+                    elif two[0] * two[1] < 0.0 and min(map(abs, two)) >= ORDER_FLOOR:  # the error changes its sign
+                        finer["asymptotic"] = within = False
         return rows
+
+    def _printed_joints(self, beam: "Beam") -> list[str]:
+        """A note on where joints as printed differ from those in series; none without printed joints."""
+        import numpy as np
+
+        from verify.linear.mesh import divide
+
+        notes: dict[str, None] = {}
+        for settings in self.combinations:
+            if ("joints", "printed") in settings:
+                parts = divide(beam, max(self.counts), float(dict(settings).get("grading", 1.0)))
+                figures: Any = parts.second_moments, parts.moduli / parts.lengths
+                changes = [abs(np.diff(np.log(v))) > 1e-9 for v in figures]
+                at = parts.unit * np.cumsum(parts.lengths)[:-1][changes[0] & changes[1]]
+                places = ", ".join(f"{x:.4g}" for x in at)
+                where = f"at x = {places} m alone, where links of unlike I and of unlike material or length (E/l) meet"
+                none = "nowhere, no links meet that are unlike in I and in material or length (E/l)"
+                note = f"they differ from joints in series {where if places else none}."
+                notes[f"Joints printed, N = {max(self.counts)}: {note}"] = None
+        return list(notes)
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
@@ -148,28 +179,26 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         return rows, list(reasons)
 
     def _summarise(self, cache: "SolutionCache", rows: list[Row]) -> tuple[list[str], list[str]]:
-        """(errors of the highest mode whose orders are those of theory, warnings on the others)."""
-        settled, warnings = [], dict.fromkeys(row["why"] for row in rows if row["why"])
+        """(errors of the highest mode, marked outside the asymptotic range; warnings on orders outside of it)."""
+        errors, warnings = [], dict.fromkeys(row["why"] for row in rows if row["why"])
         for one in dict.fromkeys(row["variant"] for row in rows):
             own = [row for row in rows if row["variant"] == one and row["mode"] == max(self.modes)]
-            orders = [row["order"] for row in own if row["order"] is not None][-2:]
-            theory = one.expected_order(cache.beam)
-            expected = theory if theory is not None else orders[-1] if orders else 0.0
-            if own[-1]["error"] is None:
+            orders, last = [row for row in own if row["order"] is not None], own[-1]["error"]
+            if last is None:
                 continue
-            if orders and all(abs(order - expected) <= ORDER_TOLERANCE for order in orders):
-                settled.append(f"{one.title} {100 * own[-1]['error']:+.4g} % (order {orders[-1]:.2f})")
-            else:
-                seen = ", ".join(f"{order:.2f}" for order in orders) or "none"
-                warnings[f"{one.title}, mode {max(self.modes)}: order not converged (observed {seen}; {theory})."] = (
-                    None
-                )
-        return settled, list(warnings)
+            if orders and all(row["asymptotic"] for row in orders[-2:]):
+                errors.append(f"{one.title} {100 * last:+.4g} % (order {orders[-1]['order']:.2f})")
+                continue
+            observed = ", ".join(f"{row['order']:.2f}" for row in orders) or "none"
+            errors.append(f"{one.title} {100 * last:+.4g} % (order {observed}: not asymptotic)")
+            known = f"observed {observed}; {one.expected_order(cache.beam)}"
+            warnings[f"{one.title}, mode {max(self.modes)}: order not converged ({known})."] = None
+        return errors, list(warnings)
 
     def _draw_errors(self, cache: "SolutionCache", rows: list[Row], bounds: list[Row], ax: "Axes") -> None:
         from matplotlib.ticker import NullLocator
 
-        from verify.report.plotting import slope_guide
+        from verify.report.plotting import PAPER, slope_guide
 
         mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
         colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))
@@ -178,7 +207,11 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             for one, color in colors.items():
                 own = [row for row in rows if row["variant"] == one and row["mode"] == mode and row["error"]]
                 errors = [100 * abs(row["error"]) for row in own]
-                ax.loglog([row["N"] for row in own], errors, style, color=color, label=one.title if first else "")
+                begin = next((i for i, row in enumerate(own) if row["asymptotic"]), len(own))
+                coarse, fine = slice(begin + 1), slice(begin, None)
+                label, sizes = one.title if first else "", [row["N"] for row in own]
+                ax.loglog(sizes[coarse], errors[coarse], style, color=color, label=label, markerfacecolor=PAPER)
+                ax.loglog(sizes[fine], errors[fine], style, color=color)
             own = [row for row in bounds if row["mode"] == mode and row["mean_error"]]
             label, errors = "mean of both" if first and bounds else "", [100 * abs(row["mean_error"]) for row in own]
             ax.loglog([row["N"] for row in own], errors, style, color=mean, label=label)
@@ -190,8 +223,10 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         guides = {
             one.expected_order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors
         }
-        if bounds:
-            guides.setdefault(6, [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]])
+        means = [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]]
+        if len(means) > 1 and means[-1]["N"] > means[-2]["N"]:  # of the highest mode
+            ratio, growth = (means[-2]["error"] / means[-1]["error"], means[-1]["N"] / means[-2]["N"])
+            guides |= {6: means} if abs(log(abs(ratio)) / log(growth) - 6.0) <= ORDER_TOLERANCE else {}
         for order, own in guides.items():
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)

@@ -1,0 +1,59 @@
+"""
+A chain for another engine, its modes for ParaView
+==================================================
+
+A multibody program needs lengths, masses, inertias and joint springs of the links. They are written as JSON, and a
+stand-in for the program reads them again: its frequencies have to be those of the model. The mode shapes go to a vtu
+file.
+"""
+
+import json
+import tempfile
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import meshio
+import numpy as np
+from scipy.linalg import eigh
+
+from verify import Beam, SegmentModel
+
+beam = Beam(length=0.31, width=0.025, thickness=0.003, youngs_modulus=205e9, density=7850, supports=("clamped", "free"))
+n, folder = 24, Path(tempfile.mkdtemp())
+model = SegmentModel(beam, n)
+modes = model.modes(5)
+
+# %%
+# Links are equal. Gregory's weights at the wall make the first three joints softer or stiffer than EI/l.
+link = beam.length / n
+mass = beam.mass_per_length * link
+factors = np.ones(n)
+factors[:3] = 3 / 8, 7 / 6, 23 / 24
+springs = beam.bending_stiffness / link / factors
+chain = {"length": link, "mass": mass, "inertia": mass * link**2 / 12, "springs": springs.tolist()}
+(folder / "chain.json").write_text(json.dumps(chain))
+
+# %%
+# The other program: angles of the links as unknowns, joints between neighbours.
+read = json.loads((folder / "chain.json").read_text())
+lever = read["length"] * (np.tril(np.ones((n, n)), -1) + 0.5 * np.eye(n))
+turn = np.eye(n) - np.eye(n, k=-1)
+stiffness = turn.T @ np.diag(read["springs"]) @ turn
+inertia = read["mass"] * lever.T @ lever + read["inertia"] * np.eye(n)
+frequencies = np.sqrt(eigh(stiffness, inertia, eigvals_only=True)[:5]) / (2 * np.pi)
+difference = float(abs(frequencies / modes.frequencies_hz - 1.0).max())
+
+# %%
+# Modes as vectors at the joints: Warp By Vector in ParaView. meshio reads the file again.
+x = modes.nodes
+points, shapes = np.stack([x, 0 * x, 0 * x], axis=1), modes.deflection(x)
+data = {f"mode_{i + 1}": np.stack([0 * x, shape, 0 * x], axis=1) for i, shape in enumerate(shapes)}
+meshio.write(folder / "modes.vtu", meshio.Mesh(points, [("line", np.stack([range(n), range(1, n + 1)], axis=1))], data))
+fig, ax = plt.subplots(layout="constrained")
+for name, values in meshio.read(folder / "modes.vtu").point_data.items():
+    ax.plot(x, values[:, 1], ".-", label=name)
+ax.set(xlabel="x, m", ylabel="mass-normalised deflection, 1/sqrt(kg)")
+ax.legend()
+plt.show()
+
+print(f"largest difference of the frequencies: {difference:.1e}")

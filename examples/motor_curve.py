@@ -1,0 +1,45 @@
+"""
+Force over speed of a motor
+===========================
+
+A clasp of two feet is pressed on the upper and the lower face of the beam of the scene ``preloaded-motor``. Its mean
+friction force is computed at prescribed speeds, as on a test bench; the load line of a motor is read from it.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from verify import load_scene, simulate
+
+scene = load_scene("preloaded-motor")
+frequency, slider = scene.drive.frequency_hz, scene.slider
+
+# %%
+# From standstill to the speed of the crests, 2.83 cm/s against the wave. Each run continues the one before: 32 periods
+# settle, the next 32 are averaged.
+speeds = np.linspace(0.0, -0.0283, 17)
+forces, before = [], None
+for speed in speeds:
+    for _ in range(2):
+        before = simulate(
+            scene.beam, scene.forces, frequency, 32 / frequency, model="analytic", slider=slider, start="steady",
+            prescribed_speed=float(speed), fixed_position=True, continue_from=before,
+        )  # fmt: skip
+    forces.append(before.mean_friction)
+forces = np.array(forces)
+
+# %%
+# At standstill all points slip in one direction: the stall force is mu N. Power is largest at three quarters of the
+# crest speed; without load the points near the crests drive as much as their neighbours brake.
+no_load = float(np.interp(0.0, forces, speeds))
+fig, ax = plt.subplots(layout="constrained")
+ax.plot(100 * speeds, 1e3 * forces, "o-", label="force")
+ax.axhline(-1e3 * slider.mu * slider.preload, color="grey", linestyle="--", label="mu N")
+ax.set(xlabel="speed, cm/s", ylabel="mean force on the slider, mN", title=f"no load: {100 * no_load:.2f} cm/s")
+power = ax.twinx()
+power.plot(100 * speeds, 1e3 * forces * speeds, "s-", color="tab:orange", label="power")
+power.set_ylabel("power, mW")
+fig.legend(loc="outside lower center", ncols=3)
+plt.show()
+
+print(f"stall force {1e3 * forces[0]:+.2f} mN, no-load speed {100 * no_load:+.3f} cm/s")

@@ -1,0 +1,50 @@
+"""
+One slider, three readings
+==========================
+
+"The speed of the slider" depends on what a slider is. Tangential: it moves by the friction law alone. Following: its
+path is the surface, whose slope acts on it. On feet: it may lose contact, and touches the crests. All three are on
+the same steady wave.
+"""
+
+import matplotlib.pyplot as plt
+from msgspec.structs import replace
+
+from verify import Beam, Contact, Foot, PointForce, Slider, simulate
+
+beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+forces = [
+    PointForce(position=0.0116, amplitude=9.0),
+    PointForce(position=0.4884, amplitude=9.0, phase_deg=86.86),
+]
+frequency, periods = 4276.0, 200
+
+# %%
+# The same mass and friction coefficient; the wave travels to the right, so that its crests move to the left.
+point = Slider(mass=0.01, mu=0.2, law="coulomb", normal="massless", coupling="one-way", gravity=0.0, preload=0.2)
+clasp = Slider(
+    mass=0.01, mu=0.2, law="coulomb", coupling="one-way", gravity=0.0, preload=0.2,
+    contact=Contact(stiffness=6.3e4, damping=0.1),
+    foot=(Foot(length=0.0465, points=15), Foot(length=0.0465, points=15, face="lower")),
+)  # fmt: skip
+readings = {"tangential": point, "following": replace(point, kinematics="following"), "feet": clasp}
+
+# %%
+# Displacement over 200 periods. The feet alone come near the speed of the crests: a point that never leaves the surface
+# moves back in the troughs almost as far as on at the crests.
+fig, ax = plt.subplots(layout="constrained")
+speeds = {}
+for name, slider in readings.items():
+    motion = simulate(
+        beam, forces, frequency, periods / frequency, model="analytic", slider=slider, start="steady",
+        samples=periods + 1,
+    )  # fmt: skip
+    late = len(motion.times) // 2
+    speeds[name] = (motion.travelled[-1] - motion.travelled[late]) / (motion.times[-1] - motion.times[late])
+    ax.plot(1e3 * motion.times, 1e3 * motion.travelled, label=f"{name}: {100 * speeds[name]:+.3g} cm/s at the end")
+ax.set(xlabel="time, ms", ylabel="displacement, mm")
+ax.legend()
+plt.show()
+
+speed = float(speeds["feet"])
+print(f"slider on feet: {100 * speed:+.3f} cm/s")
