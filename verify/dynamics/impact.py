@@ -177,8 +177,8 @@ def advance_impacts(
                 else:
                     stuck = riding and touch[lay.STUCK] > 0.0
                     shift = start if stuck else 0.0
-                    force = coulomb_force(0, start, gain - shift, gain - shift, ease, mu * push,
-                                          slider[lay.MU_STATIC] * push, stuck, spans)  # fmt: skip
+                    force = coulomb_force(start, gain - shift, gain - shift, ease, mu * push,
+                                          slider[lay.MU_STATIC] * push, stuck, spans[0])  # fmt: skip
                     touch[lay.STUCK] = spans[0, 0] if riding else 0.0
                 after = v + share * inverse * force + (s * along if riding else 0.0)
                 mean, surface = 0.5 * (v + after), 0.5 * (speed + seen[ALONG])
