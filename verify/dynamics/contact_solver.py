@@ -10,6 +10,7 @@ import numpy as np
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.friction import coulomb_force, elastic_force, held_force, line_force, tanh_force
+from verify.dynamics.kinematics import shape_of
 from verify.jit import FAST, inline, jit
 
 SWEEPS = 100
@@ -67,12 +68,7 @@ def set_end_couplings(
             for k in range(points.shape[0]):
                 couplings[s, i, k] = 0.0
         for j in range(n + n_complex):
-            value, first, here, turn = 0.0, 0.0, 0.0, 0.0
-            for d in range(table.shape[1] - 1, -1, -1):
-                first = first * at + value
-                value = value * at + table[piece, d, j]
-                turn = turn * above + here
-                here = here * above + table[piece, d, j]
+            value, first, turn = shape_of(piece, j, at, above, table)
             rate, moved = value + lean * turn, v * first
             row = j if j < n else j - n_complex
             # real part of z: rate Re(lambda G b) + moved Re(G b); imaginary part, factor -Im z, likewise
@@ -213,13 +209,8 @@ def slide(
     slider, first = sliders[indices[last, lay.OF_SLIDER]], last
     while first > 0 and indices[first - 1, lay.OF_SLIDER] == indices[last, lay.OF_SLIDER]:
         first -= 1
-    light, v, steepness, pulled = (
-        dt * slider[lay.INVERSE_MASS],
-        slider[lay.V],
-        slider[lay.STEEPNESS],
-        slider[lay.GAINED],
-    )
-    limit, gained, rest, resting = 0.0, pulled, 0.0, False
+    light, v, steepness = dt * slider[lay.INVERSE_MASS], slider[lay.V], slider[lay.STEEPNESS]
+    pulled, gained, limit, rest, resting = slider[lay.GAINED], slider[lay.GAINED], 0.0, 0.0, False
     for i in range(first, last + 1):
         touch, normal = contacts[i], contacts[i, lay.NORMAL]
         start = v - touch[lay.MEAN] + 0.5 * touch[lay.RISE]
@@ -265,12 +256,8 @@ def slide(
     mean = v + 0.5 * slider[lay.GAINED]
     for i in range(first, last + 1):
         touch, work = contacts[i], spans[i]
-        force, kinetic, start, slip = (
-            touch[lay.FRICTION],
-            slider[lay.MU] * touch[lay.NORMAL],
-            work[START],
-            mean - touch[lay.MEAN],
-        )
+        force, kinetic = touch[lay.FRICTION], slider[lay.MU] * touch[lay.NORMAL]
+        start, slip = work[START], mean - touch[lay.MEAN]
         end, loss = start + gained - touch[lay.RISE], -force * slip
         if points[i, lay.TANGENTIAL] > 0.0:
             pass
@@ -349,7 +336,6 @@ def solve(
             changed = max(changed, slide(i, dt, sliders, points, contacts, indices, spans))
     if changed > TOLERANCE * largest and two_way:
         changed = solve_block(dt, sliders, points, contacts, indices, shapes, response, spans, block)
-        balance[lay.BLOCKS] += 1.0
     balance[lay.UNCONVERGED] += 1.0 if changed > 1e-9 * largest else 0.0
     balance[lay.RESIDUAL] = max(balance[lay.RESIDUAL], changed)
     for i in range(n):

@@ -64,12 +64,8 @@ def move(
     for i in range(0 if spring else points.shape[0]):
         slider, touch, inertia = sliders[indices[i, lay.OF_SLIDER]], contacts[i], points[i, lay.INERTIA]
         force, light, v, own = touch[lay.FRICTION], dt * slider[lay.INVERSE_MASS], slider[lay.V], touch[lay.OWN]
-        gained, mean, steepness = (
-            slider[lay.GAINED] - light * force,
-            v + 0.5 * slider[lay.GAINED],
-            slider[lay.STEEPNESS],
-        )
-        surface, ease = touch[lay.SURFACE], light + 2.0 * own
+        gained, mean = slider[lay.GAINED] - light * force, v + 0.5 * slider[lay.GAINED]
+        surface, ease, steepness = touch[lay.SURFACE], light + 2.0 * own, slider[lay.STEEPNESS]
         bounded = codes[lay.TWO_WAY] > 0 and abs(touch[lay.SLIP]) <= 1e-13 * (abs(mean) + abs(surface))
         if light == 0.0 or force == 0.0 or bounded:
             pass
@@ -98,12 +94,8 @@ def move(
     for i in range(points.shape[0]):
         spring_rate, touch, slider = points[i, lay.TANGENTIAL], contacts[i], sliders[indices[i, lay.OF_SLIDER]]
         if spring_rate > 0.0:  # stretched to the end of the step, as far as friction lets it
-            depth, was, normal, steepness = (
-                touch[lay.DEPTH],
-                touch[lay.WAS_DEPTH],
-                touch[lay.NORMAL],
-                slider[lay.STEEPNESS],
-            )
+            depth, was, normal = touch[lay.DEPTH], touch[lay.WAS_DEPTH], touch[lay.NORMAL]
+            steepness = slider[lay.STEEPNESS]
             since = dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was) + 0.5 * dt
             top, slip = 0.0, -touch[lay.SLIP]
             if normal > 0.0:

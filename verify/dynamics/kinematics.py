@@ -129,22 +129,9 @@ def read_surface(
 
 @jit(no_cpython_wrapper=True)
 def look(
-    when: int,
-    mark: int,
-    dt: float,
-    gravity: float,
-    codes: Indices,
-    table: Array,
-    edges: Array,
-    factors: Array,
-    local: Array,
-    stamp: Indices,
-    sliders: Array,
-    feet: Array,
-    points: Array,
-    contacts: Array,
-    indices: Indices,
-) -> None:
+    when: int, mark: int, dt: float, gravity: float, codes: Indices, table: Array, edges: Array, factors: Array,
+    local: Array, stamp: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
+) -> None:  # fmt: skip
     """Set the surface under every point at an instant of the step; `stamp` (pieces,) marks polynomials that are ready.
 
     Sliders are at their place of MIDDLE for feet, at that of START otherwise, with the speed gained in the last step
@@ -214,6 +201,18 @@ def look(
 
 
 @inline(fastmath=FAST)
+def shape_of(piece: int, j: int, at: float, above: float, table: Array) -> tuple[float, float, float]:
+    """A column's value and derivative by xi at the material under a point, and the derivative at the point."""
+    value, first, here, turn = 0.0, 0.0, 0.0, 0.0
+    for d in range(table.shape[1] - 1, -1, -1):
+        first = first * at + value
+        value = value * at + table[piece, d, j]
+        turn = turn * above + here
+        here = here * above + table[piece, d, j]
+    return value, first, turn
+
+
+@inline(fastmath=FAST)
 def set_shapes(
     dt: float, rows: Array, n_complex: int, table: Array, edges: Array, points: Array, contacts: Array,
     indices: Indices, shapes: Array,
@@ -232,12 +231,7 @@ def set_shapes(
         lever, weight = points[i, lay.LEVER] / (edges[piece + 1] - edges[piece]), points[i, lay.WEIGHT] / dt
         stretch, lean = np.sqrt(1.0 + slope * slope), slope * lever
         for j in range(n + n_complex):
-            value, first, here, turn = 0.0, 0.0, 0.0, 0.0
-            for d in range(table.shape[1] - 1, -1, -1):
-                first = first * at + value
-                value = value * at + table[piece, d, j]
-                turn = turn * above + here
-                here = here * above + table[piece, d, j]
+            value, first, turn = shape_of(piece, j, at, above, table)
             shapes[0, i, j] = (slope * value - lever * first) / stretch
             shapes[1, i, j] = side * (value + lean * turn)
         for s in range(2):
