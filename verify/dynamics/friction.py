@@ -140,11 +140,11 @@ def coulomb_span(
 
 @inline
 def coulomb_force(
-    i: int, r: float, a0: float, a1: float, ease: float, kinetic: float, static: float, stuck: bool, spans: Array
+    r: float, a0: float, a1: float, ease: float, kinetic: float, static: float, stuck: bool, work: Array
 ) -> float:
     """Mean friction in the step by Coulomb's law, from event to event.
 
-    Sets row i of `spans` (points, 4 + 2 SPANS): 1 where it sticks all the step, 0.5 where from an event in it to its
+    Sets `work` (4 + 2 SPANS,), the row of a point: 1 where it sticks all the step, 0.5 where from an event in it to its
     end; the relative displacement over dt, r at the end, the number of events, and of each the share of the step and
     its kind.
     """
@@ -162,31 +162,31 @@ def coulomb_force(
             force += (start + 0.5 * (a1 - a0) * span) * span / ease
         used += span
         if event != 0.0:
-            spans[i, 4 + 2 * n], spans[i, 5 + 2 * n] = used, event
+            work[4 + 2 * n], work[5 + 2 * n] = used, event
             n += 1
         if used >= 1.0 or (span <= 0.0 and event == 0.0):
             break
     sticks = 1.0 if n == 0 else 0.5  # within the step
-    spans[i, 0], spans[i, 1], spans[i, 2], spans[i, 3] = sticks if stuck else 0.0, moved, r, n
+    work[0], work[1], work[2], work[3] = sticks if stuck else 0.0, moved, r, n
     return float(min(max(force, -max(static, kinetic)), max(static, kinetic)))
 
 
 @inline
-def held_force(i: int, needed: float, kinetic: float, static: float, last: float, ease: float, spans: Array) -> float:
+def held_force(needed: float, kinetic: float, static: float, last: float, ease: float, work: Array) -> float:
     """Mean friction in the step of a point that sticks to a surface with a response, from the force that it `needed`.
 
     A force that is constant in the step lets the surface move less evenly than the true one, so that means decide. It
-    slips where the line through the last mean and this one passes the static limit. `spans` as in `coulomb_force`.
+    slips where the line through the last mean and this one passes the static limit. `work` as in `coulomb_force`.
     """
     size, sign = abs(needed), 1.0 if needed > 0.0 else -1.0
-    spans[i, 0], spans[i, 1], spans[i, 2], spans[i, 3] = 1.0, 0.0, 0.0, 0.0
+    work[0], work[1], work[2], work[3] = 1.0, 0.0, 0.0, 0.0
     if size <= static:
         return needed
     stays = min(max((static - sign * last) / (size - sign * last) - 0.5, 0.0), 1.0)
     mean = stays * 0.5 * (0.5 * (sign * last + size) + static) + (1.0 - stays) * kinetic
-    spans[i, 0], spans[i, 2], spans[i, 3] = 0.0, -sign * (size - mean) * ease, 1.0
-    spans[i, 1] = 0.5 * (1.0 - stays) * spans[i, 2]
-    spans[i, 4], spans[i, 5] = stays, lay.SLIPS
+    work[0], work[2], work[3] = 0.0, -sign * (size - mean) * ease, 1.0
+    work[1] = 0.5 * (1.0 - stays) * work[2]
+    work[4], work[5] = stays, lay.SLIPS
     return float(sign * mean)
 
 
@@ -231,32 +231,35 @@ def line_force(
 
 @inline
 def elastic_force(
-    trial: float, stiffness: float, limit: float, kinetic: float, steepness: float
-) -> tuple[float, float]:
-    """(Friction of an elastic tangential contact, 1 where it sticks) by return mapping of a trial force.
+    dt: float, slip: float, ease: float, limit: float, kinetic: float, steepness: float, point: Array, touch: Array
+) -> tuple[float, float, float]:
+    """(Friction of an elastic tangential contact, 1 where it sticks, stiffness by slip, N s/m) by return mapping.
 
-    `stiffness` is what a displacement of the step adds to the trial, N per m/s of slip. Coulomb: the trial up to the
-    limit. Tanh: spring and slip in series, F = trial - stiffness artanh(F/limit)/K.
+    `slip` is that of the step without this force, `ease` its gain by one. Coulomb: the trial force up to the limit.
+    Tanh: spring and slip in series, F = trial - stiffness artanh(F/limit)/K.
     """
+    depth, was = touch[lay.DEPTH], touch[lay.WAS_DEPTH]
+    since = 0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was)
+    spring = point[lay.TANGENTIAL] * since
+    full = 1.0 + 0.5 * spring * ease
+    trial, stiffness = (point[lay.TANGENTIAL] * touch[lay.STRETCH] - spring * slip) / full, spring / full
     if kinetic <= 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, spring
     if steepness == 0.0:
-        if abs(trial) < limit:
-            return trial, 1.0
-        return float(np.sign(trial) * kinetic), 0.0
-    slip = 0.0
-    low, high = (0.0, trial / stiffness) if trial > 0.0 else (trial / stiffness, 0.0)
+        return (trial, 1.0, spring) if abs(trial) < limit else (float(np.sign(trial) * kinetic), 0.0, spring)
+    slipped = 0.0
+    low, high = min(trial / stiffness, 0.0), max(trial / stiffness, 0.0)
     for _ in range(60):
-        t = np.tanh(steepness * slip)
-        miss = kinetic * t + stiffness * slip - trial
+        t = np.tanh(steepness * slipped)
+        miss = kinetic * t + stiffness * slipped - trial
         if miss > 0.0:
-            high = slip
+            high = slipped
         else:
-            low = slip
-        after = slip - miss / (kinetic * steepness * (1.0 - t * t) + stiffness)
+            low = slipped
+        after = slipped - miss / (kinetic * steepness * (1.0 - t * t) + stiffness)
         if not low < after < high:
             after = 0.5 * (low + high)
-        if abs(after - slip) <= 1e-14 * (abs(slip) + 1e-12):
+        if abs(after - slipped) <= 1e-14 * (abs(slipped) + 1e-12):
             break
-        slip = after
-    return float(kinetic * np.tanh(steepness * slip)), 0.0
+        slipped = after
+    return float(kinetic * np.tanh(steepness * slipped)), 0.0, spring

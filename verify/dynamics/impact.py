@@ -10,7 +10,7 @@ from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.friction import coulomb_force, tanh_force
 from verify.dynamics.integrator import sample
-from verify.dynamics.kinematics import RATE, START, VALUE, find_pieces, rotate_half, set_factors
+from verify.dynamics.kinematics import END, find_pieces, rotate_half, set_factors, shift_factors
 from verify.jit import FAST, inline, jit
 
 BISECTIONS = 100
@@ -98,18 +98,9 @@ def advance_impacts(
     columns) and `seen` (5,) are working space.
     """
     slider, foot, touch, total, n_complex = sliders[0], feet[0], contacts[0], sums[0], codes[lay.COMPLEX]
-    mass, lever, free, inverse = (
-        1.0 / foot[lay.INVERSE_FOOT_MASS],
-        points[0, lay.LEVER],
-        slider[lay.FREE],
-        slider[lay.INVERSE_MASS],
-    )
-    press, along, mu, steepness = (
-        -foot[lay.PRESS] / mass,
-        slider[lay.PULL] * inverse,
-        slider[lay.MU],
-        slider[lay.STEEPNESS],
-    )
+    mass, lever, free = 1.0 / foot[lay.INVERSE_FOOT_MASS], points[0, lay.LEVER], slider[lay.FREE]
+    inverse, mu, steepness = slider[lay.INVERSE_MASS], slider[lay.MU], slider[lay.STEEPNESS]
+    press, along = -foot[lay.PRESS] / mass, slider[lay.PULL] * inverse
     for _ in range(n_steps):
         time, done, origin = tally[lay.STEP] * dt, 0.0, drive[lay.ORIGIN]
         for _ in range(IMPACTS):
@@ -177,8 +168,8 @@ def advance_impacts(
                 else:
                     stuck = riding and touch[lay.STUCK] > 0.0
                     shift = start if stuck else 0.0
-                    force = coulomb_force(0, start, gain - shift, gain - shift, ease, mu * push,
-                                          slider[lay.MU_STATIC] * push, stuck, spans)  # fmt: skip
+                    force = coulomb_force(start, gain - shift, gain - shift, ease, mu * push,
+                                          slider[lay.MU_STATIC] * push, stuck, spans[0])  # fmt: skip
                     touch[lay.STUCK] = spans[0, 0] if riding else 0.0
                 after = v + share * inverse * force + (s * along if riding else 0.0)
                 mean, surface = 0.5 * (v + after), 0.5 * (speed + seen[ALONG])
@@ -226,12 +217,8 @@ def advance_impacts(
             if kind > 0.0:
                 row = tally[lay.EVENTS]
                 if row < events.shape[0]:
-                    events[row, 0], events[row, 1], events[row, 2], events[row, 3] = (
-                        origin + time + done,
-                        kind,
-                        0.0,
-                        slider[lay.X],
-                    )
+                    events[row, 0], events[row, 1] = origin + time + done, kind
+                    events[row, 2], events[row, 3] = 0.0, slider[lay.X]
                 tally[lay.EVENTS] += 1
         if dt - done > 1e-15 * dt:
             return lay.CHATTERS
@@ -241,10 +228,8 @@ def advance_impacts(
         if not np.isfinite(slider[lay.V] + foot[lay.HEIGHT]):
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
-            last = factors.shape[0] - 1
-            set_factors(last, time + dt, n_complex, rows, drive, factors)
-            for j in range(factors.shape[2]):
-                factors[START, VALUE, j], factors[START, RATE, j] = factors[last, VALUE, j], factors[last, RATE, j]
+            set_factors(END, time + dt, n_complex, rows, drive, factors)
+            shift_factors(factors)
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
         if not find_pieces(0.0, edges, sliders, points, indices):

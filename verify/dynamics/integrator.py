@@ -60,50 +60,51 @@ def move(
     spans: Array,
 ) -> None:  # fmt: skip
     """Sliders and feet to the end of the step; a slider with one rigid point follows its law within the step."""
-    spring = codes[lay.LAW] == lay.SPRING
+    spring, bilateral = codes[lay.LAW] == lay.SPRING, codes[lay.LAW] == lay.BILATERAL
     for i in range(0 if spring else points.shape[0]):
-        b = indices[i, lay.OF_SLIDER]
-        force, light, v = contacts[i, lay.FRICTION], dt * sliders[b, lay.INVERSE_MASS], sliders[b, lay.V]
-        gained, mean = sliders[b, lay.GAINED] - light * force, v + 0.5 * sliders[b, lay.GAINED]
-        if light > 0.0 and force != 0.0:
-            ease = light + 2.0 * contacts[i, lay.OWN]
-            bounded = abs(contacts[i, lay.SLIP]) <= 1e-13 * (abs(mean) + abs(contacts[i, lay.SURFACE]))
-            if codes[lay.TWO_WAY] > 0 and bounded:
-                pass
-            elif sliders[b, lay.STEEPNESS] > 0.0:  # Simpson's rule, with the law at half a step
-                others = contacts[i, lay.SURFACE] - contacts[i, lay.MEAN] + contacts[i, lay.OWN] * force
-                rise = contacts[i, lay.END] + 2.0 * others - contacts[i, lay.START]
-                start, a = v - contacts[i, lay.MEAN] - others + 0.5 * rise, 0.5 * (rise - gained)
-                most = sliders[b, lay.MU] * max(contacts[i, lay.NORMAL], 0.0)
-                half = tanh_change(start, a, 0.5 * ease * most, sliders[b, lay.STEEPNESS]) * light / ease
-                mean = v + (4.0 * half + light * force) / 6.0 + 0.5 * gained
-            else:
-                mean = contacts[i, lay.SURFACE] + spans[i, 1]
-        sliders[b, lay.X] += dt * (mean * sliders[b, lay.FREE] + sliders[b, lay.DRIFT])
-        if codes[lay.LAW] == lay.BILATERAL and points[i, lay.INERTIA] > 0.0:
-            contacts[i, lay.RISE_RATE] += dt * (contacts[i, lay.NORMAL] - points[i, lay.LOAD]) / points[i, lay.INERTIA]
+        slider, touch, inertia = sliders[indices[i, lay.OF_SLIDER]], contacts[i], points[i, lay.INERTIA]
+        force, light, v, own = touch[lay.FRICTION], dt * slider[lay.INVERSE_MASS], slider[lay.V], touch[lay.OWN]
+        gained, mean = slider[lay.GAINED] - light * force, v + 0.5 * slider[lay.GAINED]
+        surface, ease, steepness = touch[lay.SURFACE], light + 2.0 * own, slider[lay.STEEPNESS]
+        bounded = codes[lay.TWO_WAY] > 0 and abs(touch[lay.SLIP]) <= 1e-13 * (abs(mean) + abs(surface))
+        if light == 0.0 or force == 0.0 or bounded:
+            pass
+        elif steepness > 0.0:  # Simpson's rule, with the law at half a step
+            others = surface - touch[lay.MEAN] + own * force
+            rise = touch[lay.END] + 2.0 * others - touch[lay.START]
+            start, a = v - touch[lay.MEAN] - others + 0.5 * rise, 0.5 * (rise - gained)
+            most = slider[lay.MU] * max(touch[lay.NORMAL], 0.0)
+            half = tanh_change(start, a, 0.5 * ease * most, steepness) * light / ease
+            mean = v + (4.0 * half + light * force) / 6.0 + 0.5 * gained
+        else:
+            mean = surface + spans[i, 1]
+        slider[lay.X] += dt * (mean * slider[lay.FREE] + slider[lay.DRIFT])
+        if bilateral and inertia > 0.0:
+            touch[lay.RISE_RATE] += dt * (touch[lay.NORMAL] - points[i, lay.LOAD]) / inertia
     for b in range(sliders.shape[0]):
-        sliders[b, lay.V] += sliders[b, lay.GAINED]
-        if spring:
-            sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
+        slider = sliders[b]
+        slider[lay.V] += slider[lay.GAINED]
+        slider[lay.X] += 0.5 * dt * slider[lay.V] * slider[lay.FREE] if spring else 0.0
     for k in range(feet.shape[0]):
-        feet[k, lay.CLIMB] += feet[k, lay.LIFTED]
-        feet[k, lay.TURN] += feet[k, lay.TURNED]
-        feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
-        feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
+        foot = feet[k]
+        foot[lay.CLIMB] += foot[lay.LIFTED]
+        foot[lay.TURN] += foot[lay.TURNED]
+        foot[lay.HEIGHT] += 0.5 * dt * foot[lay.CLIMB]
+        foot[lay.PITCH] += 0.5 * dt * foot[lay.TURN]
     for i in range(points.shape[0]):
-        if points[i, lay.TANGENTIAL] > 0.0:  # stretched to the end of the step, as far as friction lets it
-            b, depth, was = indices[i, lay.OF_SLIDER], contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH]
-            push = contacts[i, lay.NORMAL] + 0.5 * dt * points[i, lay.STIFF] * contacts[i, lay.CLOSING]
+        spring_rate, touch, slider = points[i, lay.TANGENTIAL], contacts[i], sliders[indices[i, lay.OF_SLIDER]]
+        if spring_rate > 0.0:  # stretched to the end of the step, as far as friction lets it
+            depth, was, normal = touch[lay.DEPTH], touch[lay.WAS_DEPTH], touch[lay.NORMAL]
+            steepness = slider[lay.STEEPNESS]
             since = dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was) + 0.5 * dt
-            top, slip = 0.0, -contacts[i, lay.SLIP]
-            if contacts[i, lay.NORMAL] > 0.0:
-                mu = sliders[b, lay.MU_STATIC if contacts[i, lay.STUCK] > 0.0 else lay.MU]
-                top = mu * max(push, 0.0) / points[i, lay.TANGENTIAL]
-                share = contacts[i, lay.FRICTION] / (sliders[b, lay.MU] * contacts[i, lay.NORMAL] + 1e-300)
-                if sliders[b, lay.STEEPNESS] > 0.0 and abs(share) < 1.0:
-                    slip -= np.arctanh(share) / sliders[b, lay.STEEPNESS]
-            contacts[i, lay.STRETCH] = min(max(contacts[i, lay.STRETCH] + since * slip, -top), top)
+            top, slip = 0.0, -touch[lay.SLIP]
+            if normal > 0.0:
+                push = normal + 0.5 * dt * points[i, lay.STIFF] * touch[lay.CLOSING]
+                top = slider[lay.MU_STATIC if touch[lay.STUCK] > 0.0 else lay.MU] * max(push, 0.0) / spring_rate
+                share = touch[lay.FRICTION] / (slider[lay.MU] * normal + 1e-300)
+                if steepness > 0.0 and abs(share) < 1.0:
+                    slip -= np.arctanh(share) / steepness
+            touch[lay.STRETCH] = min(max(touch[lay.STRETCH] + since * slip, -top), top)
 
 
 @jit(no_cpython_wrapper=True)
@@ -112,68 +113,66 @@ def add_sums(
     feet_of: Indices, shapes: Array, response: Array, spans: Array, sums: Array, balance: Array,
 ) -> None:  # fmt: skip
     """Works, losses and integrals of the step; sliders and feet are still at its start."""
-    spring = codes[lay.LAW] == lay.SPRING
+    spring, two_way, presses = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0, codes[lay.PRESSES] > 0
     for b in range(sliders.shape[0]):
-        total, touching, sticking, surface, n, normal = 0.0, 0, 0.0, 0.0, 0, 0.0
-        mean = sliders[b, lay.V] + 0.5 * sliders[b, lay.GAINED]
+        slider, add, total, normal, surface, touching, sticking, n = sliders[b], sums[b], 0.0, 0.0, 0.0, 0, 0, 0
+        mean, prescribed = slider[lay.V] + 0.5 * slider[lay.GAINED], slider[lay.INVERSE_MASS] == 0.0
         for i in range(points.shape[0]):
             if indices[i, lay.OF_SLIDER] != b:
                 continue
+            point, touch, ramp = points[i], contacts[i], 0.0
+            force, push, face, lift = touch[lay.FRICTION], touch[lay.NORMAL], point[lay.FACE], touch[lay.LIFT]
             n += 1
-            force, push = contacts[i, lay.FRICTION], contacts[i, lay.NORMAL]
-            if not spring:
-                fall = (contacts[i, lay.RISE_RATE] - contacts[i, lay.CLOSING]) / dt
-                if codes[lay.LAW] == lay.BILATERAL and points[i, lay.INERTIA] > 0.0:
-                    fall = (points[i, lay.LOAD] - push) / points[i, lay.INERTIA]
-                    climb = contacts[i, lay.RISE_RATE] - 0.5 * dt * fall
-                    sums[b, lay.PRESSED] -= dt * points[i, lay.LOAD] * climb
-                    sums[b, lay.UPHILL] += dt * push * contacts[i, lay.SLOPE] * mean * sliders[b, lay.FREE]
-                sums[b, lay.FALL] = max(sums[b, lay.FALL], fall)
-            elif contacts[i, lay.DEPTH] <= 0.0:
-                continue
-            lift, face = contacts[i, lay.LIFT], points[i, lay.FACE]
-            if codes[lay.PRESSES] > 0:
+            if spring:
+                if touch[lay.DEPTH] <= 0.0:
+                    continue
+                ramp = touch[lay.RAMP]
+            else:
+                fall, inertia = (touch[lay.RISE_RATE] - touch[lay.CLOSING]) / dt, point[lay.INERTIA]
+                if codes[lay.LAW] == lay.BILATERAL and inertia > 0.0:
+                    fall = (point[lay.LOAD] - push) / inertia
+                    add[lay.PRESSED] -= dt * point[lay.LOAD] * (touch[lay.RISE_RATE] - 0.5 * dt * fall)
+                    add[lay.UPHILL] += dt * push * touch[lay.SLOPE] * mean * slider[lay.FREE]
+                add[lay.FALL] = max(add[lay.FALL], fall)
+            if presses:
                 answer = product(i, TRANSVERSE, shapes, response)
                 lift += face * answer
                 if spring:
-                    contacts[i, lay.CLOSING] += answer
-                    contacts[i, lay.LIFT] = lift
-            touching += 1 if push > 0.0 or not spring else 0
-            total, normal, surface = (
-                total + force,
-                normal + push,
-                surface + (contacts[i, lay.SURFACE] if push > 0.0 or not spring else 0.0),
-            )
-            sticking += 1.0 if contacts[i, lay.STUCK] > 0.0 else 0.0
-            loss = spans[i, 1] if spring and codes[lay.TWO_WAY] == 0 else -force * contacts[i, lay.SLIP]
-            sums[b, lay.DISSIPATED] += dt * loss
-            sums[b, lay.ALONG] += dt * (loss + force * mean)
-            if points[i, lay.TANGENTIAL] == 0.0:
-                balance[lay.GAINED_ENERGY] += max(-dt * loss, 0.0)
-            if codes[lay.TWO_WAY] > 0:
-                sums[b, lay.ON_BEAM] -= dt * points[i, lay.WEIGHT] * force * contacts[i, lay.SURFACE]
-            if codes[lay.PRESSES] > 0 or spring:
-                across = dt * push * face * (lift - (contacts[i, lay.RAMP] if spring else 0.0))
-                sums[b, lay.ACROSS] += across
-                sums[b, lay.LIFTED_BEAM] -= points[i, lay.WEIGHT] * across
+                    touch[lay.CLOSING] += answer
+                    touch[lay.LIFT] = lift
+            total, normal = total + force, normal + push
+            if push > 0.0 or not spring:
+                surface, touching = surface + touch[lay.SURFACE], touching + 1
+            sticking += 1 if touch[lay.STUCK] > 0.0 else 0
+            loss = dt * (spans[i, 1] if spring and not two_way else -force * touch[lay.SLIP])
+            add[lay.DISSIPATED] += loss
+            add[lay.ALONG] += loss + dt * force * mean
+            if loss < 0.0 and point[lay.TANGENTIAL] == 0.0:
+                balance[lay.GAINED_ENERGY] -= loss
+            if two_way:
+                add[lay.ON_BEAM] -= dt * point[lay.WEIGHT] * force * touch[lay.SURFACE]
+            if presses or spring:
+                across = dt * push * face * (lift - ramp)
+                add[lay.ACROSS] += across
+                add[lay.LIFTED_BEAM] -= point[lay.WEIGHT] * across
             if spring:
-                k, uphill = indices[i, lay.OF_FOOT], dt * push * face * contacts[i, lay.RAMP]
-                sums[b, lay.UPHILL] += uphill
-                closing = 0.5 * face * (feet[k, lay.LIFTED] + points[i, lay.ARM] * feet[k, lay.TURNED])
-                loss = push - points[i, lay.STIFF] * contacts[i, lay.DEPTH]
-                sums[b, lay.DAMPED] += dt * loss * (contacts[i, lay.CLOSING] - closing)
-        if sliders[b, lay.INVERSE_MASS] > 0.0:
-            sums[b, lay.UPHILL] += dt * mean * sliders[b, lay.TILT] / sliders[b, lay.INVERSE_MASS]
-        sums[b, lay.PULLED] += dt * mean * (sliders[b, lay.PULL] if sliders[b, lay.INVERSE_MASS] > 0.0 else -total)
-        sums[b, lay.FRICTION_TIME] += dt * total
-        sums[b, lay.NORMAL_TIME] += dt * normal
-        sums[b, lay.TOUCH_TIME] += dt * touching / n
-        sums[b, lay.STICK_TIME] += dt * sticking / n
-        sums[b, lay.SURFACE_TIME] += dt * surface / max(touching, 1)
-        sums[b, lay.HARDEST] = max(sums[b, lay.HARDEST], abs(total))
+                foot = feet[indices[i, lay.OF_FOOT]]
+                closing = touch[lay.CLOSING] - 0.5 * face * (foot[lay.LIFTED] + point[lay.ARM] * foot[lay.TURNED])
+                add[lay.UPHILL] += dt * push * face * ramp
+                add[lay.DAMPED] += dt * (push - point[lay.STIFF] * touch[lay.DEPTH]) * closing
+        if not prescribed:
+            add[lay.UPHILL] += dt * mean * slider[lay.TILT] / slider[lay.INVERSE_MASS]
+        add[lay.PULLED] += dt * mean * (-total if prescribed else slider[lay.PULL])
+        add[lay.FRICTION_TIME] += dt * total
+        add[lay.NORMAL_TIME] += dt * normal
+        add[lay.TOUCH_TIME] += dt * touching / n
+        add[lay.STICK_TIME] += dt * sticking / n
+        add[lay.SURFACE_TIME] += dt * surface / max(touching, 1)
+        add[lay.HARDEST] = max(add[lay.HARDEST], abs(total))
     for k in range(feet.shape[0]):
-        force = feet[k, lay.PRESS] - feet[k, lay.SPRING_RATE] * feet[k, lay.HEIGHT]
-        sums[feet_of[k], lay.PRESSED] += dt * force * (feet[k, lay.CLIMB] + 0.5 * feet[k, lay.LIFTED])
+        foot = feet[k]
+        force = foot[lay.PRESS] - foot[lay.SPRING_RATE] * foot[lay.HEIGHT]
+        sums[feet_of[k], lay.PRESSED] += dt * force * (foot[lay.CLIMB] + 0.5 * foot[lay.LIFTED])
 
 
 @jit(no_cpython_wrapper=True)
@@ -182,24 +181,25 @@ def write_events(
     spans: Array, events: Array, tally: Indices,
 ) -> None:  # fmt: skip
     """Events of the step that begins at `time`; all are counted, as many recorded as fit."""
+    spring = codes[lay.LAW] == lay.SPRING
     for i in range(points.shape[0]):
-        x, depth, was = sliders[indices[i, lay.OF_SLIDER], lay.X], contacts[i, lay.DEPTH], contacts[i, lay.WAS_DEPTH]
-        n = int(spans[i, 3])
-        kind, share = 0.0, 0.0
-        if codes[lay.LAW] == lay.SPRING:
-            n = 1
+        touch, n, kind, share = contacts[i], 1 if spring else int(spans[i, 3]), 0.0, 0.0
+        if spring:
+            depth, was, stuck = touch[lay.DEPTH], touch[lay.WAS_DEPTH], touch[lay.STUCK] > 0.0
             if (depth > 0.0) != (was > 0.0):
                 kind, share = lay.LANDS if depth > 0.0 else lay.LEAVES, 0.5 - depth / (depth - was)
-            elif depth > 0.0 and (contacts[i, lay.STUCK] > 0.0) != (contacts[i, lay.WAS_STUCK] > 0.0):
-                kind = lay.STICKS if contacts[i, lay.STUCK] > 0.0 else lay.SLIPS
+            elif depth > 0.0 and stuck != (touch[lay.WAS_STUCK] > 0.0):
+                kind = lay.STICKS if stuck else lay.SLIPS
         for e in range(n):
-            if codes[lay.LAW] != lay.SPRING:
+            if not spring:
                 share, kind = spans[i, 4 + 2 * e], spans[i, 5 + 2 * e]
             if kind in (0.0, lay.TURNS):
                 continue
             row = tally[lay.EVENTS]
             if row < events.shape[0]:
-                events[row, 0], events[row, 1], events[row, 2], events[row, 3] = time + share * dt, kind, i, x
+                event = events[row]
+                event[0], event[1], event[2] = time + share * dt, kind, i
+                event[3] = sliders[indices[i, lay.OF_SLIDER], lay.X]
             tally[lay.EVENTS] += 1
 
 
@@ -210,36 +210,32 @@ def sample(
     before: Array, tally: Indices,
 ) -> None:  # fmt: skip
     """Record the state at the end of a step, and means over the interval of that many seconds."""
-    row = tally[lay.SAMPLES]
+    row, spring = tally[lay.SAMPLES], codes[lay.LAW] == lay.SPRING
     for b in range(sliders.shape[0]):
-        samples[row, b, lay.KEPT_X], samples[row, b, lay.KEPT_V] = sliders[b, lay.X], sliders[b, lay.V]
-        samples[row, b, lay.KEPT_FRICTION] = (sums[b, lay.FRICTION_TIME] - before[b, lay.FRICTION_TIME]) / span
-        samples[row, b, lay.KEPT_NORMAL] = (sums[b, lay.NORMAL_TIME] - before[b, lay.NORMAL_TIME]) / span
-        samples[row, b, lay.KEPT_TOUCH] = (sums[b, lay.TOUCH_TIME] - before[b, lay.TOUCH_TIME]) / span
-        samples[row, b, lay.KEPT_STUCK] = (sums[b, lay.STICK_TIME] - before[b, lay.STICK_TIME]) / span
-        samples[row, b, lay.KEPT_LOSS] = sums[b, lay.DISSIPATED] - before[b, lay.DISSIPATED]
-        samples[row, b, lay.KEPT_ALONG] = sums[b, lay.ALONG] - before[b, lay.ALONG]
-        samples[row, b, lay.KEPT_SURFACE] = np.nan
-        for s in range(sums.shape[1]):
-            before[b, s] = sums[b, s]
-    for b in range(sliders.shape[0]):
-        speed, n = 0.0, 0
+        slider, kept, done, last, speed, n = sliders[b], samples[row, b], sums[b], before[b], 0.0, 0
+        v, mu, steepness = slider[lay.V], slider[lay.MU], slider[lay.STEEPNESS]
+        kept[lay.KEPT_X], kept[lay.KEPT_V] = slider[lay.X], v
+        for s in range(4):  # friction, normal force and the shares of points, in one order in both
+            kept[lay.KEPT_FRICTION + s] = (done[lay.FRICTION_TIME + s] - last[lay.FRICTION_TIME + s]) / span
+        kept[lay.KEPT_LOSS] = done[lay.DISSIPATED] - last[lay.DISSIPATED]
+        kept[lay.KEPT_ALONG] = done[lay.ALONG] - last[lay.ALONG]
+        for s in range(done.size):
+            last[s] = done[s]
         for i in range(points.shape[0]):
+            touch = contacts[i]
             if indices[i, lay.OF_SLIDER] != b:
                 continue
-            pressures[row, i] = contacts[i, lay.NORMAL]
-            if codes[lay.LAW] != lay.SPRING:
-                slip, force = sliders[b, lay.V] - contacts[i, lay.START], contacts[i, lay.FRICTION]
-                most, steepness = sliders[b, lay.MU] * max(contacts[i, lay.NORMAL], 0.0), sliders[b, lay.STEEPNESS]
-                if contacts[i, lay.STUCK] == 0.0:
-                    force = -most * (np.tanh(steepness * slip) if steepness > 0.0 else np.sign(slip))
-                samples[row, b, lay.KEPT_FRICTION] = force
-                samples[row, b, lay.KEPT_NORMAL] = contacts[i, lay.NORMAL]
-                speed, n = speed + contacts[i, lay.START], n + 1
-            elif contacts[i, lay.NORMAL] > 0.0:
-                speed, n = speed + contacts[i, lay.SURFACE], n + 1
-        if n > 0:
-            samples[row, b, lay.KEPT_SURFACE] = speed / n
+            normal, surface, force = touch[lay.NORMAL], touch[lay.SURFACE], touch[lay.FRICTION]
+            pressures[row, i] = normal
+            if not spring:
+                surface = touch[lay.START]
+                if touch[lay.STUCK] == 0.0:
+                    law = np.tanh(steepness * (v - surface)) if steepness > 0.0 else np.sign(v - surface)
+                    force = -mu * max(normal, 0.0) * law
+                kept[lay.KEPT_FRICTION], kept[lay.KEPT_NORMAL] = force, normal
+            if normal > 0.0 or not spring:
+                speed, n = speed + surface, n + 1
+        kept[lay.KEPT_SURFACE] = speed / n if n > 0 else np.nan
     for k in range(feet.shape[0]):
         heights[row, k, 0], heights[row, k, 1] = feet[k, lay.HEIGHT], feet[k, lay.PITCH]
     for p in range(places.shape[0]):

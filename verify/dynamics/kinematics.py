@@ -103,7 +103,7 @@ def set_polynomials(when: int, piece: int, table: Array, factors: Array, local: 
 
 
 @inline
-def touch(
+def read_surface(
     piece: int, xi: float, length: float, lever: float, local: Array
 ) -> tuple[float, float, float, float, float, float, float]:
     """Material under a point at xi: (its own xi, w, w', dw/dt, dw'/dt), by metres and seconds; w'' and dw'/dt at xi.
@@ -129,87 +129,87 @@ def touch(
 
 @jit(no_cpython_wrapper=True)
 def look(
-    when: int,
-    mark: int,
-    dt: float,
-    gravity: float,
-    codes: Indices,
-    table: Array,
-    edges: Array,
-    factors: Array,
-    local: Array,
-    stamp: Indices,
-    sliders: Array,
-    feet: Array,
-    points: Array,
-    contacts: Array,
-    indices: Indices,
-) -> None:
+    when: int, mark: int, dt: float, gravity: float, codes: Indices, table: Array, edges: Array, factors: Array,
+    local: Array, stamp: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
+) -> None:  # fmt: skip
     """Set the surface under every point at an instant of the step; `stamp` (pieces,) marks polynomials that are ready.
 
     Sliders are at their place of MIDDLE for feet, at that of START otherwise, with the speed gained in the last step
     for the next.
     """
-    spring, ahead = codes[lay.LAW] == lay.SPRING, 0.0 if when == START else dt if when == END else 0.5 * dt
+    spring, follows, share = codes[lay.LAW] == lay.SPRING, codes[lay.FOLLOWING] > 0, 1.0 / 6.0  # Simpson's rule
+    ahead = 0.0
+    if when == MIDDLE:
+        ahead, share = 0.5 * dt, 4.0 / 6.0
+    elif when == END:
+        ahead = dt
     for i in range(points.shape[0]):
-        b, piece = indices[i, lay.OF_SLIDER], indices[i, lay.PIECE]
+        point, touch, slider, piece = points[i], contacts[i], sliders[indices[i, lay.OF_SLIDER]], indices[i, lay.PIECE]
         if stamp[piece] != mark:
             set_polynomials(when, piece, table, factors, local)
             stamp[piece] = mark
-        lever, length, v = points[i, lay.LEVER], edges[piece + 1] - edges[piece], sliders[b, lay.V]
-        x = sliders[b, lay.X] + points[i, lay.OFFSET]
+        lever, length, v, free = point[lay.LEVER], edges[piece + 1] - edges[piece], slider[lay.V], slider[lay.FREE]
+        x = slider[lay.X] + point[lay.OFFSET]
         if not spring:
-            x += ahead * sliders[b, lay.FREE] * (v + 0.5 * sliders[b, lay.GAINED] * ahead / dt)
-            v += sliders[b, lay.GAINED] * ahead / dt
-            if codes[lay.FOLLOWING] > 0:
-                x += ahead * contacts[i, lay.DRIFT_END]
+            gained = slider[lay.GAINED] * ahead / dt
+            x += ahead * free * (v + 0.5 * gained)
+            v += gained
+            if follows:
+                x += ahead * touch[lay.DRIFT_END]
         above = (x - edges[piece]) / length
-        at, level, slope, rise, turn, bend, over = touch(piece, above, length, lever, local)
+        at, level, slope, rise, turn, bend, over = read_surface(piece, above, length, lever, local)
         along = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
-        lift, share = rise + slope * lever * over, 4.0 / 6.0 if when == MIDDLE else 1.0 / 6.0  # Simpson's rule
-        if codes[lay.FOLLOWING] > 0:
-            tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise * sliders[b, lay.FREE]
-            tilt = tilt if sliders[b, lay.INVERSE_MASS] > 0.0 else 0.0  # what prescribes a speed takes it
+        lift, on = rise + slope * lever * over, free * v
+        if follows:
+            tilt, drift = rise * (turn + bend * v) - gravity * slope, -slope * rise * free
+            tilt = tilt if slider[lay.INVERSE_MASS] > 0.0 else 0.0  # what prescribes a speed takes it
             if when == START:
                 if mark > 0:  # what the forces of the last step have changed by its end, half of it in its middle
-                    sliders[b, lay.V] += 0.5 * dt * (tilt - contacts[i, lay.TILT_END])
-                    sliders[b, lay.X] += 0.5 * dt * (drift - contacts[i, lay.DRIFT_END])
-                sliders[b, lay.TILT], sliders[b, lay.DRIFT] = 0.0, 0.0
-            sliders[b, lay.TILT] += share * tilt
-            sliders[b, lay.DRIFT] += share * drift
-            contacts[i, lay.TILT_END], contacts[i, lay.DRIFT_END] = tilt, drift
-        on = sliders[b, lay.FREE] * (v - slope * rise if codes[lay.FOLLOWING] > 0 else v)
+                    slider[lay.V] += 0.5 * dt * (tilt - touch[lay.TILT_END])
+                    slider[lay.X] += 0.5 * dt * (drift - touch[lay.DRIFT_END])
+                slider[lay.TILT], slider[lay.DRIFT] = 0.0, 0.0
+            slider[lay.TILT] += share * tilt
+            slider[lay.DRIFT] += share * drift
+            touch[lay.TILT_END], touch[lay.DRIFT_END] = tilt, drift
+            on += drift
         climb = rise + slope * (on + lever * (over + bend * on))
         if spring:
-            image, face, k = points[i, lay.IMAGE], points[i, lay.FACE], indices[i, lay.OF_FOOT]
-            depth = image * level - feet[k, lay.HEIGHT] - points[i, lay.ARM] * feet[k, lay.PITCH]
-            contacts[i, lay.WAS_DEPTH] = contacts[i, lay.DEPTH]
+            image, face, foot = point[lay.IMAGE], point[lay.FACE], feet[indices[i, lay.OF_FOOT]]
+            depth = image * level - foot[lay.HEIGHT] - point[lay.ARM] * foot[lay.PITCH]
+            depth = point[lay.INSET] + face * depth
             if when == START:
-                contacts[i, lay.WAS_DEPTH] = points[i, lay.INSET] + face * depth
+                touch[lay.WAS_DEPTH] = depth
                 continue
-            v *= sliders[b, lay.FREE]
-            ramp = image * slope * (v + lever * bend * v)
+            ramp = image * slope * free * (v + lever * bend * v)
             lift = image * lift + ramp
-            contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope
-            contacts[i, lay.DEPTH], contacts[i, lay.MEAN] = points[i, lay.INSET] + face * depth, along
-            contacts[i, lay.LIFT], contacts[i, lay.RAMP] = lift, ramp
-            contacts[i, lay.RISE] = along - contacts[i, lay.BEFORE]
-            contacts[i, lay.CLOSING] = face * (lift - feet[k, lay.CLIMB] - points[i, lay.ARM] * feet[k, lay.TURN])
+            touch[lay.WAS_DEPTH], touch[lay.DEPTH], touch[lay.RISE] = touch[lay.DEPTH], depth, along - touch[lay.BEFORE]
+            touch[lay.MEAN], touch[lay.LIFT], touch[lay.RAMP] = along, lift, ramp
+            touch[lay.CLOSING] = face * (lift - foot[lay.CLIMB] - point[lay.ARM] * foot[lay.TURN])
         elif when == START:
-            contacts[i, lay.START], contacts[i, lay.MEAN], contacts[i, lay.LIFT] = along, share * along, share * lift
+            touch[lay.START], touch[lay.MEAN], touch[lay.LIFT] = along, share * along, share * lift
             if codes[lay.LAW] == lay.GIVEN:
-                contacts[i, lay.RISE_RATE] = climb
+                touch[lay.RISE_RATE] = climb
+        else:
+            touch[lay.MEAN] += share * along
+            touch[lay.LIFT] += share * lift
+        if when == MIDDLE:
+            touch[lay.AT], touch[lay.ABOVE], touch[lay.SLOPE] = at, above, slope
         elif when == END:
-            contacts[i, lay.MEAN] += share * along
-            contacts[i, lay.LIFT] += share * lift
-            contacts[i, lay.END], contacts[i, lay.SPEED_END] = along, sliders[b, lay.FREE] * v
-            contacts[i, lay.AT_END], contacts[i, lay.ABOVE_END] = at, above
-            ramp = sliders[b, lay.FREE] * slope * (1.0 + lever * bend)
-            contacts[i, lay.RAMP], contacts[i, lay.CLOSING] = ramp, climb
-        elif when == MIDDLE:
-            contacts[i, lay.AT], contacts[i, lay.ABOVE], contacts[i, lay.SLOPE] = at, above, slope
-            contacts[i, lay.MEAN] += share * along
-            contacts[i, lay.LIFT] += share * lift
+            touch[lay.END], touch[lay.SPEED_END], touch[lay.CLOSING] = along, free * v, climb
+            touch[lay.AT_END], touch[lay.ABOVE_END] = at, above
+            touch[lay.RAMP] = free * slope * (1.0 + lever * bend)
+
+
+@inline(fastmath=FAST)
+def shape_of(piece: int, j: int, at: float, above: float, table: Array) -> tuple[float, float, float]:
+    """A column's value and derivative by xi at the material under a point, and the derivative at the point."""
+    value, first, here, turn = 0.0, 0.0, 0.0, 0.0
+    for d in range(table.shape[1] - 1, -1, -1):
+        first = first * at + value
+        value = value * at + table[piece, d, j]
+        turn = turn * above + here
+        here = here * above + table[piece, d, j]
+    return value, first, turn
 
 
 @inline(fastmath=FAST)
@@ -231,12 +231,7 @@ def set_shapes(
         lever, weight = points[i, lay.LEVER] / (edges[piece + 1] - edges[piece]), points[i, lay.WEIGHT] / dt
         stretch, lean = np.sqrt(1.0 + slope * slope), slope * lever
         for j in range(n + n_complex):
-            value, first, here, turn = 0.0, 0.0, 0.0, 0.0
-            for d in range(table.shape[1] - 1, -1, -1):
-                first = first * at + value
-                value = value * at + table[piece, d, j]
-                turn = turn * above + here
-                here = here * above + table[piece, d, j]
+            value, first, turn = shape_of(piece, j, at, above, table)
             shapes[0, i, j] = (slope * value - lever * first) / stretch
             shapes[1, i, j] = side * (value + lean * turn)
         for s in range(2):

@@ -64,11 +64,11 @@ on the slider, of the pull and what prescribes a speed, of what presses; frictio
 work on the beam of friction, of normal forces. Integrals over time: friction (on the slider, N s), normal force, share
 of points in contact and sticking, displacement of the surface under the points in contact (mean of points). The largest
 friction, N; the largest downward acceleration of the surface, m/s^2; energy that the springs have gained, J."""
-BALANCE = 7
-DRIVEN, LOST, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL, BLOCKS = range(BALANCE)
+BALANCE = 6
+DRIVEN, LOST, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL = range(BALANCE)
 """Balance (BALANCE,): work of the drive and loss in the modes, J (with ACCOUNTS); energy that friction created, the sum
 of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution did not converge; largest
-residual of a step, N; steps solved as a block."""
+residual of a step, N."""
 
 KEPT = 9
 KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_NORMAL, KEPT_TOUCH, KEPT_STUCK, KEPT_LOSS, KEPT_ALONG, KEPT_SURFACE = range(KEPT)
