@@ -104,7 +104,7 @@ def test_index_links_to_reports(full_run, small_run, tmp_path):
     write_index(lines, tmp_path / "index.html", "verify run", 1.5)
     page = Parsed((tmp_path / "index.html").read_text("utf-8"))
     assert "small.html" in page.addresses
-    assert "2 of 3 scenes failed" in page.text
+    assert "2 of 3 scenes failed: 1 cannot run, 1 not trusted, 1 trusted" in page.text
     assert "no beam" in page.text
     assert [row[1] for row in index_result(lines).tables[0].rows] == ["lost", "bad", "good"]
     assert json.dumps(lines)

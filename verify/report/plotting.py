@@ -123,19 +123,31 @@ def distinguish(ax: "Axes", size: tuple[float, float]) -> None:
 
 
 def figure_svg(figure: "Figure") -> str:
-    """The chart as an SVG element without scripts.
+    """The chart as an SVG element without scripts; see `figure_files`."""
+    return figure_files(figure, 0.0)[0]
 
-    Colours of text and axes follow the page: they are CSS variables. Ids are prefixed with the figure's id, so
-    that several stand on one page. Its role is img, its accessible name the title and caption.
+
+def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
+    """The chart, drawn once, as an SVG element without scripts and as a PNG in black on white (empty for dpi = 0).
+
+    Colours of text and axes in the SVG follow the page: they are CSS variables. Ids are prefixed with the figure's id,
+    so that several stand on one page. Its role is img, its accessible name the title and caption.
     """
     from html import escape
 
     from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from PIL import Image
 
-    out = io.StringIO()
+    out, raw, small = io.StringIO(), io.BytesIO(), io.BytesIO()
     with style(salt=figure.id):  # not by savefig, which draws twice: the layout engine runs in either draw
-        vector: Any = FigureCanvasSVG(drawn(figure))
+        chart = drawn(figure)
+        vector: Any = FigureCanvasSVG(chart)
         vector.print_svg(out, metadata=NO_METADATA)
+        if dpi:
+            chart.set_layout_engine("none")
+            chart.savefig(raw, format="png", dpi=dpi, facecolor="white")
+            palette = Image.open(raw).convert("RGB").quantize(128, dither=Image.Dither.NONE)  # a third of the size
+            palette.save(small, "png", optimize=True, dpi=(dpi, dpi))
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, count=1, flags=re.DOTALL)
@@ -145,20 +157,8 @@ def figure_svg(figure: "Figure") -> str:
     for colour, variable in VARIABLES.items():
         svg = svg.replace(colour, variable)
     name = escape(f"{figure.title}. {figure.caption}", quote=True)
-    return svg.replace("<svg ", f'<svg role="img" aria-label="{name}" stroke-linejoin="round" ', 1)
-
-
-def figure_png(figure: "Figure", dpi: float = 160.0) -> bytes:
-    """The chart in black on white, with a palette of 128 colours."""
-    from PIL import Image
-
-    out, small = io.BytesIO(), io.BytesIO()
-    with style():
-        drawn(figure).savefig(out, format="png", dpi=dpi, facecolor="white")
-    Image.open(out).convert("RGB").quantize(128, dither=Image.Dither.NONE).save(
-        small, "png", optimize=True, dpi=(dpi, dpi)
-    )
-    return small.getvalue()
+    svg = svg.replace("<svg ", f'<svg role="img" aria-label="{name}" stroke-linejoin="round" ', 1)
+    return svg, small.getvalue()
 
 
 def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:
