@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verify.report.result import Column, Result, Table
-from verify.report.summary import worst_gate
 
 if TYPE_CHECKING:
     from verify.report.archive import Saved
@@ -18,7 +17,7 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
     """The index's line of one run, as plain data."""
     from verify.report.page import level_of
 
-    worst, (level, headline, _) = worst_gate(run), level_of(run)
+    level, headline, _ = level_of(run)
     return {
         "scene": name,
         "title": run.scene.title or run.scene.name,
@@ -26,8 +25,6 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
         "level": level,
         "verdict": headline,
         "failed": [{"gate": one.gate.id, "reason": one.reason} for one in run.failed],
-        "worst": None if worst is None else worst.gate.id,
-        "fraction": None if worst is None else worst.fraction,
         "seconds": run.seconds,
         "page": str(saved.page) if saved else None,
         "folder": str(saved.folder) if saved and saved.folder else None,

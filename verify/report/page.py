@@ -3,7 +3,6 @@
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +20,6 @@ from verify.report.summary import (
 )
 
 if TYPE_CHECKING:
-    from jinja2 import Template
-
     from verify.scene.run import RunResult
 
 LONG = 30
@@ -79,8 +76,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
     """The report of a run as HTML: verdict, margins and caveats, then figures, no sentence twice."""
     from verify.report.beam_drawing import beam_figure
 
-    scene, beam = run.scene, beam_figure(run.scene)
-    level, headline, margins = level_of(run)
+    scene, (level, headline, margins) = run.scene, level_of(run)
     problems = [(study_title(run, name), why) for name, why in void_results(run).items()]
     problems += [(one.gate.id, one.reason) for one in run.failed]
     caveats = dict.fromkeys(run.warnings, ("", ""))
@@ -94,11 +90,8 @@ def run_page(run: "RunResult", command: str = "") -> str:
     rows = [(one.name, one.size, one.fine, one.limit, one.condition, one.remedy) for one in margins]
     reasons = Table("Margins", [*columns, Column("only if"), Column("remedy")], rows)
     worst, gates = worst_gate(run), gates_table(run)
-    tail = (
-        ""
-        if worst is None
-        else f"{worst.gate.id} uses {100 * (worst.fraction or 0.0):.3g} % of its tolerance, the most"
-    )
+    share = 100.0 * (worst.fraction or 0.0) if worst else 0.0
+    most = f"{worst.gate.id} uses {share:.3g} % of its tolerance, the most" if worst else ""
     whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
     rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
     sections = [
@@ -106,7 +99,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         Section("caveats", "Caveats", caveats=listed, first=True),
         Section("speeds", SPEEDS, tables=speeds, first=True),
         *(_study_section(run, name) for name in run.results),
-        Section("gates", "Gates", tail, tables=[replace(gates, rows=rest)] * bool(run.gates)),
+        Section("gates", "Gates", most, tables=[replace(gates, rows=rest)] * bool(run.gates)),
         Section("skipped", "Not run", tables=[skipped_table(run)] * bool(run.skipped), folded=True),
         Section("inputs", "Inputs", code=to_json(scene), folded=True),
     ]
@@ -118,7 +111,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         verdict=headline,
         seconds=run.seconds,
         problems=[f"{what}: {why}" for what, why in problems if why not in headline],
-        drawing=_figure(beam, scene.name),
+        drawing=beam_figure(scene),
         sections=[one for one in sections if one.id in run.results or one.tables or one.caveats or one.code],
         command=command,
     )
@@ -136,27 +129,13 @@ def _study_section(run: "RunResult", name: str) -> Section:
 
 def render(name: str, sections: Sequence[Section], **values: Any) -> str:
     """A page of sections below a verdict; `values` are the template's other variables."""
-    shown = [
-        {
-            "id": section.id,
-            "section": section,
-            "figures": [_figure(figure, name) for figure in section.figures],
-            "movies": [_movie(movie, name) for movie in section.movies],
-            "tables": [_table(table, section.links) for table in section.tables],
-        }
-        for section in sections
-    ]
-    css = Path(__file__).with_name("page.css").read_text("utf-8")
-    return _template().render(name=name, sections=shown, environment=environment(), css=css, **values)
-
-
-@lru_cache
-def _template() -> "Template":
     from jinja2 import Environment, FileSystemLoader
 
     loader = FileSystemLoader(Path(__file__).parent)
     made = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    return made.get_template("page.html.j2")
+    made.globals.update(show_figure=_figure, show_movie=_movie, cells=_table, environment=environment())
+    css = Path(__file__).with_name("page.css").read_text("utf-8")
+    return made.get_template("page.html.j2").render(name=name, sections=sections, css=css, **values)
 
 
 def data_uri(kind: str, content: str | bytes) -> str:
@@ -168,12 +147,13 @@ def data_uri(kind: str, content: str | bytes) -> str:
 def _figure(figure: Figure, page: str) -> dict[str, Any]:
     svg, png = figure_files(figure, 110.0)
     links = {"SVG": data_uri("image/svg+xml", svg), "PNG": data_uri("image/png", png)}
-    return {"figure": figure, "svg": svg, "file": f"{page}-{figure.id}", "links": links}
+    return {"svg": svg, "file": f"{page}-{figure.id}", "links": links}
 
 
-def _movie(movie: Movie, page: str) -> dict[str, Any]:
-    moving, still = (data_uri("image/webp", image) for image in movie_image(movie))
-    return {"movie": movie, "moving": moving, "still": still, "file": f"{page}-{movie.id}"}
+def _movie(movie: Movie) -> dict[str, str]:
+    return {
+        key: data_uri("image/webp", image) for key, image in zip(("moving", "still"), movie_image(movie), strict=True)
+    }
 
 
 def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:

@@ -96,12 +96,9 @@ def distinguish(ax: "Axes", size: tuple[float, float]) -> None:
     if (legend := ax.get_legend()) is None or not names:
         return
     ax.autoscale_view()
-    to_axes, ends = ax.transData + ax.transAxes.inverted(), []
-    for line in named:
-        x, y = (np.asarray(one, float) for one in line.get_data())
-        finite = np.isfinite(x) & np.isfinite(y)
-        last = np.argmax(np.where(finite, x, -np.inf)) if finite.sum() > 1 else None
-        ends += [] if last is None else [(to_axes.transform((x[last], y[last])), (x[last], y[last]), line)]
+    to_axes = (ax.transData + ax.transAxes.inverted()).transform
+    lasts = [(line.get_xydata()[-1], line) for line in named if len(line.get_xydata()) > 1]
+    ends = [(to_axes(last), last, line) for last, line in lasts if np.isfinite(last).all()]
     ends.sort(key=lambda end: float(end[0][1]))
     high = np.array([54.0 * size[1] * place[1] for place, *_ in ends])  # points: axes fill 3/4 of the chart
     step = 12.0 * np.arange(len(ends))
@@ -111,15 +108,12 @@ def distinguish(ax: "Axes", size: tuple[float, float]) -> None:
     if direct and abs(shift).max() <= 14.0 and np.diff(high).min(initial=12.0) > 2.0:
         legend.remove()
         for (_, end, line), up in zip(ends, shift, strict=True):
+            place: Any = {"xytext": (14, up), "textcoords": "offset points", "va": "center", "fontsize": 9.0}
             arrow = {"arrowstyle": "-", "color": line.get_color(), "shrinkA": 0.0, "shrinkB": 0.0}
-            ax.annotate(
-                line.get_label(), end, (14, up), textcoords="offset points", va="center", fontsize=9.0, arrowprops=arrow
-            )
+            ax.annotate(line.get_label(), end, **place, arrowprops=arrow)
     else:
-        columns = int(12.0 * size[0] / (max(map(len, names)) + 6.0))
-        ax.legend(
-            loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=min(max(columns, 1), 4), borderaxespad=0.2, frameon=False
-        )
+        columns = min(max(int(12.0 * size[0] / (max(map(len, names)) + 6.0)), 1), 4)
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, frameon=False)
 
 
 def figure_svg(figure: "Figure") -> str:
