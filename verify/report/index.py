@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verify.report.page import LEVELS, Section, level_of, render
 from verify.report.result import Column, Result, Table
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ CANNOT = "cannot run"
 
 def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, Any]:
     """The index's line of one run, as plain data."""
-    from verify.report.page import level_of
-
     level, headline, _ = level_of(run)
     return {
         "scene": name,
@@ -38,29 +37,20 @@ def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
 
 def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     """All scenes as a result, a row for each: the worst first."""
-    from verify.report.page import LEVELS
-
     ordered = sorted(lines, key=lambda line: [None, *LEVELS].index(line.get("level")))
     rows = [(one.get("level", CANNOT), one["scene"], one.get("verdict"), one.get("seconds")) for one in ordered]
     columns = [Column("level"), Column("scene"), Column("headline"), Column("time", "s", ".3g")]
     reasons = [(line["scene"], one["gate"], one["reason"]) for line in ordered for one in line["failed"]]
     reasons += [(line["scene"], "", text) for line in ordered for text in line.get("errors", ())]
     failed = Table("Failed", [Column("scene"), Column("gate"), Column("reason")], reasons)
-    return Result(
-        summary=index_verdict(lines),
-        tables=[Table("Scenes", columns, rows), *([failed] if reasons else [])],
-        data={"scenes": list(lines), "passed": all(line["passed"] for line in lines)},
-    )
-
-
-def index_verdict(lines: Sequence[dict[str, Any]]) -> str:
-    """One line over all scenes: how many failed, and how many are at each level."""
-    from verify.report.page import LEVELS
-
     levels = [line.get("level", CANNOT) for line in lines]
     counts = [f"{levels.count(level)} {level}" for level in (CANNOT, *LEVELS) if level in levels]
     bad, n = sum(line["passed"] is not True for line in lines), len(lines)
-    return (f"{bad} of {n} scenes failed: " if bad else f"{n} scenes: ") + ", ".join(counts)
+    return Result(
+        summary=(f"{bad} of {n} scenes failed: " if bad else f"{n} scenes: ") + ", ".join(counts),
+        tables=[Table("Scenes", columns, rows), *([failed] if reasons else [])],
+        data={"scenes": list(lines), "passed": all(line["passed"] for line in lines)},
+    )
 
 
 def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, seconds: float) -> None:
@@ -68,7 +58,6 @@ def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, secon
     from os.path import relpath
 
     from verify.files import write_whole
-    from verify.report.page import LEVELS, Section, render
 
     links = {line["scene"]: Path(relpath(line["page"], path.parent)).as_posix() for line in lines if line.get("page")}
     result = index_result(lines)

@@ -28,11 +28,9 @@ DENSE = 6
 """Columns beyond which a table has small print."""
 LEVELS = ("not trusted", "conditional", "trusted")
 """Levels of a verdict, the worst first."""
-MARKS = dict(zip(LEVELS, ("fail", "warn", "pass"), strict=True)) | {
-    "pass": "pass",
-    "FAIL": "fail",
-    "cannot run": "fail",
-}
+MARKS = dict(
+    zip((*LEVELS, "FAIL", "cannot run", "pass"), ("fail", "warn", "pass", "fail", "fail", "pass"), strict=True)
+)
 """Class of a cell with this text."""
 SPEEDS = "Speed of the slider"
 """Title of a table that follows the verdict, whichever study it belongs to."""
@@ -59,8 +57,6 @@ class Section:
     """Addresses by the text of a table cell that becomes a link."""
     code: str = ""
     folded: bool = False
-    first: bool = False
-    """Above the contents."""
 
 
 def level_of(run: "RunResult") -> tuple[str, str, Sequence[Any]]:
@@ -83,21 +79,20 @@ def run_page(run: "RunResult", command: str = "") -> str:
     for name, result in run.results.items():
         for text in result.warnings:
             caveats.setdefault(text, (study_title(run, name), name))
-    above = {why for _, why in problems}
-    listed = [(*where, text) for text, where in caveats.items() if text not in above and text not in headline]
+    above = {headline, *(why for _, why in problems)}
+    listed = [(*where, text) for text, where in caveats.items() if text not in above]
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
     columns = [Column("margin"), *(Column(name, format=".3g", percent=True) for name in ("size", "fine", "limit"))]
     rows = [(one.name, one.size, one.fine, one.limit, one.condition, one.remedy) for one in margins]
     reasons = Table("Margins", [*columns, Column("only if"), Column("remedy")], rows)
     worst, gates = worst_gate(run), gates_table(run)
-    share = 100.0 * (worst.fraction or 0.0) if worst else 0.0
-    most = f"{worst.gate.id} uses {share:.3g} % of its tolerance, the most" if worst else ""
+    most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
     whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
     rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
     sections = [
-        Section("margins", "Margins", tables=[reasons] * bool(margins), first=True),
-        Section("caveats", "Caveats", caveats=listed, first=True),
-        Section("speeds", SPEEDS, tables=speeds, first=True),
+        Section("margins", "Margins", tables=[reasons] * bool(margins)),
+        Section("caveats", "Caveats", caveats=listed),
+        Section("speeds", SPEEDS, tables=speeds),
         *(_study_section(run, name) for name in run.results),
         Section("gates", "Gates", most, tables=[replace(gates, rows=rest)] * bool(run.gates)),
         Section("skipped", "Not run", tables=[skipped_table(run)] * bool(run.skipped), folded=True),
@@ -119,8 +114,8 @@ def run_page(run: "RunResult", command: str = "") -> str:
 
 def _study_section(run: "RunResult", name: str) -> Section:
     result, beam, drive = run.results[name], run.scene.beam, run.scene.drive
-    figures = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.figures]
-    movies = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.movies]
+    charts: Any = (result.figures, result.movies)
+    figures, movies = ([replace(x, id=f"{name}-{x.id.removeprefix(f'{name}-')}") for x in kind] for kind in charts)
     tables = [table for table in result.tables if table.title != SPEEDS]
     driven = f", driven at {drive.frequency_hz:g} Hz" if drive and name in ("wave", "motion", "motor") else ""
     condition = f"Beam: {with_unit(beam.length, form='.4g')}, {'-'.join(beam.supports)}{driven}."
