@@ -162,7 +162,7 @@ def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:
         bar = float(value) if table.columns[i].name == "of tolerance" and value is not None else None
         return {"text": text, "kind": kind, "heading": headings[i], "bar": bar, "link": links.get(text)}
 
-    stacked = " stack" if len(n) > DENSE or "long" in kinds else ""
+    stacked = " stack" if "long" in kinds else ""
     return {
         "table": table,
         "headings": [(headings[i], "" if words[i] else "n") for i in n],

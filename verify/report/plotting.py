@@ -40,7 +40,8 @@ def style(ink: str = INK, salt: str = "verify") -> Iterator[None]:
     settings |= {"axes.prop_cycle": cycler(color=CYCLE), "axes.grid": True, "grid.linewidth": 0.6}
     settings |= {"grid.color": GRID} if ink == INK else {"grid.color": ink, "grid.alpha": 0.3}
     settings |= {"axes.spines.top": False, "axes.spines.right": False, "axes.titlesize": 10.0, "font.size": 10.0}
-    settings |= {"legend.facecolor": PAPER, "legend.edgecolor": "none", "legend.framealpha": 0.8}
+    paper = PAPER if ink == INK else "none"
+    settings |= {"legend.facecolor": paper, "legend.edgecolor": "none", "legend.framealpha": 0.8}
     settings |= {"lines.linewidth": 1.6, "lines.markersize": 4.5, "legend.fontsize": 9.0}
     settings |= {"axes.formatter.limits": (-4, 5), "axes.formatter.useoffset": False}
     settings |= {"svg.fonttype": "none", "svg.hashsalt": salt}
@@ -140,8 +141,8 @@ def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
         if dpi:
             chart.set_layout_engine("none")
             chart.savefig(raw, format="png", dpi=dpi, facecolor="white")
-            palette = Image.open(raw).convert("RGB").quantize(128, dither=Image.Dither.NONE)  # a third of the size
-            palette.save(small, "png", optimize=True, dpi=(dpi, dpi))
+            palette = Image.open(raw).convert("RGB").quantize(128, dither=Image.Dither.NONE)
+            palette.save(small, "png", dpi=(dpi, dpi))  # a third of the size of all colours
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, count=1, flags=re.DOTALL)
