@@ -106,7 +106,8 @@ def test_no_sentence_stands_twice(full_run, page):
 
 
 def test_verdict_margins_caveats_and_speeds_lead(full_run, made_result):
-    margin = SimpleNamespace(name="plate", size=0.025, fine=0.01, limit=0.1, condition="so", remedy="a plate")
+    sizes = {"size": 0.025, "fine": 0.01, "limit": 0.1, "level": "conditional"}
+    margin = SimpleNamespace(name="plate", where="at 5", condition="bands", failure="", remedy="a plate", **sizes)
     stated = SimpleNamespace(level="conditional", headline="Trusted only if so: 2.5 %.", margins=[margin])
     speeds = Table("Speed of the slider", [Column("kinematics"), Column("speed", "m/s")], [("tangential", -0.013)])
     run = {name: getattr(full_run, name) for name in (*full_run.__struct_fields__, "failed")}

@@ -82,9 +82,14 @@ def run_page(run: "RunResult", command: str = "") -> str:
     above = {headline, *(why for _, why in problems)}
     listed = [(*where, text) for text, where in caveats.items() if text not in above]
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
-    columns = [Column("margin"), *(Column(name, format=".3g", percent=True) for name in ("size", "fine", "limit"))]
-    rows = [(one.name, one.size, one.fine, one.limit, one.condition, one.remedy) for one in margins]
-    reasons = Table("Margins", [*columns, Column("only if"), Column("remedy")], rows)
+    columns = [Column("level"), Column("margin")]
+    columns += [Column(name, format=".3g", percent=True) for name in ("size", "fine", "limit")]
+    rows = [
+        (one.level, f"{one.name} {one.where}", one.size, one.fine, one.limit, text * (text not in headline), one.remedy)
+        for one in margins
+        for text in ({"trusted": "", "conditional": one.condition}.get(one.level, one.failure),)
+    ]
+    reasons = Table("Margins", [*columns, Column("condition"), Column("remedy")], rows)
     worst, gates = worst_gate(run), gates_table(run)
     most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
     whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
