@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify.formatting import with_unit
 from verify.report.plotting import figure_files, movie_image
-from verify.report.result import Column, Figure, Movie, Table, to_json
+from verify.report.result import Column, Figure, Movie, Table, plain, to_json
 from verify.report.summary import (
     environment,
     gates_table,
@@ -84,11 +84,11 @@ def run_page(run: "RunResult", command: str = "") -> str:
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
     columns = [Column("level"), Column("margin")]
     columns += [Column(name, format=".3g", percent=True) for name in ("size", "fine", "limit")]
-    rows = [
-        (one.level, f"{one.name} {one.where}", one.size, one.fine, one.limit, text * (text not in headline), one.remedy)
-        for one in margins
-        for text in ({"trusted": "", "conditional": one.condition}.get(one.level, one.failure),)
-    ]
+    rows: list[Any] = []
+    for one in margins:
+        texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
+        texts = ["" if one.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
+        rows.append((one.level, f"{one.name} {one.where}", *map(plain, (one.size, one.fine, one.limit)), *texts))
     reasons = Table("Margins", [*columns, Column("condition"), Column("remedy")], rows)
     worst, gates = worst_gate(run), gates_table(run)
     most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
