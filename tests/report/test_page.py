@@ -4,13 +4,16 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from html import escape
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import pytest
 
 from verify.report.index import failed_line, index_result, scene_line, write_index
 from verify.report.page import run_page
+from verify.report.result import Column, Table
 
 VOID = {"meta", "link", "img", "source", "br"}
 
@@ -86,7 +89,7 @@ def test_figures_have_names_and_downloads(full_run, page):
     labels = [attrs["aria-label"] for tag, attrs in page.tags if tag == "svg"]
     assert all(f"{figure.title}. {figure.caption}" in labels for figure in figures)
     names = [attrs["download"] for tag, attrs in page.tags if tag == "a" and "download" in attrs]
-    assert "small-made-lines.svg" in names
+    assert {"small-made-lines.svg", "small-made-lines.png", "small-beam.png"} <= set(names)
     images = [attrs for tag, attrs in page.tags if tag == "img"]
     assert [image["alt"] for image in images] == ["Moving line. One period."]
     assert any(tag == "source" and "prefers-reduced-motion" in attrs["media"] for tag, attrs in page.tags)
@@ -94,6 +97,34 @@ def test_figures_have_names_and_downloads(full_run, page):
 
 def test_long_tables_are_folded(html):
     assert "<summary>All modes: 40 rows</summary>" in html
+
+
+def test_no_sentence_stands_twice(full_run, page):
+    results = full_run.results.values()
+    sentences = [result.summary for result in results] + [text for result in results for text in result.warnings]
+    assert [page.text.count(one) for one in [*sentences, full_run.failed[0].reason]] == [1] * (len(sentences) + 1)
+
+
+def test_verdict_margins_caveats_and_speeds_lead(full_run, made_result):
+    sizes = {"size": 0.025, "fine": 0.01, "limit": 0.1, "level": "conditional"}
+    margin = SimpleNamespace(name="plate", where="at 5", condition="bands", failure="", remedy="a plate", **sizes)
+    stated = SimpleNamespace(level="conditional", headline="Trusted only if so: 2.5 %.", margins=[margin])
+    speeds = Table("Speed of the slider", [Column("kinematics"), Column("speed", "m/s")], [("tangential", -0.013)])
+    run = {name: getattr(full_run, name) for name in (*full_run.__struct_fields__, "failed")}
+    run["results"] = {"made": replace(made_result, tables=[*made_result.tables, speeds])}
+    text = run_page(SimpleNamespace(**run, verdict=stated))
+    order = [
+        "Trusted only if so: 2.5 %.",
+        ">a plate<",
+        "Mode 5 is not",
+        ">tangential<",
+        "<nav",
+        "Mode 5 is 1.73 % off.",
+    ]
+    places = [text.index(one) for one in order]
+    assert places == sorted(places)
+    assert 'class="verdict conditional"' in text
+    assert text.count("tangential") == 1
 
 
 def test_index_links_to_reports(full_run, small_run, tmp_path):
@@ -104,7 +135,7 @@ def test_index_links_to_reports(full_run, small_run, tmp_path):
     write_index(lines, tmp_path / "index.html", "verify run", 1.5)
     page = Parsed((tmp_path / "index.html").read_text("utf-8"))
     assert "small.html" in page.addresses
-    assert "2 of 3 scenes failed" in page.text
+    assert "2 of 3 scenes failed: 1 cannot run, 1 not trusted, 1 trusted" in page.text
     assert "no beam" in page.text
     assert [row[1] for row in index_result(lines).tables[0].rows] == ["lost", "bad", "good"]
     assert json.dumps(lines)

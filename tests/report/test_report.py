@@ -18,8 +18,8 @@ from verify.report import archive
 from verify.report.archive import read_runs, report_name, save_run, saved_in
 from verify.report.beam_drawing import beam_figure
 from verify.report.diff import compare_runs
-from verify.report.plotting import figure_svg, movie_image
-from verify.report.result import Column, Table, to_json
+from verify.report.plotting import MODEL_COLORS, drawn, figure_files, figure_svg, movie_image
+from verify.report.result import Column, Figure, Table, to_json
 from verify.report.summary import expected, run_data, verdict, worst_gate
 from verify.report.terminal import print_run
 from verify.scene.load import scene_from
@@ -202,6 +202,38 @@ def test_svg_follows_the_page(figures):
     assert all(one.startswith("lines-") for one in ids)
 
 
+def curves_of(*heights):
+    """Axes after a chart of segments and elements that end at these heights."""
+
+    def draw(ax):
+        for (model, height), style in zip(zip(("segment", "fem"), heights, strict=True), ("-", "--"), strict=True):
+            ax.plot([0.0, 1.0, 3.0], [0.0, 0.7, height], style, color=MODEL_COLORS[model], label=model)
+        ax.legend()
+
+    return drawn(Figure("curves", "Two curves", "Over x.", draw)).axes[0]
+
+
+def test_equal_curves_differ_by_more_than_colour():
+    ax = curves_of(2.0, 2.0)
+    first, second = ax.lines
+    assert first.get_linewidth() > second.get_linewidth() + 1.0
+    assert first.get_marker() != second.get_marker()
+    assert (first.get_linestyle(), second.get_linestyle()) == ("-", "--")
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["segment", "fem"]
+
+
+def test_names_stand_at_the_ends_of_curves():
+    ax = curves_of(2.0, 1.1)
+    assert ax.get_legend() is None
+    assert {text.get_text(): text.xy for text in ax.texts} == {"segment": (3.0, 2.0), "fem": (3.0, 1.1)}
+
+
+def test_both_files_show_one_chart(figures):
+    svg, png = figure_files(figures[2], 80.0)
+    assert svg == figure_svg(figures[2])
+    assert Image.open(BytesIO(png)).size == pytest.approx((80 * 5.4, 80 * 3.5), abs=1)
+
+
 def test_movie_has_every_frame(movie):
     moving, still = (Image.open(BytesIO(image)) for image in movie_image(movie))
     assert moving.n_frames == 5
@@ -312,5 +344,5 @@ def test_void_results_lead_the_verdict(small_run):
     run = msgspec.structs.replace(small_run, results={"motion": void})
     assert verdict(run).startswith("No valid result: The slider. All 2 gates passed")
     page = run_page(run)
-    assert page.index('class="verdict void"') < page.index("Lift-off") < page.index("<nav")
+    assert page.index('class="verdict not-trusted"') < page.index("Lift-off") < page.index("<nav")
     assert "No valid result" in printed(run, 80)

@@ -63,13 +63,14 @@ def save_charts(result: "Result", charts: str | None) -> None:
     from pathlib import Path
 
     from verify.files import whole, writable_folder, write_whole
-    from verify.report.plotting import figure_png, figure_svg
+    from verify.report.plotting import figure_files
 
     folder = writable_folder(Path(charts), "--charts")
     for figure in result.figures:
-        write_whole(folder / f"{figure.id}.svg", figure_svg(figure), "--charts")
+        svg, png = figure_files(figure)
+        write_whole(folder / f"{figure.id}.svg", svg, "--charts")
         with whole(folder / f"{figure.id}.png", "--charts") as part:
-            part.write_bytes(figure_png(figure))
+            part.write_bytes(png)
 
 
 def print_json(value: Any) -> None:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verify.report.page import LEVELS, Section, level_of, render
 from verify.report.result import Column, Result, Table
-from verify.report.summary import VERDICTS, verdict, worst_gate
 
 if TYPE_CHECKING:
     from verify.report.archive import Saved
@@ -15,16 +15,15 @@ CANNOT = "cannot run"
 
 
 def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, Any]:
-    """What the index says of one run, as plain data."""
-    worst = worst_gate(run)
+    """The index's line of one run, as plain data."""
+    level, headline, _ = level_of(run)
     return {
         "scene": name,
         "title": run.scene.title or run.scene.name,
         "passed": run.passed,
-        "verdict": verdict(run),
+        "level": level,
+        "verdict": headline,
         "failed": [{"gate": one.gate.id, "reason": one.reason} for one in run.failed],
-        "worst": None if worst is None else worst.gate.id,
-        "fraction": None if worst is None else worst.fraction,
         "seconds": run.seconds,
         "page": str(saved.page) if saved else None,
         "folder": str(saved.folder) if saved and saved.folder else None,
@@ -37,29 +36,21 @@ def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
 
 
 def index_result(lines: Sequence[dict[str, Any]]) -> Result:
-    """All scenes as a result: those that fail first."""
-    order = {None: 0, False: 1, True: 2}
-    ordered = sorted(lines, key=lambda line: order[line["passed"]])
-    keys = ("scene", "verdict", "worst", "fraction", "seconds")
-    rows = [
-        (VERDICTS.get(one["passed"]) if one["passed"] is not None else CANNOT, *map(one.get, keys)) for one in ordered
-    ]
-    columns = [Column(name) for name in ("verdict", "scene", "gates", "worst gate")]
-    columns += [Column("of tolerance", format=".3g", percent=True), Column("time", "s", ".3g")]
+    """All scenes as a result, a row for each: the worst first."""
+    ordered = sorted(lines, key=lambda line: [None, *LEVELS].index(line.get("level")))
+    rows = [(one.get("level", CANNOT), one["scene"], one.get("verdict"), one.get("seconds")) for one in ordered]
+    columns = [Column("level"), Column("scene"), Column("headline"), Column("time", "s", ".3g")]
     reasons = [(line["scene"], one["gate"], one["reason"]) for line in ordered for one in line["failed"]]
     reasons += [(line["scene"], "", text) for line in ordered for text in line.get("errors", ())]
     failed = Table("Failed", [Column("scene"), Column("gate"), Column("reason")], reasons)
+    levels = [line.get("level", CANNOT) for line in lines]
+    counts = [f"{levels.count(level)} {level}" for level in (CANNOT, *LEVELS) if level in levels]
+    bad, n = sum(line["passed"] is not True for line in lines), len(lines)
     return Result(
-        summary=index_verdict(lines),
+        summary=(f"{bad} of {n} scenes failed: " if bad else f"{n} scenes: ") + ", ".join(counts),
         tables=[Table("Scenes", columns, rows), *([failed] if reasons else [])],
         data={"scenes": list(lines), "passed": all(line["passed"] for line in lines)},
     )
-
-
-def index_verdict(lines: Sequence[dict[str, Any]]) -> str:
-    """One line over all scenes."""
-    bad = sum(line["passed"] is not True for line in lines)
-    return f"{bad} of {len(lines)} scenes failed" if bad else f"All {len(lines)} scenes passed"
 
 
 def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, seconds: float) -> None:
@@ -67,7 +58,6 @@ def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, secon
     from os.path import relpath
 
     from verify.files import write_whole
-    from verify.report.page import Section, render
 
     links = {line["scene"]: Path(relpath(line["page"], path.parent)).as_posix() for line in lines if line.get("page")}
     result = index_result(lines)
@@ -76,7 +66,7 @@ def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, secon
         "scenes",
         sections,
         title="All scenes",
-        passed=result.data["passed"],
+        level=min((line.get("level", LEVELS[0]) for line in lines), key=LEVELS.index),
         verdict=result.summary,
         seconds=seconds,
         command=command,

@@ -3,33 +3,37 @@
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verify.report.plotting import figure_svg, movie_image
-from verify.report.result import Figure, Movie, Result, Table, to_json
+from verify.formatting import with_unit
+from verify.report.plotting import figure_files, movie_image
+from verify.report.result import Column, Figure, Movie, Table, plain, to_json
 from verify.report.summary import (
     environment,
-    expected,
     gates_table,
     skipped_table,
     study_title,
-    value_text,
     verdict,
     void_results,
     worst_gate,
 )
 
 if TYPE_CHECKING:
-    from jinja2 import Template
-
     from verify.scene.run import RunResult
 
 LONG = 30
 """Rows beyond which a table is folded."""
 DENSE = 6
 """Columns beyond which a table has small print."""
+LEVELS = ("not trusted", "conditional", "trusted")
+"""Levels of a verdict, the worst first."""
+MARKS = dict(
+    zip((*LEVELS, "FAIL", "cannot run", "pass"), ("fail", "warn", "pass", "fail", "fail", "pass"), strict=True)
+)
+"""Class of a cell with this text."""
+SPEEDS = "Speed of the slider"
+"""Title of a table that follows the verdict, whichever study it belongs to."""
 WIDE, NARROW = 40, 22
 """Characters of a column of text beyond which it wraps early, and below which it does not wrap."""
 
@@ -40,9 +44,13 @@ class Section:
 
     id: str
     title: str
-    paragraphs: Sequence[str] = ()
-    warnings: Sequence[str] = ()
+    finding: str = ""
+    """The result in a sentence, which the heading states."""
+    caveats: Sequence[tuple[str, str, str]] = ()
+    """(title of a section, its id, sentence)."""
     figures: Sequence[Figure] = ()
+    condition: str = ""
+    """Of all figures."""
     movies: Sequence[Movie] = ()
     tables: Sequence[Table] = ()
     links: Mapping[str, str] = field(default_factory=dict)
@@ -51,70 +59,83 @@ class Section:
     folded: bool = False
 
 
+def level_of(run: "RunResult") -> tuple[str, str, Sequence[Any]]:
+    """(Level, headline, margins) of a run. Without a verdict of its own gates and warnings decide."""
+    if (stated := getattr(run, "verdict", None)) is not None:
+        return stated.level, stated.headline, stated.margins
+    bad, judged = run.failed or void_results(run), any(gate.passed for gate in run.gates)
+    sound = judged and not run.warnings and not any(result.warnings for result in run.results.values())
+    return LEVELS[0 if bad else 2 if sound else 1], verdict(run), ()
+
+
 def run_page(run: "RunResult", command: str = "") -> str:
-    """The report of a run as HTML."""
+    """The report of a run as HTML: verdict, margins and caveats, then figures, no sentence twice."""
     from verify.report.beam_drawing import beam_figure
 
-    scene, beam = run.scene, beam_figure(run.scene)
-    studies = [_study_section(run, name, result) for name, result in run.results.items()]
-    void = void_results(run)
-    summaries = [(section.title, section.id, " ".join(section.paragraphs)) for section in studies if section.paragraphs]
-    sections = [Section("gates", "Gates", tables=[gates_table(run)])] if run.gates else []
-    sections += studies
-    if run.skipped:
-        sections.append(Section("skipped", "Not run", tables=[skipped_table(run)]))
-    sections.append(Section("inputs", "Inputs", code=to_json(scene), folded=True))
-    worst = worst_gate(run)
+    scene, (level, headline, margins) = run.scene, level_of(run)
+    problems = [(study_title(run, name), why) for name, why in void_results(run).items()]
+    problems += [(one.gate.id, one.reason) for one in run.failed]
+    caveats = dict.fromkeys(run.warnings, ("", ""))
+    for name, result in run.results.items():
+        for text in result.warnings:
+            caveats.setdefault(text, (study_title(run, name), name))
+    above = {headline, *(why for _, why in problems)}
+    listed = [(*where, text) for text, where in caveats.items() if text not in above]
+    speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
+    columns = [Column("level"), Column("margin")]
+    columns += [Column(name, format=".3g", percent=True) for name in ("size", "fine", "limit")]
+    rows: list[Any] = []
+    for one in margins:
+        texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
+        texts = ["" if one.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
+        rows.append((one.level, f"{one.name} {one.where}", *map(plain, (one.size, one.fine, one.limit)), *texts))
+    reasons = Table("Margins", [*columns, Column("condition"), Column("remedy")], rows)
+    worst, gates = worst_gate(run), gates_table(run)
+    most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
+    whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
+    rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
+    sections = [
+        Section("margins", "Margins", tables=[reasons] * bool(margins)),
+        Section("caveats", "Caveats", caveats=listed),
+        Section("speeds", SPEEDS, tables=speeds),
+        *(_study_section(run, name) for name in run.results),
+        Section("gates", "Gates", most, tables=[replace(gates, rows=rest)] * bool(run.gates)),
+        Section("skipped", "Not run", tables=[skipped_table(run)] * bool(run.skipped), folded=True),
+        Section("inputs", "Inputs", code=to_json(scene), folded=True),
+    ]
     return render(
         name=scene.name,
         title=scene.title or scene.name,
         subtitle=scene.description,
-        passed=run.passed,
-        verdict=verdict(run),
+        level=level,
+        verdict=headline,
         seconds=run.seconds,
-        void=bool(void),
-        problems=[f"{study_title(run, name)}: {why}" for name, why in void.items()]
-        + [f"{one.gate.id}: {one.reason}" for one in run.failed],
-        warnings=list(dict.fromkeys(getattr(run, "warnings", ()))),
-        drawing=figure_svg(beam),
-        drawing_caption=beam.caption,
-        summaries=summaries,
-        worst=None if worst is None else (worst, value_text(worst.value), expected(worst.gate)),
-        sections=sections,
+        problems=[f"{what}: {why}" for what, why in problems if why not in headline],
+        drawing=beam_figure(scene),
+        sections=[one for one in sections if one.id in run.results or one.tables or one.caveats or one.code],
         command=command,
     )
 
 
-def _study_section(run: "RunResult", name: str, result: Result) -> Section:
-    figures = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.figures]
-    movies = [replace(one, id=f"{name}-{one.id.removeprefix(f'{name}-')}") for one in result.movies]
-    summary = [result.summary] if result.summary else []
-    return Section(name, study_title(run, name), summary, result.warnings, figures, movies, result.tables)
+def _study_section(run: "RunResult", name: str) -> Section:
+    result, beam, drive = run.results[name], run.scene.beam, run.scene.drive
+    charts: Any = (result.figures, result.movies)
+    figures, movies = ([replace(x, id=f"{name}-{x.id.removeprefix(f'{name}-')}") for x in kind] for kind in charts)
+    tables = [table for table in result.tables if table.title != SPEEDS]
+    driven = f", driven at {drive.frequency_hz:g} Hz" if drive and name in ("wave", "motion", "motor") else ""
+    condition = f"Beam: {with_unit(beam.length, form='.4g')}, {'-'.join(beam.supports)}{driven}."
+    return Section(name, study_title(run, name), result.summary, (), figures, condition, movies, tables)
 
 
 def render(name: str, sections: Sequence[Section], **values: Any) -> str:
     """A page of sections below a verdict; `values` are the template's other variables."""
-    shown = [
-        {
-            "id": section.id,
-            "section": section,
-            "figures": [_figure(figure, name) for figure in section.figures],
-            "movies": [_movie(movie, name) for movie in section.movies],
-            "tables": [_table(table, section.links) for table in section.tables],
-        }
-        for section in sections
-    ]
-    css = Path(__file__).with_name("page.css").read_text("utf-8")
-    return _template().render(name=name, sections=shown, environment=environment(), css=css, **values)
-
-
-@lru_cache
-def _template() -> "Template":
     from jinja2 import Environment, FileSystemLoader
 
     loader = FileSystemLoader(Path(__file__).parent)
     made = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    return made.get_template("page.html.j2")
+    made.globals.update(show_figure=_figure, show_movie=_movie, cells=_table, environment=environment())
+    css = Path(__file__).with_name("page.css").read_text("utf-8")
+    return made.get_template("page.html.j2").render(name=name, sections=sections, css=css, **values)
 
 
 def data_uri(kind: str, content: str | bytes) -> str:
@@ -124,13 +145,15 @@ def data_uri(kind: str, content: str | bytes) -> str:
 
 
 def _figure(figure: Figure, page: str) -> dict[str, Any]:
-    svg = figure_svg(figure)
-    return {"figure": figure, "svg": svg, "file": f"{page}-{figure.id}", "link": data_uri("image/svg+xml", svg)}
+    svg, png = figure_files(figure, 110.0)
+    links = {"SVG": data_uri("image/svg+xml", svg), "PNG": data_uri("image/png", png)}
+    return {"svg": svg, "file": f"{page}-{figure.id}", "links": links}
 
 
-def _movie(movie: Movie, page: str) -> dict[str, Any]:
-    moving, still = (data_uri("image/webp", image) for image in movie_image(movie))
-    return {"movie": movie, "moving": moving, "still": still, "file": f"{page}-{movie.id}"}
+def _movie(movie: Movie) -> dict[str, str]:
+    return {
+        key: data_uri("image/webp", image) for key, image in zip(("moving", "still"), movie_image(movie), strict=True)
+    }
 
 
 def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:
@@ -140,11 +163,11 @@ def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:
     kinds = ["n" if not words[i] else "long" if widths[i] > WIDE else "short" if widths[i] < NARROW else "" for i in n]
 
     def cell(i: int, value: Any, text: str) -> dict[str, Any]:
-        kind = {"pass": "pass", "FAIL": "fail", "cannot run": "fail"}.get(text, kinds[i])
+        kind = MARKS.get(text, kinds[i])
         bar = float(value) if table.columns[i].name == "of tolerance" and value is not None else None
         return {"text": text, "kind": kind, "heading": headings[i], "bar": bar, "link": links.get(text)}
 
-    stacked = " stack" if len(n) > DENSE or "long" in kinds else ""
+    stacked = " stack" if "long" in kinds else ""
     return {
         "table": table,
         "headings": [(headings[i], "" if words[i] else "n") for i in n],
