@@ -247,19 +247,18 @@ def elastic_force(
         return 0.0, 0.0, spring
     if steepness == 0.0:
         return (trial, 1.0, spring) if abs(trial) < limit else (float(np.sign(trial) * kinetic), 0.0, spring)
-    slipped = 0.0
-    low, high = min(trial / stiffness, 0.0), max(trial / stiffness, 0.0)
+    size, sign = abs(trial), 1.0 if trial > 0.0 else -1.0
+    low, high = max(size - kinetic, 0.0) / stiffness, size / stiffness  # tanh lies between 0 and 1
+    slipped = low
     for _ in range(60):
         t = np.tanh(steepness * slipped)
-        miss = kinetic * t + stiffness * slipped - trial
+        miss = kinetic * t + stiffness * slipped - size
+        after = slipped - miss / (kinetic * steepness * (1.0 - t * t) + stiffness)
+        if abs(after - slipped) <= 1e-14 * (slipped + 1e-12):
+            break
         if miss > 0.0:
             high = slipped
         else:
             low = slipped
-        after = slipped - miss / (kinetic * steepness * (1.0 - t * t) + stiffness)
-        if not low < after < high:
-            after = 0.5 * (low + high)
-        if abs(after - slipped) <= 1e-14 * (abs(slipped) + 1e-12):
-            break
-        slipped = after
-    return float(kinetic * np.tanh(steepness * slipped)), 0.0, spring
+        slipped = after if low < after < high else 0.5 * (low + high)
+    return float(sign * kinetic * np.tanh(steepness * slipped)), 0.0, spring
