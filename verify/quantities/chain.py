@@ -27,7 +27,10 @@ Step = Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive
 Inertia = Annotated[
     options.Inertia, Meta(description="transverse: rigid, none along x; elastic: links stretch by EA / l")
 ]
-Reading = Annotated[Literal["end", "rms"], Meta(description="at that time, or rms until then")]
+Reading = Annotated[
+    Literal["end", "rms", "beam"],
+    Meta(description="end: at mid-span; rms: until then; beam: rms over joints, start phases and both directions"),
+]
 BEAM = ("beam",)
 
 
@@ -128,11 +131,14 @@ def transient_deflection(scene: Scene, cache: "SolutionCache", run: FromRest, *,
 def axial_departure(
     scene: Scene, cache: "SolutionCache", run: FromRest, *, inertia: Inertia = "full", of: Reading = "end"
 ) -> float:
-    """Deflection of the nonlinear chain at mid-span less the linear one's from rest, over the rms of the latter."""
-    from verify.chain.benchmarks import departure
+    """Deflection of the nonlinear chain less the linear one's from rest, at mid-span or all joints, over the latter."""
+    from verify.chain.benchmarks import departure, departure_over_beam
 
     drive = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
-    return float(getattr(departure(scene.beam, *drive, run.segments, inertia=inertia, progress=cache.progress), of))
+    settings: dict[str, Any] = {"inertia": inertia, "progress": cache.progress}
+    if of == "beam":
+        return departure_over_beam(scene.beam, *drive, run.segments, **settings)
+    return float(getattr(departure(scene.beam, *drive, run.segments, **settings), of))
 
 
 class OnChain(msgspec.Struct, frozen=True, kw_only=True):
