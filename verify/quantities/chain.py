@@ -146,6 +146,9 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
 
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
+    load: Annotated[options.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")] = (
+        "reciprocal"
+    )
     joint_dashpot: Annotated[float, Meta(ge=0, description="of every joint with a spring, N m s")] = 0.0
     force: ForceAmplitude | None = None
     soft_start_periods: SoftStart | None = None
@@ -158,6 +161,7 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
             raise InputError("motion is missing: a slider on a chain takes [motion] with its duration")
         time = TimeOptions(model="analytic", force=self.force, soft_start_periods=self.soft_start_periods)
         case: dict[str, Any] = {"slider": options.of(scene), "count": self.segments, "links": self.links}
+        case["load"] = self.load
         case |= {"joint_dashpot": self.joint_dashpot, "step": options.step}
         drive, steps = _drive(scene, time), scene.motion.steps_per_period
         key: Any = ("chain", scene.beam, *drive, *case.values(), steps)
