@@ -38,7 +38,7 @@ def chain_deflection(count: int, x: float, times: Array) -> Array:
     forces = [replace(force, amplitude=1.0) for force in SCENE.forces]
     system = build_system(BEAM, count, forces, HZ, load="reciprocal")
     motion = chain_motion.simulate(system, at_rest(system), times, tolerance=1e-4)
-    y = np.hstack([np.zeros((len(times), 1)), motion.points(system.nodes[1:].tolist())[..., 1]])
+    y = np.hstack([np.zeros((len(times), 1)), motion.deflection(system.nodes[1:].tolist())])
     y[:, 1:-1] += np.diff(y, 2, axis=1) / 12.0
     return np.asarray(CubicSpline(system.nodes, y, axis=1, bc_type="natural")(x))
 
