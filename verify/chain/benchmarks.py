@@ -6,10 +6,12 @@ relative size (kL)^2 <theta^2>, which grows with the square of the force. Links 
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from math import ceil, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from msgspec import structs
 
 from verify.arrays import Array
 from verify.chain.kinematics import at_rest
@@ -38,6 +40,8 @@ EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CA
 """Bending stiffness of the cantilever, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
 NODE = 1e-9
 """Displacement over that of the free beam, F / (m omega^2), below which a place is a node but for rounding."""
+START_PHASES = (0.0, 45.0, 90.0, 135.0)
+"""Phases of the drive at the start, deg; 180 more mirrors the motion."""
 
 
 def silent(part: float) -> None:
@@ -178,14 +182,15 @@ def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
     return float(abs(error).max()) / float(abs(exact.mode_shape(mode, system.nodes, 1)).max())
 
 
-def linear_deflection(system: ChainSystem, times: Array, x: float) -> Array:
-    """Deflection at x of the linearised chain from rest, undamped, by its modes, (n,), m.
+def linear_deflection(system: ChainSystem, times: Array, x: float | Array) -> Array:
+    """Deflection at x of the linearised chain from rest, undamped, by its modes, (n,) or (n, len(x)), m.
 
     The system is straight and its loads are transverse and harmonic. Raises InputError for x off the chain.
     """
     from scipy.linalg import eigh
 
-    check_number("x", x, "metres, on the chain", at_least=0, at_most=system.length)
+    for place in np.atleast_1d(x).tolist():
+        check_number("x", place, "metres, on the chain", at_least=0, at_most=system.length)
     linear = linearise(system, at_rest(system))
     basis = linear.independent()
     values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
@@ -198,15 +203,16 @@ def linear_deflection(system: ChainSystem, times: Array, x: float) -> Array:
 
     turn = np.outer(times, omega)
     integral = times[:, None] * np.sinc(turn / pi)  # sin(omega t) / omega
-    deflection, reading = np.zeros(len(times)), at(*link_at(system, x))
+    reading = np.array([at(*link_at(system, place)) for place in np.atleast_1d(x).tolist()])
+    deflection = np.zeros((len(times), len(reading)))
     for load in system.loads:
         drive, phase = 2.0 * pi * load.frequency_hz, np.deg2rad(load.phase_deg)
         detuning, floor = omega**2 - drive**2, 1e-6 * drive**2
         detuning = np.where(abs(detuning) < floor, floor, detuning)
         share = reading * at(load.link, load.at) * load.force[1] / detuning
         free = np.cos(phase) * np.cos(turn) - drive * np.sin(phase) * integral
-        deflection += np.cos(drive * times + phase) * share.sum() - free @ share
-    return deflection
+        deflection += np.outer(np.cos(drive * times + phase), share.sum(axis=1)) - free @ share.T
+    return deflection if np.ndim(x) else deflection[:, 0]
 
 
 def transient(
@@ -261,6 +267,30 @@ def departure(
     motion = transient(beam, forces, frequency_hz, times, count, inertia=inertia, tolerance=1e-10, progress=progress)
     gap = motion.deflection([x])[:, 0] - linear
     return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear), rms(motion.directions()))
+
+
+def departure_over_beam(
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    duration: float,
+    count: int,
+    *,
+    inertia: Inertia = "full",
+    progress: Progress = silent,
+) -> float:
+    """Deflection of the nonlinear chain less the linear one's at the end of a run from rest, over the latter, rms.
+
+    Over the joints, `START_PHASES` of the drive and the wave in either direction.
+    """
+    gaps, lines, times = [], [], np.array([0.0, duration])
+    for sign, shift in product((1.0, -1.0), START_PHASES):
+        drive = [structs.replace(force, phase_deg=sign * force.phase_deg + shift) for force in forces]
+        system = build_system(beam, count, drive, frequency_hz)
+        lines.append(linear_deflection(system, times, system.nodes[1:-1])[-1])
+        motion = transient(beam, drive, frequency_hz, times, count, inertia=inertia, progress=progress)
+        gaps.append(motion.deflection(system.nodes[1:-1].tolist())[-1] - lines[-1])
+    return rms(np.array(gaps)) / rms(np.array(lines))
 
 
 def rms(values: Array) -> float:

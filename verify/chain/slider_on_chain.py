@@ -27,7 +27,7 @@ from verify.dynamics.slider_run import Progress, SliderRun
 from verify.dynamics.stepping import Contacts, Run
 from verify.errors import InputError
 from verify.linear.positions import Forces, Numbers
-from verify.options import Links
+from verify.options import Links, Load
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 from verify.segments.reading import contact_line
@@ -48,6 +48,7 @@ def slide_on_chain(
     slider: Slider | Sequence[Slider],
     count: int,
     links: Links = "rigid",
+    load: Load = "reciprocal",
     joint_dashpot: float = 0.0,
     prescribed_speed: float | Sequence[float | None] | None = None,
     fixed_position: bool | Sequence[bool] = False,
@@ -60,10 +61,10 @@ def slide_on_chain(
 ) -> Motion:
     """Sliders, with or without feet, on a chain of `count` links from rest under forces that act at once.
 
-    Arguments are those of `simulate`, and `links`, rigid or stretching by the beam's own EA / l; `joint_dashpot`,
-    N m s, of every joint with a spring. One-way the chain moves by adaptive steps of `tolerance`; two-way by steps that
-    resolve its highest mode, from its equilibrium under feet. `coupling` and `margins` are those of the linear chain;
-    energies of stretching links are not in the balance.
+    Arguments are those of `simulate`, and `links`, rigid or stretching by the beam's own EA / l; `load`, the joints
+    that take a force; `joint_dashpot`, N m s, of every joint with a spring. One-way the chain moves by adaptive steps
+    of `tolerance`; two-way by steps that resolve its highest mode, from its equilibrium under feet. `coupling` and
+    `margins` are those of the linear chain; energies of stretching links are not in the balance.
 
     Raises InputError as `simulate` does; for a hard contact and the straight edges of links; two-way for normal =
     "held", for feet on stretching links or with a preload that depends on the deflection; for a motion of the chain
@@ -95,7 +96,7 @@ def slide_on_chain(
                 "a nonlinear chain is under constant loads, give coupling = 'one-way'"
             )
     system = build_system(
-        beam, count, request.forces, frequency_hz, load="reciprocal", joint_dashpot=joint_dashpot, links=links
+        beam, count, request.forces, frequency_hz, load=load, joint_dashpot=joint_dashpot, links=links
     )
     basis = basis_of(beam, "segment", count, None, "spline")
     stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)

@@ -27,7 +27,10 @@ Step = Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive
 Inertia = Annotated[
     options.Inertia, Meta(description="transverse: rigid, none along x; elastic: links stretch by EA / l")
 ]
-Reading = Annotated[Literal["end", "rms"], Meta(description="at that time, or rms until then")]
+Reading = Annotated[
+    Literal["end", "rms", "beam"],
+    Meta(description="end: at mid-span; rms: until then; beam: rms over joints, start phases and both directions"),
+]
 BEAM = ("beam",)
 
 
@@ -128,11 +131,14 @@ def transient_deflection(scene: Scene, cache: "SolutionCache", run: FromRest, *,
 def axial_departure(
     scene: Scene, cache: "SolutionCache", run: FromRest, *, inertia: Inertia = "full", of: Reading = "end"
 ) -> float:
-    """Deflection of the nonlinear chain at mid-span less the linear one's from rest, over the rms of the latter."""
-    from verify.chain.benchmarks import departure
+    """Deflection of the nonlinear chain less the linear one's from rest, at mid-span or all joints, over the latter."""
+    from verify.chain.benchmarks import departure, departure_over_beam
 
     drive = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
-    return float(getattr(departure(scene.beam, *drive, run.segments, inertia=inertia, progress=cache.progress), of))
+    settings: dict[str, Any] = {"inertia": inertia, "progress": cache.progress}
+    if of == "beam":
+        return departure_over_beam(scene.beam, *drive, run.segments, **settings)
+    return float(getattr(departure(scene.beam, *drive, run.segments, **settings), of))
 
 
 class OnChain(msgspec.Struct, frozen=True, kw_only=True):
@@ -140,6 +146,9 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
 
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
+    load: Annotated[options.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")] = (
+        "reciprocal"
+    )
     joint_dashpot: Annotated[float, Meta(ge=0, description="of every joint with a spring, N m s")] = 0.0
     force: ForceAmplitude | None = None
     soft_start_periods: SoftStart | None = None
@@ -152,6 +161,7 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
             raise InputError("motion is missing: a slider on a chain takes [motion] with its duration")
         time = TimeOptions(model="analytic", force=self.force, soft_start_periods=self.soft_start_periods)
         case: dict[str, Any] = {"slider": options.of(scene), "count": self.segments, "links": self.links}
+        case["load"] = self.load
         case |= {"joint_dashpot": self.joint_dashpot, "step": options.step}
         drive, steps = _drive(scene, time), scene.motion.steps_per_period
         key: Any = ("chain", scene.beam, *drive, *case.values(), steps)
