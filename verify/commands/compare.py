@@ -4,13 +4,13 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import GATE_FAILED, format_options, overrides_option, scene_argument, show
+from verify.commands.shared import GATE_FAILED, BeamCommand, format_options, overrides_option, scene_argument, show
 
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @scene_argument
 @click.argument("given", nargs=-1, metavar="FILE | FREQUENCIES...")
 @overrides_option

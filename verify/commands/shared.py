@@ -18,6 +18,31 @@ DEFAULT = "paper"
 """The scene where none is named."""
 
 scene_argument = click.argument("scene")
+
+
+class BeamCommand(click.Command):
+    """A command that has `--beam PHRASE` in place of its argument SCENE."""
+
+    def __init__(self, *values: Any, **options: Any) -> None:
+        from verify.problem.materials import MATERIALS
+        from verify.problem.phrase import EXAMPLE
+
+        super().__init__(*values, **options)
+        text = f"A beam in place of SCENE: '{EXAMPLE}'. Sections: WIDTH x THICKNESS, round DIAMETER, tube DIAMETER x "
+        text += f"WALL. Materials: {', '.join(MATERIALS)}, or E=69GPa rho=2.7g/cm3."
+        self.params.append(click.Option(["--beam"], metavar="PHRASE", expose_value=False, help=text))
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Insert the phrase in front, as the name of the scene."""
+        from verify.problem.phrase import PREFIX
+
+        for word, following in zip(args, [*args[1:], ""], strict=True):
+            name, _, phrase = word.partition("=")
+            if name == "--beam":
+                return super().parse_args(ctx, [PREFIX + (phrase or following), *args])
+        return super().parse_args(ctx, args)
+
+
 overrides_option = click.option(
     "--set",
     "overrides",

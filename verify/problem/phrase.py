@@ -5,68 +5,50 @@ from typing import Any
 
 from verify.errors import InputError, shown
 from verify.options import SUPPORTS
-from verify.problem.beam import Beam
+from verify.problem.cross_section import SIZES
 from verify.problem.materials import material_named
-from verify.units import LENGTHS, NUMBER, in_si
+from verify.units import NUMBER, in_si
 
-EXAMPLE = "'1 m x 40 x 8 mm steel, clamped-free'"
-SIZE = rf"(?:(round|tube)\s+)?({NUMBER})\s*({'|'.join(LENGTHS)})?\b"
-SHAPES = {(None, 2): ("width", "thickness"), ("round", 1): ("diameter",), ("tube", 2): ("diameter", "wall_thickness")}
-"""Fields by the word before a section's sizes and their number."""
+EXAMPLE = "1 m x 40 x 8 mm steel, clamped-free"
+PREFIX = "beam: "
+"""Begins a scene's name that is a beam in one line (see `scene.load.load_scene`)."""
 CONSTANTS = {"E": ("youngs_modulus", "Pa"), "rho": ("density", "kg/m^3"), "nu": ("poissons_ratio", "1")}
 
 
-def beam_from(phrase: str) -> Beam:
-    """A uniform beam from its length and section, material and supports.
+def beam_table(phrase: str) -> dict[str, Any]:
+    """The fields of a uniform beam, SI, from 'LENGTH x WIDTH x THICKNESS MATERIAL, LEFT-RIGHT'.
 
-    'LENGTH x WIDTH x THICKNESS MATERIAL, LEFT-RIGHT', for a round section 'LENGTH x round DIAMETER', for a tube
-    'LENGTH x tube DIAMETER x WALL'. A size without a unit has that of the next one. The material is one of
-    `materials.MATERIALS`, or E=69GPa rho=2.7g/cm3 with nu=0.3 where shear is of interest. 'cantilever' is
-    clamped-free. Raises InputError.
+    Other sections are 'round DIAMETER' and 'tube DIAMETER x WALL'. A size without a unit has that of the next one.
+    MATERIAL is one of `materials.MATERIALS`, E=69GPa rho=2.7g/cm3, or both; nu is of interest for shear alone.
+    'cantilever' is clamped-free. Raises InputError.
     """
-    body, comma, ends = phrase.rpartition(",")
-    if not comma:
-        raise InputError(f"beam = {shown(phrase)} names no supports: write {EXAMPLE}")
-    sizes, rest = [], body.strip()
-    while found := re.match(SIZE, rest):
-        sizes.append(found.groups())
-        rest = rest[found.end() :].lstrip()
-        if not (times := re.match(r"[x×]\s*", rest)):
-            break
-        rest = rest[times.end() :]
-    fields = SHAPES.get((sizes[1][0] if len(sizes) > 1 else None, len(sizes) - 1))
-    if fields is None or sizes[-1][2] is None:
-        raise InputError(f"beam = {shown(phrase)}: write length and section with units, {EXAMPLE}")
-    values, unit = [], ""
-    for _, number, own in reversed(sizes):
-        unit = own or unit
-        values.append(in_si(f"{number} {unit}", "m", "beam"))
-    values.reverse()
-    own_fields: dict[str, Any] = dict(zip(fields, values[1:], strict=True))
-    if sizes[1][0]:
-        own_fields["shape"] = sizes[1][0]
-    return Beam(length=values[0], supports=_supports(ends), **own_fields, **_material(rest))
-
-
-def _supports(text: str) -> tuple[Any, Any]:
-    left, dash, right = text.strip().lower().replace("cantilever", "clamped-free").partition("-")
-    if not dash or left not in SUPPORTS or right not in SUPPORTS:
-        raise InputError(f"supports = {shown(text.strip())}: write two of {', '.join(SUPPORTS)}, clamped-free")
-    return left, right
+    body, _, ends = phrase.rpartition(",")
+    left, _, right = ends.strip().lower().replace("cantilever", "clamped-free").partition("-")
+    if left not in SUPPORTS or right not in SUPPORTS:
+        raise InputError(f"beam = {shown(phrase)}: end it by two of {', '.join(SUPPORTS)}, as in '{EXAMPLE}'")
+    parts = re.split(r"\s*[x×]\s*(?=[\d.]|round|tube)", body.replace(",", " ").strip())
+    sizes = [re.fullmatch(rf"(round\s+|tube\s+)?({NUMBER})\s*(\S*)\s*(.*)", part) for part in parts]
+    found = [size for size in sizes if size]
+    shape = (found[1][1] or "rectangle").strip() if len(found) > 1 else ""
+    names = ("length", *SIZES.get(shape, ()))
+    if len(found) < len(sizes) or len(names) != len(found) or any(size[4] for size in found[:-1]):
+        raise InputError(f"beam = {shown(phrase)}: write length, section and material as in '{EXAMPLE}'")
+    table: dict[str, Any] = {"supports": [left, right]} | ({"shape": shape} if shape != "rectangle" else {})
+    unit = ""
+    for name, size in zip(reversed(names), reversed(found), strict=True):
+        unit = size[3] or unit
+        table[name] = in_si(f"{size[2]} {unit}", "m", f"beam.{name}")
+    return table | _material(found[-1][4])
 
 
 def _material(text: str) -> dict[str, float]:
-    """Elastic constants and density of a named material or of E=... rho=... nu=..."""
-    if "=" not in text:
-        known = material_named(text)
-        return {name: getattr(known, name) for name, _ in CONSTANTS.values()}
-    pairs = re.findall(r"(\w+)\s*=\s*([^\s=]+(?:\s+[^\s=]+(?=\s|$)(?!\s*=))?)", text)
-    values = {}
-    for key, value in pairs:
+    """Elastic constants and density of a named material, of E=... rho=... nu=..., or of both."""
+    named, *pairs = re.split(r"\s*\b(\w+)\s*=\s*", text)
+    material = material_named(named) if named or not pairs else None
+    values = {name: getattr(material, name) for name, _ in CONSTANTS.values()} if material else {}
+    for key, value in zip(pairs[::2], pairs[1::2], strict=True):
         if key not in CONSTANTS:
-            raise InputError(f"beam.{key} = {value}: give E, rho and, for shear, nu")
-        field, unit = CONSTANTS[key]
-        values[field] = in_si(value, unit, key)
-    if not {"youngs_modulus", "density"} <= set(values):
-        raise InputError(f"material = {shown(text)}: give both E and rho, E=69GPa rho=2700")
+            raise InputError(f"beam: {key} = {value} is no constant of a material, give E, rho and nu")
+        field, si = CONSTANTS[key]
+        values[field] = in_si(value, si, f"beam.{field}")
     return values
