@@ -96,7 +96,7 @@ REFUSED = [
     ("scenes init other.toml --from nowhere", "neither a packaged scene nor a file"),
     ("choose --mode 1 --error 1% --beam", "requires an argument"),
     ("choose bare.toml --mode 1 --error 1% --beam=1mx2x1mm_steel,clamped-free", "rule = 'bare.toml'"),
-    ("measure --beam=1mx40x8mm,pinned mode.frequency", "end it by two of pinned"),
+    ("measure --beam=1mx40x8mm,pinned mode.frequency model=analytic mode=1", "end it by two of pinned"),
     ("schema beam.sprung", "did you mean 'beam.spring'"),
     ("diff bare.toml bare.toml", "no saved run"),
     ("diff here there", "does not exist"),
