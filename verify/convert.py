@@ -167,6 +167,8 @@ def typed(text: str, kind: Any, field: str) -> Any:
     value, entry = literal(text, field), entry_of(kind)
     if entry is not None and int in arms_of(entry):
         return [one for part in (value if isinstance(value, list) else [value]) for one in _spelt_out(part, field)]
+    if entry is not None and str in arms_of(entry) and isinstance(value, str):
+        return [value]
     if extra_of(kind, RELATIVE) and isinstance(value, str) and value.endswith("%"):
         number = literal(value[:-1].strip(), field)
         return number / 100.0 if isinstance(number, float | int) else value

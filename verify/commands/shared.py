@@ -114,19 +114,21 @@ def console() -> "Console":
 
 
 @contextmanager
-def progress(total: int | None = None, *, quiet: bool = False) -> Iterator[Callable[[str], None]]:
-    """A bar on the error stream where that is a terminal, silence elsewhere.
+def progress(total: int | None = None, *, quiet: bool = False, lines: bool = False) -> Iterator[Callable[[str], None]]:
+    """A bar on the error stream where that is a terminal; elsewhere silence, or with `lines` a line for each step.
 
     The context is a function to call with the name of each step before the step; `total` is the number of steps
-    where it is known.
+    where it is known, from which the bar estimates the time that remains.
     """
     if quiet or not sys.stderr.isatty():
-        yield lambda step: None
+        yield lambda step: click.echo(step, err=True) if lines and not quiet else None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = (SpinnerColumn(), BarColumn(20), TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
+    left = [TimeRemainingColumn(), TextColumn("left,")] if total else []
+    what = TextColumn("{task.description}", markup=False)
+    columns = (SpinnerColumn(), BarColumn(20), TimeElapsedColumn(), *left, what)
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("", total=total)
         done = -1
