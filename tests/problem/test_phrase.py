@@ -1,5 +1,7 @@
 """A beam in one line, and the units of a command line."""
 
+from pathlib import Path
+
 import pytest
 
 from verify.errors import InputError
@@ -8,6 +10,7 @@ from verify.problem.materials import MATERIALS
 from verify.problem.phrase import beam_table
 from verify.units import in_si
 
+PAGE = (Path(__file__).parents[2] / "docs" / "your-beam.md").read_text("utf-8")
 STEEL = {"youngs_modulus": 210e9, "density": 7850.0, "poissons_ratio": 0.3}
 
 
@@ -68,4 +71,5 @@ def test_materials_are_solids_with_sources():
     for name, one in MATERIALS.items():
         assert 3000.0 < (one.youngs_modulus / one.density) ** 0.5 < 9000.0, name
         assert 0.0 < one.poissons_ratio < 0.5
-        assert len(one.source) > 10
+        row = f"| {name} | {one.youngs_modulus / 1e9:g} | {one.density:g} | {one.poissons_ratio:g} | {one.source} |\n"
+        assert row in PAGE
