@@ -304,6 +304,7 @@ def path(tmp_path):
         ("convergence.modes=1-3,7", lambda s: s.studies["convergence"].modes == (1, 2, 3, 7)),
         ("convergence.modes=4", lambda s: s.studies["convergence"].modes == (4,)),
         ("title=A strip", lambda s: s.title == "A strip"),
+        ("motion.duration=0.3ms", lambda s: s.motion.duration == pytest.approx(3e-4, rel=1e-14)),
         ("beam.length=23 in", lambda s: s.beam.length == pytest.approx(0.5842, rel=1e-14)),
         ("beam.youngs_modulus=69GPa", lambda s: s.beam.youngs_modulus == pytest.approx(6.9e10, rel=1e-14)),
         ("drive.frequency_hz=0.31kHz", lambda s: s.drive.frequency_hz == pytest.approx(310.0, rel=1e-14)),
