@@ -183,7 +183,7 @@ def test_copy_keeps_comments_under_another_name():
         ("4470", "4.47e6", "above that of any solid"),
         ("0.0023", "2.3", "m thick and"),
         ("width = 0.031", "width = 31", "m wide and"),
-        ("length = 0.73", "length = 730", "its own weight bends it"),
+        ("length = 0.73", "length = 730", "its own weight bends"),
         ("length = 0.73\nwidth = 0.031\nthickness = 0.0023", "length = 730\nwidth = 31\nthickness = 2.3", "a mass of"),
     ],
 )
