@@ -9,6 +9,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 import msgspec
 
 from verify.errors import InputError, near_name, raise_all, shown
+from verify.units import FACTORS, in_si
 
 T = TypeVar("T")
 
@@ -159,16 +160,21 @@ def literal(text: str, field: str) -> Any:
 
 
 def typed(text: str, kind: Any, field: str) -> Any:
-    """A command-line word by its type: lists of whole numbers as 1-3,7 or 10-50:10, relative numbers as 0.1%.
+    """A command-line word by its type: lists of whole numbers as 1-3,7 or 10-50:10, 0.1% where relative, 40mm.
 
     What does not fit stays as it is; `convert` then refuses it. Raises InputError for an empty or a long range.
     """
     value, entry = literal(text, field), entry_of(kind)
     if entry is not None and int in arms_of(entry):
         return [one for part in (value if isinstance(value, list) else [value]) for one in _spelt_out(part, field)]
+    if entry is not None and str in arms_of(entry) and isinstance(value, str):
+        return [value]
     if extra_of(kind, RELATIVE) and isinstance(value, str) and value.endswith("%"):
         number = literal(value[:-1].strip(), field)
         return number / 100.0 if isinstance(number, float | int) else value
+    si = re.split(", | from ", extra_of(kind, "unit") or "")[0]
+    if si in FACTORS and isinstance(value, str) and _WITH_UNIT.match(value):
+        return in_si(value, si, field)
     return value
 
 

@@ -94,6 +94,9 @@ REFUSED = [
     ("scenes show nowhere", "neither a packaged scene nor a file"),
     ("scenes init bare.toml", "exists"),
     ("scenes init other.toml --from nowhere", "neither a packaged scene nor a file"),
+    ("choose --mode 1 --error 1% --beam", "requires an argument"),
+    ("choose bare.toml --mode 1 --error 1% --beam=1mx2x1mm_steel,clamped-free", "rule = 'bare.toml'"),
+    ("measure --beam=1mx40x8mm,pinned mode.frequency model=analytic mode=1", "end it by two of pinned"),
     ("schema beam.sprung", "did you mean 'beam.spring'"),
     ("diff bare.toml bare.toml", "no saved run"),
     ("diff here there", "does not exist"),
@@ -128,6 +131,23 @@ def test_measure_is_the_closed_form(call, data, bare):
     assert call(line)[1] == f"mode.frequency = {FUNDAMENTAL:.12g} Hz\n"
     longer = data(line, "--set", "beam.length=0.86")
     assert longer["value"] == pytest.approx(FUNDAMENTAL / 4.0, rel=1e-12)
+
+
+def test_a_beam_in_one_line_stands_for_a_scene(data, call):
+    words = (
+        "measure mode.frequency model=analytic mode=1",
+        "--beam",
+        "30 in x tube 25 x 1.5mm aluminium, pinned-guided",
+    )
+    section = pi / 64.0 * (0.025**4 - 0.022**4), pi / 4.0 * (0.025**2 - 0.022**2)
+    speed = sqrt(70e9 * section[0] / (2700.0 * section[1]))
+    assert data(*words)["value"] == pytest.approx(pi / 8.0 * speed / 0.762**2, rel=1e-12)
+    longer = data(*words, "--set", "beam.length=60in", "--set", "beam.density=2.7g/cm³")
+    assert longer["value"] == pytest.approx(pi / 32.0 * speed / 0.762**2, rel=1e-12)
+    rows = data("sweep mode.frequency model=analytic mode=1 beam.length=3in,30in", *words[1:])["tables"][0]["rows"]
+    assert rows[0]["mode.frequency"] == pytest.approx(100.0 * rows[1]["mode.frequency"], rel=1e-12)
+    status, out, _ = call("choose --mode 3 --error 1%", *words[1:])
+    assert (status, "segments" in out) == (0, True)
 
 
 def test_plan_lists_parts(data, bare):

@@ -49,7 +49,9 @@ def test_override_skips_gates(capsys):
 
 def test_several_scenes_have_an_index(capsys):
     assert status_of(["run", "bare.toml", "off.toml"]) == 1
-    assert "1 of 2 scenes failed" in capsys.readouterr().out
+    out, err = capsys.readouterr()
+    assert "1 of 2 scenes failed" in out
+    assert err.splitlines() == ["2 scenes", "1 of 2 scenes: bare.toml", "2 of 2 scenes: off.toml"]
     page = Path("reports/index.html").read_text()
     assert 'href="bare.html"' in page
     assert 'href="off.html"' in page

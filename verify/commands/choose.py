@@ -4,11 +4,11 @@ from typing import Any
 
 import click
 
-from verify.commands.shared import format_options, overrides_option, scene_argument, show
+from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.errors import InputError
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @scene_argument
 @click.argument("rules", nargs=-1, metavar="[RULE=VALUE]...")
 @click.option("--mode", required=True, metavar="N", help="Mode number from 1, or all of a range: 1-12.")

@@ -6,6 +6,7 @@ import click
 
 from verify.commands.shared import (
     GATE_FAILED,
+    BeamCommand,
     charts_option,
     format_options,
     overrides_option,
@@ -18,7 +19,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @scene_argument
 @click.argument("given", nargs=-1, metavar="FILE | FREQUENCIES...")
 @overrides_option

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import overrides_option, progress, scene_argument
+from verify.commands.shared import BeamCommand, overrides_option, progress, scene_argument
 from verify.errors import printable
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @scene_argument
 @overrides_option
 @click.option("--what", metavar="WHAT", help="modes, wave, motion or convergence. Default: what the file type holds.")

@@ -2,10 +2,10 @@
 
 import click
 
-from verify.commands.shared import json_option, overrides_option, print_json, progress, scene_argument
+from verify.commands.shared import BeamCommand, json_option, overrides_option, print_json, progress, scene_argument
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @scene_argument
 @click.argument("quantity")
 @click.argument("arguments", nargs=-1, metavar="[KEY=VALUE]...")

@@ -9,6 +9,7 @@ import click
 from verify.commands.shared import GATE_FAILED, console, json_option, overrides_option, print_json, progress
 
 CANNOT_RUN = 2
+ALL_TAKE = ", on two cores about a minute, twice that on the first run, which compiles kernels"
 
 
 class Task(NamedTuple):
@@ -52,7 +53,7 @@ def run(
     if len(tasks) == 1:
         _run_one(tasks[0], as_json)
     else:
-        _run_several(tasks, as_json, _command_line(scenes, overrides))
+        _run_several(tasks, as_json, _command_line(scenes, overrides), "" if scenes else ALL_TAKE)
 
 
 def _run_one(task: Task, as_json: bool) -> None:
@@ -74,14 +75,16 @@ def _run_one(task: Task, as_json: bool) -> None:
         raise SystemExit(GATE_FAILED)
 
 
-def _run_several(tasks: list[Task], as_json: bool, command: str) -> None:
+def _run_several(tasks: list[Task], as_json: bool, command: str, expected: str) -> None:
     from verify.parallel import map_processes
     from verify.report.index import index_result, write_index
 
     start = perf_counter()
-    with progress(len(tasks), quiet=as_json) as step:
-        step("scenes")
-        lines = map_processes(_line_of, tasks, lambda done: step(f"{done} of {len(tasks)} scenes"))
+    with progress(len(tasks), quiet=as_json, lines=True) as step:
+        step(f"{len(tasks)} scenes{expected}")
+        lines = map_processes(
+            _line_of, tasks, lambda done: step(f"{done} of {len(tasks)} scenes: {tasks[done - 1].scene}")
+        )
     reports = tasks[0].reports
     if reports is not None:
         write_index(lines, reports / "index.html", command, perf_counter() - start)

@@ -18,6 +18,31 @@ DEFAULT = "paper"
 """The scene where none is named."""
 
 scene_argument = click.argument("scene")
+
+
+class BeamCommand(click.Command):
+    """A command that has `--beam PHRASE` in place of its argument SCENE."""
+
+    def __init__(self, *values: Any, **options: Any) -> None:
+        from verify.problem.materials import MATERIALS
+        from verify.problem.phrase import EXAMPLE
+
+        super().__init__(*values, **options)
+        text = f"A beam in place of SCENE: '{EXAMPLE}'. Sections: WIDTH x THICKNESS, round DIAMETER, tube DIAMETER x "
+        text += f"WALL. Materials: {', '.join(MATERIALS)}, or E=69GPa rho=2.7g/cm3."
+        self.params.append(click.Option(["--beam"], metavar="PHRASE", expose_value=False, help=text))
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Insert the phrase in front, as the name of the scene."""
+        from verify.problem.phrase import PREFIX
+
+        for word, following in zip(args, [*args[1:], ""], strict=True):
+            name, _, phrase = word.partition("=")
+            if name == "--beam":
+                return super().parse_args(ctx, [PREFIX + (phrase or following), *args])
+        return super().parse_args(ctx, args)
+
+
 overrides_option = click.option(
     "--set",
     "overrides",
@@ -90,19 +115,21 @@ def console() -> "Console":
 
 
 @contextmanager
-def progress(total: int | None = None, *, quiet: bool = False) -> Iterator[Callable[[str], None]]:
-    """A bar on the error stream where that is a terminal, silence elsewhere.
+def progress(total: int | None = None, *, quiet: bool = False, lines: bool = False) -> Iterator[Callable[[str], None]]:
+    """A bar on the error stream where that is a terminal; elsewhere silence, or with `lines` a line for each step.
 
     The context is a function to call with the name of each step before the step; `total` is the number of steps
-    where it is known.
+    where it is known, from which the bar estimates the time that remains.
     """
     if quiet or not sys.stderr.isatty():
-        yield lambda step: None
+        yield lambda step: click.echo(step, err=True) if lines and not quiet else None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = (SpinnerColumn(), BarColumn(20), TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
+    left = [TimeRemainingColumn(), TextColumn("left,")] if total else []
+    what = TextColumn("{task.description}", markup=False)
+    columns = (SpinnerColumn(), BarColumn(20), TimeElapsedColumn(), *left, what)
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("", total=total)
         done = -1

@@ -3,6 +3,7 @@
 import click
 
 from verify.commands.shared import (
+    BeamCommand,
     charts_option,
     format_options,
     overrides_option,
@@ -14,7 +15,7 @@ from verify.commands.shared import (
 from verify.errors import InputError
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @scene_argument
 @click.argument("words", nargs=-1, metavar="[QUANTITY]... [KEY=VALUES]...")
 @overrides_option
@@ -28,12 +29,20 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
     """
     from verify.commands.table import run_study
     from verify.convert import typed
-    from verify.scene.load import load_scene
+    from verify.quantities.base import QUANTITIES
+    from verify.scene.load import load_scene, type_at
     from verify.studies.sweep import run_sweep
 
     quantities = [word for word in words if "=" not in word]
     pairs = [word.partition("=") for word in words if "=" in word]
-    lists = {key: typed(text, tuple[int, ...], key) for key, _, text in pairs}
+    kinds = {key: kind for name in quantities for key, kind in QUANTITIES.named(name).types.items()}
+    lists = {
+        key: [
+            typed(one, type_at(key) if "." in key else kinds.get(key), key) if isinstance(one, str) else one
+            for one in typed(text, tuple[int, ...], key)
+        ]
+        for key, _, text in pairs
+    }
     if len(lists) < len(pairs):
         raise InputError("KEY = VALUES: one key occurs twice, give each once")
     if not quantities:

@@ -3,6 +3,7 @@
 import click
 
 from verify.commands.shared import (
+    BeamCommand,
     charts_option,
     format_options,
     overrides_option,
@@ -13,7 +14,7 @@ from verify.commands.shared import (
 )
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @scene_argument
 @click.argument("options", nargs=-1, metavar="[KEY=VALUE]...")
 @click.option("--study", default="convergence", show_default=True, metavar="NAME", help="Section of the study.")

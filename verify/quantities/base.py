@@ -37,7 +37,7 @@ Value: TypeAlias = float | complex | Bracket
 MODEL_NAME = "model name"
 """Key of the annotation of an argument that names a model (`options.model_name`)."""
 PLACE = "place"
-Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True})]
+Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True, "unit": "m"})]
 """A position on the beam: `evaluate` raises InputError for one off the beam."""
 TABLES = ("beam", "drive", "slider", "motion")
 """Tables of a scene that a quantity may depend on."""
@@ -78,7 +78,7 @@ class Quantity:
                 default = () if parameter.default is inspect.Parameter.empty else (parameter.default,)
                 fields.append((parameter.name, kind, *default))
         fields.sort(key=lambda field: {"model": 0, "count": 1}.get(field[0], 2))
-        self._types = {field[0]: field[1] for field in fields}
+        self.types = {field[0]: field[1] for field in fields}
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     def __call__(self, *values: Any, **arguments: Any) -> Value:
@@ -103,16 +103,16 @@ class Quantity:
         """Keyword arguments of the function: checked, with defaults, option groups built. Raises InputError."""
         data = {name: _native(value, name) for name, value in arguments.items()}
         required = {field.name for field in msgspec.structs.fields(self.schema) if field.required}
-        for name, kind in self._types.items():
+        for name, kind in self.types.items():
             among = extra_of(kind, MODEL_NAME)
             if among is not None and isinstance(data.get(name), str):
                 among.check(data[name], name)
-            elif among is not None and name in required - set(data) and set(data) <= set(self._types):
+            elif among is not None and name in required - set(data) and set(data) <= set(self.types):
                 raise InputError(f"{name} is missing: give one of {', '.join(among.names())}")
             if name in data and isinstance(data[name], int | float) and entry_of(kind) is not None:
                 data[name] = [data[name]]
         checked = convert(data, self.schema)
-        values = {name: getattr(checked, name) for name in self._types}
+        values = {name: getattr(checked, name) for name in self.types}
         groups = {
             parameter: kind(**{name: values.pop(name) for name in kind.__struct_fields__})
             for parameter, kind in self._groups.items()
@@ -130,7 +130,7 @@ class Quantity:
         length = scene.beam.length
         for name, x in arguments.items():
             if (
-                extra_of(self._types[name], PLACE)
+                extra_of(self.types[name], PLACE)
                 and x is not None
                 and not -ROUNDING * length <= x <= length * (1.0 + ROUNDING)
             ):
@@ -171,9 +171,9 @@ def parse_arguments(name: str, words: Iterable[str]) -> dict[str, Any]:
             raise InputError(f"argument = {word!r}: write it as KEY=VALUE")
         if key in found:
             raise InputError(f"{key} = {text!r} is a second value: give one")
-        kind = wanted._types.get(key)
+        kind = wanted.types.get(key)
         if kind is None:
-            raise InputError(f"{key} is not a known key: {near_name(key, tuple(wanted._types))}")
+            raise InputError(f"{key} is not a known key: {near_name(key, tuple(wanted.types))}")
         found[key] = typed(text, kind, key)
     wanted.bind(found)
     return found

@@ -12,13 +12,14 @@ from verify.problem.beam import PointForce
 from verify.quantities.base import Place, Scene, quantity
 from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall
 from verify.quantities.slider import SliderOptions, TimeOptions, motion_arguments
+from verify.validation import unit
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.dynamics.result import Motion
 
 Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
-Seconds = Annotated[float, Meta(gt=0, description="s, from rest")]
+Seconds = Annotated[float, unit("s"), Meta(gt=0, description="s, from rest")]
 TipLoad = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]
 TipComponent = Annotated[Literal["deflection", "shortening"], Meta(description="w/L, or 1 - x/L")]
 HubSpeed = Annotated[float, Meta(ge=0, le=1e3, description="of the hub, in sqrt(EI / (rho A L^4))")]

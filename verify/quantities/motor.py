@@ -9,13 +9,14 @@ from msgspec import Meta
 from verify.errors import InputError
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
+from verify.validation import unit
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.motor.curves import Transient
     from verify.motor.steady_state import Figure, MotorCase, SteadyState
 
-Speed = Annotated[float, Meta(description="of the slider along +x, m/s")]
+Speed = Annotated[float, unit("m/s"), Meta(description="of the slider along +x, m/s")]
 
 
 class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):

@@ -13,7 +13,7 @@ from verify.linear import registry
 from verify.linear.registry import MEAN, MODELS
 from verify.problem.beam import PointForce, check_frequency
 from verify.quantities.base import MODEL_NAME, Place, Scene
-from verify.validation import Relative
+from verify.validation import Relative, unit
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import Settings
@@ -56,17 +56,17 @@ DiscreteModel = Annotated[str, model_name("which discrete model", "modes", sized
 FieldModel = Annotated[str, model_name("which model", "harmonic")]
 DiscreteField = Annotated[str, model_name("which discrete model", "harmonic", sized=True)]
 TimeModel = Annotated[str, model_name("which model", "time_basis")]
-Frequency = Annotated[float, Meta(gt=0, description="Hz; default: the scene's drive")]
+Frequency = Annotated[float, unit("Hz"), Meta(gt=0, description="Hz; default: the scene's drive")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
 Theory = Annotated[options.Theory, Meta(description="beam theory")]
 Wall = Annotated[options.Wall, Meta(description="joint at a clamped end; half: k = 2EI/l")]
 Joints = Annotated[options.Joints, Meta(description="joint stiffness of Eq. (1)")]
 Attachment = Annotated[options.Attachment, Meta(description="point masses and springs on segments")]
 SoftStart = Annotated[float, Meta(ge=0, description="periods over which the forces grow; default: the scene's")]
-ForceAmplitude = Annotated[float, Meta(ge=0, description="of every force, N; default: the scene's")]
+ForceAmplitude = Annotated[float, unit("N"), Meta(ge=0, description="of every force, N; default: the scene's")]
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
-Mass = Annotated[float, Meta(gt=0, description="kg")]
+Mass = Annotated[float, unit("kg"), Meta(gt=0, description="kg")]
 
 
 def check_count(model: str, count: int | None) -> None:

@@ -12,13 +12,13 @@ from verify.linear.registry import MODELS
 from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
-from verify.validation import check_sizes
+from verify.validation import check_sizes, unit
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.dynamics.result import EnergyBalance, Motion
 
-Time = Annotated[float, Meta(gt=0, description="s; default: the scene's motion.duration")]
+Time = Annotated[float, unit("s"), Meta(gt=0, description="s; default: the scene's motion.duration")]
 Window = Annotated[tuple[float, float], Meta(description="m, start and end")]
 SAMPLES_PER_PERIOD, POINTS = 32, 40
 """Instants and positions of a motion in which waves are measured."""

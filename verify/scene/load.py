@@ -39,7 +39,7 @@ def scene_path(name_or_path: str | Path) -> Path:
 
 
 def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene:
-    """A packaged scene by name, any other by path, with 'key=value' overrides.
+    """A packaged scene by name, any other by path, a beam in one line after 'beam: ', with 'key=value' overrides.
 
     Raises InputError with one sentence for each error.
     """
@@ -88,9 +88,15 @@ def _argument_errors(tables: dict[str, Any]) -> Iterator[str]:
 
 def tables_of(name_or_path: str | Path, overrides: Sequence[str] = ()) -> dict[str, Any]:
     """The plain tables of a scene file with overrides, not yet checked. Raises InputError."""
+    from verify.problem.phrase import PREFIX, beam_table
+
     if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
         raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
-    tables = read_toml(scene_path(name_or_path))
+    phrase = str(name_or_path).removeprefix(PREFIX)
+    if phrase != str(name_or_path):
+        tables: dict[str, Any] = {"name": "beam", "title": phrase, "beam": beam_table(phrase)}
+    else:
+        tables = read_toml(scene_path(name_or_path))
     keys = [text.partition("=")[0].strip() for text in overrides]
     errors = [f"--set {key} occurs twice: set it once" for key in dict.fromkeys(keys) if keys.count(key) > 1]
     for text in overrides:
@@ -133,7 +139,7 @@ def override(tables: dict[str, Any], assignment: str) -> None:
     key, equals, text = (part.strip() for part in assignment.partition("="))
     if not equals or not key or not text:
         raise InputError(f"--set {shown(assignment)} is not an assignment: write key=value, beam.length=0.4")
-    value = typed(text, _type_at(key), key)
+    value = typed(text, type_at(key), key)
     *parents, last = key.split(".")
     here: Any = tables
     for depth, step in enumerate(parents):
@@ -144,7 +150,7 @@ def override(tables: dict[str, Any], assignment: str) -> None:
     here[_position(here, last, key) if isinstance(here, list) else last] = value
 
 
-def _type_at(key: str) -> Any:
+def type_at(key: str) -> Any:
     """The type of the value at 'beam.length' or 'gate.ID.within'; None where there is no such key."""
     from verify.studies.base import STUDIES
 

@@ -12,13 +12,13 @@ from verify.options import DriveKind, Reference
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.device import Device, check_moved
 from verify.problem.slider import Slider
-from verify.validation import check_number
+from verify.validation import check_number, unit
 
 
 class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A point force, positioned from one end of the beam."""
 
-    position: float
+    position: Annotated[float, unit("m")]
     """Distance from the end that `measured_from` names, m."""
     measured_from: Literal["left", "right"] = "left"
     """End of the beam from which `position` is measured."""
@@ -59,7 +59,7 @@ def _from_left(field: str, position: float, side: str, beam: Beam) -> float:
 class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Harmonic excitation at one frequency: point forces, or displacements imposed at points."""
 
-    frequency_hz: float
+    frequency_hz: Annotated[float, unit("Hz")]
     """Hz."""
     kind: DriveKind = "force"
     """Meaning of the amplitudes: N, or m. The paper does not say; its frequency rule fits forces."""

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from verify.errors import InputError
+from verify.problem.slider import GRAVITY
 from verify.scene.model import Scene
 
 if TYPE_CHECKING:
@@ -12,10 +14,10 @@ if TYPE_CHECKING:
 SOUND = (30.0, 30_000.0)  # sqrt(E/rho) of materials, soft rubber to diamond, m/s
 MAX_DENSITY = 25_000.0  # above osmium, kg/m^3
 MAX_WIDTH = 5.0  # of a strip over its length
-MAX_MASS = 1e5  # kg; a beam in millimetres read as metres has 1e9 times its mass
+MAX_MASS = 1e8  # kg, above any bridge's; a beam in millimetres read as metres has 1e9 times its mass
 LONG = 5.0  # m; no beam in millimetres is shorter than this when read as metres
+ELEMENTS = 50  # of that sag, which is exact at the nodes of any number
 SMALL_DEFLECTION = 0.1  # over the beam's length
-GRAVITY = 9.81
 
 
 def unit_warnings(scene: Scene) -> tuple[str, ...]:
@@ -61,8 +63,35 @@ def _lengths(beam: "Beam") -> Iterator[str]:
         return
     if mass > MAX_MASS:
         yield f"beam: a mass of {1e-3 * mass:.3g} t, check the units (137 mm is 0.137)"
-    elif not (beam.tension or beam.foundation or beam.spring):
-        stiffness = min(piece.bending_stiffness for piece in beam.pieces)
-        sag = 5.0 / 384.0 * mass / beam.length * GRAVITY * beam.length**4 / stiffness
-        if sag > beam.length:
-            yield f"beam: its own weight bends it by {sag:.3g} m, check the units (137 mm is 0.137)"
+    elif (sag := static_sag(beam)) > SMALL_DEFLECTION * beam.length:
+        yield f"beam: its own weight bends {beam.length:.3g} m by {sag:.3g} m, check the units (137 mm is 0.137)"
+
+
+def static_sag(beam: "Beam") -> float:
+    """Largest deflection of a horizontal beam under its own weight and that of attached masses, m.
+
+    By finite elements with sections, springs, foundation and axial force. 0 for a beam with rigid motions, and for one
+    that buckles.
+    """
+    import numpy as np
+
+    from verify.fem_beam import HermiteModel
+    from verify.linear.mesh import cut_pieces
+
+    if beam.rigid_motions:
+        return 0.0
+    model = HermiteModel(beam, max(ELEMENTS, len(cut_pieces(beam))))
+    parts = model.mesh
+    middles, halves = 0.5 * (parts.nodes[1:] + parts.nodes[:-1]), 0.5 * parts.lengths
+    # two Gauss points integrate the product of a constant load and a cubic
+    x = np.concatenate([middles - halves / 3**0.5, middles + halves / 3**0.5]) * model.unit
+    weight = GRAVITY * beam.mass_per_length * model.unit * np.tile(halves * parts.masses_per_length, 2)
+    x = np.append(x, [body.position for body in beam.mass])
+    weight = np.append(weight, [GRAVITY * body.mass for body in beam.mass])
+    loads = model.load_rows(x).T @ weight[:, None] * (model.unit**3 / beam.bending_stiffness)
+    try:
+        with np.errstate(all="ignore"):  # sections may differ by more than double precision holds
+            unknowns = model.stable_system.harmonic(loads, 0.0)
+    except (InputError, np.linalg.LinAlgError):
+        return 0.0
+    return float(abs(model.line(unknowns)(np.minimum(parts.nodes * model.unit, beam.length), 0)).max())

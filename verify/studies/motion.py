@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title, table
-from verify.validation import Relative, check_number
+from verify.validation import Relative, check_number, unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -65,7 +65,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: ClassVar[str] = "motion"
     title: ClassVar[str] = "The slider"
 
-    duration: Annotated[float, Meta(description="Duration, s.")] = 1e-3
+    duration: Annotated[float, unit("s"), Meta(description="Duration, s.")] = 1e-3
     start: Annotated[Start, Meta(description="Beam at the start: at rest or in its steady state.")] = "rest"
     soft_start_periods: Annotated[
         float | None, Meta(description="Periods over which the forces grow; 2 from rest unless set, 0 is a step load.")
