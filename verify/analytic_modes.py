@@ -33,11 +33,11 @@ from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, frequencies_on, positions_on, reshape_like, vector_on
 from verify.linear.system import RESONANCE
-from verify.linear.time_basis import TimeBasis, check_held
+from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
-from verify.problem.supports import HOLDS
-from verify.validation import check_whole
+from verify.problem.supports import FIXED
+from verify.validation import check_integer
 
 EXACT_MODES = 400
 """Default number of modes of a time basis; the response of the higher modes is quasi-static."""
@@ -105,7 +105,7 @@ class ExactModel(BeamModel):
 
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes; shapes have derivatives of any order. Raises InputError."""
-        check_whole("n_modes", n_modes, 1, MOST_MODES)
+        check_integer("n_modes", n_modes, 1, MOST_MODES)
         frequencies = np.array([self.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
         blocks = [range(first, min(first + _TOGETHER, n_modes + 1)) for first in range(1, n_modes + 1, _TOGETHER)]
@@ -131,7 +131,7 @@ class ExactModel(BeamModel):
         inertia belong to the modal mass. By Timoshenko's theory the deflection. Raises InputError.
         """
         closed_forms.check_mode(mode)
-        check_whole("derivative", derivative, 0)
+        check_integer("derivative", derivative, 0)
         at = positions_on("x", x, self.beam.length).ravel()
         return reshape_like(self._shapes(range(mode, mode + 1), at, derivative)[0], x)
 
@@ -168,7 +168,7 @@ class ExactModel(BeamModel):
         drives, stationed = self.check_stationed(displacements, devices)
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
-        fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if HOLDS[end].deflection]
+        fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if FIXED[end].deflection]
         gaps = [b - a for a, b in pairwise(places)] + [abs(at - end) for at in places for end in fixed]
         if any(gap <= _SAME_PLACE * length for gap in gaps):
             raise InputError(
@@ -321,7 +321,7 @@ class ExactModel(BeamModel):
         check_in_time(beam)
         if self.theory != "euler-bernoulli":
             raise InputError(f"theory = {self.theory!r}: the exact beam in time is of euler-bernoulli, choose that")
-        check_whole("modes", n_modes, 1, MOST_MODES)
+        check_integer("modes", n_modes, 1, MOST_MODES)
         own = self.modes(n_modes)
         omegas = 2.0 * pi * own.frequencies_hz
         spans, inner = np.array(self.layout.spans), np.array(self.layout.positions[1:-1]) * beam.length
@@ -384,8 +384,8 @@ class ExactModel(BeamModel):
 
 def check_in_time(beam: Beam, instead: str = "give model = 'fem' or 'segment'") -> None:
     """Raise InputError for a beam without an exact time basis; `instead` is the remedy in the message."""
-    beam.check_added("the exact beam in time", ("section", "mass"), instead)
-    check_held(beam)
+    beam.check_features("the exact beam in time", ("section", "mass"), instead)
+    check_supported(beam)
 
 
 @lru_cache(maxsize=256)  # a basis of 400 modes has some twenty blocks

@@ -27,8 +27,8 @@ from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem
 from verify.options import Theory
 from verify.problem.beam import Beam
-from verify.problem.supports import HOLDS
-from verify.validation import MOST_PARTS, check_whole
+from verify.problem.supports import FIXED
+from verify.validation import MOST_PARTS, check_integer
 
 RIGID = 1e14
 """Cap on stiffness, relative to that of an element: above it frequencies change by less than 1e-13."""
@@ -57,7 +57,7 @@ class HermiteModel(DiscreteModel):
     modal_settings = ("grading", "theory")
 
     def __post_init__(self) -> None:
-        check_whole("n_elements", self.n_elements, 1, MOST_PARTS)
+        check_integer("n_elements", self.n_elements, 1, MOST_PARTS)
         self.check_theory()
         check_division(self.beam, self.n_elements, self.grading, len(cut_pieces(self.beam)))
         self.check_memory()
@@ -82,7 +82,7 @@ class HermiteModel(DiscreteModel):
     @property
     def n_unknowns(self) -> int:
         """Nodal values that the supports leave free, and two shear strains in each Timoshenko element."""
-        return (4 if self.shear else 2) * self.n_elements + 2 - sum(sum(HOLDS[end]) for end in self.beam.supports)
+        return (4 if self.shear else 2) * self.n_elements + 2 - sum(sum(FIXED[end]) for end in self.beam.supports)
 
     @cached_property
     def mesh(self) -> Parts:
@@ -102,7 +102,7 @@ class HermiteModel(DiscreteModel):
     def unknowns(self) -> Indices:
         """Number of each degree of freedom among the unknowns, (n_all,); -1 where a support prevents it."""
         ends = [
-            2 * self.n_elements * i + j for i, end in enumerate(self.beam.supports) for j in (0, 1) if HOLDS[end][j]
+            2 * self.n_elements * i + j for i, end in enumerate(self.beam.supports) for j in (0, 1) if FIXED[end][j]
         ]
         free = np.delete(np.arange((4 if self.shear else 2) * self.n_elements + 2), ends)
         unknowns = np.full(len(free) + len(ends), -1)

@@ -40,7 +40,7 @@ from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.structure import ChainStructure
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
-from verify.validation import MOST_PARTS, check_number, check_whole, check_word, plain
+from verify.validation import MOST_PARTS, check_choice, check_integer, check_number, python_scalar
 
 _WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
 _FEWEST_CORRECTED = 6
@@ -83,14 +83,14 @@ class SegmentModel(ChainStructure):
 
     def __post_init__(self) -> None:
         for one in fields(self):
-            object.__setattr__(self, one.name, plain(getattr(self, one.name)))
-        check_whole("n_segments", self.n_segments, self.fewest, MOST_PARTS)
+            object.__setattr__(self, one.name, python_scalar(getattr(self, one.name)))
+        check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         for name, words in _WORDS.items():
-            check_word(name, getattr(self, name), words)
+            check_choice(name, getattr(self, name), words)
         check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
         self.check_theory()
         check_division(self.beam, self.n_segments, self.grading)
-        if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):
+        if self.wall == "welded" and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
                 "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
             )

@@ -283,7 +283,7 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
         raise InputError(
             f"device.position = {field.couples[0]!r}: a power balance takes no device against rotation, leave it out"
         )
-    beam.check_added("a power balance", ("mass", "spring", "tension", "foundation"))
+    beam.check_features("a power balance", ("mass", "spring", "tension", "foundation"))
     measures.waves.check_travelling()
     left = [force for force in field.forces if force.position <= measures.window[0]]
     speeds = 1j * field.omega * field.deflection([force.position for force in left])

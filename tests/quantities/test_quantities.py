@@ -96,7 +96,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "chain.cantilever_tip": ("bare", {"segments": 7, "load": 1.7}),
     "chain.rollup_gap": ("bare", {"segments": 7, "wall": "gregory"}),
     "chain.hanging_frequency": ("bare", {"segments": 7, "mode": 2}),
-    "chain.turning_frequency": ("bare", {"segments": 7, "mode": 2, "speed": 1.3}),
+    "chain.rotating_frequency": ("bare", {"segments": 7, "mode": 2, "speed": 1.3}),
     "chain.large_amplitude_frequency": ("bare", {"segments": 6, "amplitude": 0.9}),
     "chain.energy_drift": ("bare", {"segments": 5, "step": 2e-5}), "chain.imbalance": ("bare", {"segments": 4}),
     "chain.contact_line_error": ("clamped", {"segments": 9, "mode": 2, "x": 0.31}),

@@ -45,7 +45,7 @@ def theory_of(settings: Settings) -> str:
 
 def unproven(beam: Beam, settings: Settings = ()) -> str:
     """Why it is not proven that segments lie below and elements above the exact frequencies; empty where it is."""
-    if added := (*beam.added, *("section",) * bool(beam.section)):
+    if added := (*beam.features, *("section",) * bool(beam.section)):
         return f"neither side is proven on a beam with beam.{added[0]}, leave it out"
     chosen = {"theory": EULER, "grading": 1.0, "wall": "gregory"} | dict(settings)
     proven = {"theory": EULER, "grading": 1.0, "wall": "half" if "clamped" in beam.supports else chosen["wall"]}

@@ -14,7 +14,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
-from verify.chain.motion import ChainMotion, ElasticMotion, Method, Progress, check_moved, from_rest, simulate
+from verify.chain.motion import ChainMotion, ElasticMotion, Method, Progress, check_drives, from_rest, simulate
 from verify.chain.statics import Bent, bend
 from verify.chain.system import (
     ChainState,
@@ -30,7 +30,7 @@ from verify.errors import InputError
 from verify.options import Inertia, Links, Tip, Wall
 from verify.problem.beam import Beam, PointForce
 from verify.segments.chain import link_inertia
-from verify.validation import check_number, check_whole
+from verify.validation import check_integer, check_number
 
 CHAINS: dict[Inertia, Links] = {"full": "rigid", "transverse": "rigid", "elastic": "stretching"}
 CANTILEVER = Beam(
@@ -68,7 +68,7 @@ def hanging_frequency(mode: int, count: int) -> float:
     sqrt(3/2) for one link; its limit j_{0,n} / 2 (Daniel Bernoulli) is approached with order 2. Raises InputError for
     more modes than links.
     """
-    check_whole("segments", count, mode)
+    check_integer("segments", count, mode)
     unit, zero = np.full(count, 1.0 / count), np.zeros(count)
     links = {"lengths": unit, "masses": unit, "inertias": link_inertia(unit, unit)}
     system = ChainSystem(**links, stiffness=zero, dashpots=zero, gravity=(1.0, 0.0))
@@ -81,7 +81,7 @@ def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregor
     Lead-lag: its square is that of the flapping beam less the speed's (A. D. Wright et al., J. Appl. Mech. 49 (1982)
     197). Order 2, by the centrifugal force. Raises InputError for more modes than links.
     """
-    check_whole("segments", count, mode)
+    check_integer("segments", count, mode)
     system = replace(build_system(CANTILEVER, count, wall=wall), rotation=Rotation(rate=speed * OMEGA))
     return float(linearise(system, at_rest(system)).frequencies()[mode - 1]) / OMEGA
 
@@ -90,7 +90,7 @@ def _sine_shape(beam: Beam, count: int, amplitude: float, immovable: bool) -> tu
     """Chain between hinges, its state at rest on amplitude sin(pi x / L), and its first linear frequency, rad/s."""
     if beam.supports != ("pinned", "pinned"):
         raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark is of a beam with pinned ends")
-    check_whole("segments", count, 2)
+    check_integer("segments", count, 2)
     check_number("amplitude", amplitude / beam.length, "of the length at mid-span", above=0, at_most=0.1)
     system = build_system(beam, count, immovable=immovable)
     rise = np.diff(amplitude * np.sin(pi * np.arange(count + 1) / count)) / system.lengths
@@ -113,7 +113,7 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress
     system, start, linear = _sine_shape(beam, count, height, immovable=True)
     times = np.linspace(0.0, 1.01 * pi / 2 / linear, 801)
     motion = simulate(system, start, times, tolerance=1e-10, progress=progress)
-    check_moved(motion)
+    check_drives(motion)
     middle = motion.deflection([0.5 * beam.length])[:, 0]
     k = int(np.argmax(middle <= 0.0))  # stiffer than linear: back within a quarter of the linear period
     return pi / 2.0 / float(np.interp(0.0, [middle[k], middle[k - 1]], [times[k], times[k - 1]])) / linear
@@ -130,7 +130,7 @@ def energy_drift(
     times = np.linspace(0.0, 2.0 * pi / linear, 65)
     method: Method = "rk4" if step else "adaptive"
     motion = simulate(system, start, times, method=method, step=step, tolerance=tolerance, progress=progress)
-    check_moved(motion)
+    check_drives(motion)
     kinetic, elastic, _ = motion.energies()
     return float(abs(motion.residual()).max() / (kinetic + elastic)[0])
 
@@ -141,7 +141,7 @@ def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progr
     A hub that rotates and swings, an eccentric harmonic load with a moment and dashpots do work; the tip is free or a
     roller on an axial spring.
     """
-    check_whole("segments", count, 3)
+    check_integer("segments", count, 3)
     force, moment, hertz = (0.2 * EI, -0.4 * EI), 0.13 * EI, 0.9 * OMEGA
     load = LinkLoad(link=count, at=0.3 / count, force=force, moment=moment, frequency_hz=hertz, phase_deg=40.0)
     system = replace(
@@ -154,7 +154,7 @@ def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progr
     )
     times = np.linspace(0.0, 1.0 / OMEGA, 17)
     motion = simulate(system, at_rest(system), times, tolerance=tolerance, progress=progress)
-    check_moved(motion)
+    check_drives(motion)
     return float(abs(motion.residual()).max() / motion.dissipated[-1])
 
 
@@ -167,7 +167,7 @@ def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
     from verify.segment_model import SegmentModel
     from verify.segments.reading import contact_piece
 
-    check_whole("segments", count, 2)
+    check_integer("segments", count, 2)
     system, exact = build_system(beam, count), ExactModel(beam)
     joints = SegmentModel(beam, count).modes(mode).readings["raw"]()[mode - 1]
     link, _ = link_at(system, x)

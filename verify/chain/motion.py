@@ -20,7 +20,7 @@ from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
 from verify.options import LINKS, Links
 from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
-from verify.validation import check_number, check_unmasked, check_word
+from verify.validation import check_choice, check_number, check_unmasked
 
 if TYPE_CHECKING:
     from verify.chain.runge_kutta import Marched
@@ -219,7 +219,7 @@ def simulate(
     returns the states so far. Raises InputError.
     """
     began = perf_counter()
-    check_word("method", method, get_args(Method))
+    check_choice("method", method, get_args(Method))
     if (method == "rk4") != (step is not None):
         raise InputError(f"step = {step!r}: give a step in seconds with method = 'rk4', and none with 'adaptive'")
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
@@ -338,7 +338,7 @@ def _statistics(
     )
 
 
-def check_moved(moved: ChainMotion | ElasticMotion) -> None:
+def check_drives(moved: ChainMotion | ElasticMotion) -> None:
     """Raise InputError for a motion that did not reach its end."""
     if not moved.finished:
         raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces or a smaller step")
@@ -358,7 +358,7 @@ def from_rest(
     Where links turn by more than `FAR` a run at ten times the tolerance (half the step) confirms it to `AGREED` of the
     largest deflection. Raises InputError for a run that diverges and one that is not confirmed.
     """
-    check_word("links", links, LINKS)
+    check_choice("links", links, LINKS)
 
     def run(size: float | None) -> ChainMotion | ElasticMotion:
         if links == "stretching":
@@ -366,7 +366,7 @@ def from_rest(
         return simulate(system, at_rest(system), times, tolerance=size or tolerance, progress=progress)
 
     motion = run(None)
-    check_moved(motion)
+    check_drives(motion)
     if motion.statistics.furthest > FAR:
         stretching = links == "stretching"
         name, other = ("step", 0.5 * motion.statistics.step_s) if stretching else ("tolerance", 10.0 * tolerance)

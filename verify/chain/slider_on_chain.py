@@ -31,7 +31,7 @@ from verify.options import LINKS, Links
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 from verify.segments.reading import contact_line
-from verify.validation import check_number, check_whole, check_word
+from verify.validation import check_choice, check_integer, check_number
 
 RADIANS = 0.5
 """Phase of the highest mode in a step of the two-way march."""
@@ -65,13 +65,12 @@ def slide_on_chain(
     resolve its highest mode, from its equilibrium under feet. `coupling` and `margins` are those of the linear chain;
     energies of stretching links are not in the balance.
 
-    Raises InputError as `simulate` does; for a hard contact and the straight edges of links; two-way for normal =
-    "held", for feet on stretching links or with a preload that depends on the deflection; for a motion of the chain
-    that is not resolved.
+    Raises InputError as `simulate` does; for hard contact, a raw contact line and an unresolved motion of the chain;
+    with two-way coupling for normal = "bilateral", feet on stretching links, and a preload that depends on deflection.
     """
     began = perf_counter()
-    check_word("links", links, LINKS)
-    check_whole("count", count, 2)
+    check_choice("links", links, LINKS)
+    check_integer("count", count, 2)
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
     request = request_of(
         beam, forces, frequency_hz, duration, model="segment", count=count, modes=None, start="rest",
@@ -86,8 +85,8 @@ def slide_on_chain(
             raise InputError("slider.contact is hard: on a nonlinear chain feet have springs, give contact.stiffness")
         if one.line != "spline":
             raise InputError(f"slider.line = {one.line!r}: contact with a nonlinear chain is along its spline")
-        if request.two_way and one.contact is None and one.normal == "held":
-            raise InputError("slider.normal = 'held': a nonlinear chain responds to friction alone, give 'massless'")
+        if request.two_way and one.contact is None and one.normal == "bilateral":
+            raise InputError("slider.normal = 'bilateral': a nonlinear chain takes friction alone, give 'massless'")
         if request.two_way and one.contact is not None and links == "stretching":
             raise InputError("slider.coupling = 'two-way': stretching links carry feet one-way, give links = 'rigid'")
         if request.two_way and (one.preload_stiffness or any(foot.mirrored for foot in one.feet)):

@@ -18,7 +18,7 @@ from verify.errors import InputError, shown
 from verify.linear.positions import Numbers, as_vector
 from verify.options import Joints, Wall
 from verify.problem.beam import Beam
-from verify.validation import check_number, check_whole
+from verify.validation import check_integer, check_number
 
 RESIDUAL = 1e-9
 """Tolerance of the residual moment, relative to the largest moment in the chain."""
@@ -251,7 +251,7 @@ def bend(
     """
     if beam.supports != ("clamped", "free"):
         raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
-    check_whole("count", count, 2)
+    check_integer("count", count, 2)
     force = as_vector("load", load, "newton")
     if force.shape not in ((1,), (2,)):
         raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")

@@ -182,7 +182,7 @@ def build_system(
         raise InputError(
             f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain has no complex modulus in time, give 0"
         )
-    beam.check_added("the nonlinear chain", ("section",))
+    beam.check_features("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = SegmentModel(beam, n_segments, wall=wall, joints=joints, grading=grading).chain
     unit, mass = chain.unit, beam.mass_per_length

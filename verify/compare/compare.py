@@ -16,7 +16,7 @@ from verify.errors import InputError
 from verify.options import Support
 from verify.problem.beam import Beam
 from verify.report.result import Result
-from verify.validation import check_whole
+from verify.validation import check_integer
 
 RIGID = 3e-3
 """Of the next frequency: smaller leading ones are rigid motions, unless the beam has such a gap."""
@@ -50,7 +50,7 @@ def compare(
     beam, options, hertz = scene.beam, options or Options(), given.hertz
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
-            check_whole(field, getattr(options, field), 1)
+            check_integer(field, getattr(options, field), 1)
     if shapes is not None and len(shapes.values) != len(hertz):
         raise InputError(f"modes = {len(shapes.values)} shapes for {len(hertz)} frequencies: give one for each")
     if shapes is None and (np.diff(hertz) < 0.0).any():

@@ -29,7 +29,7 @@ class DiscreteBeam:
     """A beam in N equal parts per section, relative to its own EI and rho A. Raises InputError for attachments."""
 
     def __init__(self, beam: Beam, count: int, theory: str) -> None:
-        beam.check_added("this candidate", ("section",))
+        beam.check_features("this candidate", ("section",))
         parts = divide(beam, count)
         self.beam, self.n, self.unit, self.lengths = beam, count, parts.unit, parts.lengths
         self.stiffnesses, self.masses = parts.stiffnesses, parts.lengths * parts.masses_per_length

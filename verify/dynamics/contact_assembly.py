@@ -36,7 +36,7 @@ def assemble(
         row[lay.INVERSE_MASS] = 1.0 / slider.mass if speed is None else 0.0
         row[lay.MU] = slider.mu
         row[lay.MU_STATIC] = slider.mu if slider.mu_static is None else slider.mu_static
-        row[lay.STEEPNESS], row[lay.PULL] = slider.steepness or 0.0, slider.pull
+        row[lay.STEEPNESS], row[lay.PULL] = slider.steepness or 0.0, slider.external_force
         row[lay.FREE] = 0.0 if stays else 1.0
         rows.append(row)
         for foot in slider.feet if slider.contact else (None,):
@@ -51,7 +51,7 @@ def assemble(
             sheets.append(sheet)
             indices += [(number, len(feet), 0)] * len(sheet)
             feet += [] if foot is None else [_foot(slider, foot)]
-    held = first.contact is None and first.normal == "held" and two_way
+    held = first.contact is None and first.normal == "bilateral" and two_way
     points = np.concatenate(sheets)
     return Contacts(
         start=starts[0],
@@ -93,7 +93,7 @@ def _foot_points(slider: Slider, foot: Foot) -> Array:
 
 def _foot(slider: Slider, foot: Foot) -> list[float]:
     """One row of `Contacts.feet`, at height 0 and at rest."""
-    mass, row = slider.moved_by(foot), [0.0] * lay.FOOT
+    mass, row = slider.moving_mass(foot), [0.0] * lay.FOOT
     inertia = mass * foot.length**2 / 12.0 if foot.inertia is None else foot.inertia
     preload = slider.preload / len(slider.feet)
     force = 0.0 if foot.mirrored else preload if foot.face == "lower" else -preload

@@ -16,7 +16,7 @@ from verify.linear.numerics import extremes
 from verify.linear.positions import Numbers, real_array, vector_on
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam
-from verify.validation import check_number, check_whole
+from verify.validation import check_integer, check_number
 
 Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
 """A mode's number, a function of x (m), or places and values with straight lines between them."""
@@ -111,7 +111,7 @@ def free_vibration(
     """
     check_number("duration", duration, "seconds", above=0)
     check_damping(beam, modal_damping)
-    check_whole("samples", samples, 2, MOST_SAMPLES)
+    check_integer("samples", samples, 2, MOST_SAMPLES)
     points = vector_on("at", at, beam.length)
     basis = basis_of(beam, model, count, modes)
     damping = damping_in(basis, modal_damping)
@@ -159,7 +159,7 @@ def _start(
             )
         q, truncation = rest if shape is None else _projected(basis, "shape", shape)
         return q, rates, truncation
-    check_whole("shape", shape, 1, len(basis.omegas))
+    check_integer("shape", shape, 1, len(basis.omegas))
     if amplitude is None:
         raise InputError(f"amplitude is missing: give mode {shape} its largest deflection in metres")
     length, own = basis.beam.length, slice(shape - 1, shape)

@@ -141,7 +141,7 @@ def largest_static_deflection(beam: Beam, model: str, count: int | None, contact
         turned = abs(load @ p[:, lay.OFFSET]) > BALANCED * (abs(load) @ abs(p[:, lay.OFFSET]))
         if abs(load.sum()) > BALANCED * abs(load).sum() or turned or (p[:, lay.WEIGHT] < 1.0).any():
             return None
-    if model == "analytic" and set(beam.added) - {"section", "mass"}:  # the exact beam has no modes with these
+    if model == "analytic" and set(beam.features) - {"section", "mass"}:  # the exact beam has no modes with these
         model, count = "fem", 2 * STATIC_MODES
     basis = basis_of(beam, model, count, STATIC_MODES if count is None else None)
     still = static_deflection(basis, contacts)

@@ -20,7 +20,7 @@ from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.slider import GRAVITY, Slider
-from verify.validation import check_kind, check_number, check_unmasked, check_whole, plain, several
+from verify.validation import as_tuple, check_integer, check_number, check_type, check_unmasked, python_scalar
 
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
 """Least number of a slider's steps in a period of the drive; a prime for feet: points at equal distances in a wave do
@@ -125,9 +125,9 @@ def request_of(
     """A checked request; arguments as those of `simulate`. Raises InputError."""
     check_frequency("frequency_hz", frequency_hz, beam)
     check_number("duration", duration, "seconds", at_least=SHORTEST)
-    check_whole("samples", samples, 2, MOST_SAMPLES)
+    check_integer("samples", samples, 2, MOST_SAMPLES)
     check_damping(beam, modal_damping)
-    kind, sliders = MODELS.named(model), () if slider is None else several("slider", slider, Slider)
+    kind, sliders = MODELS.named(model), () if slider is None else as_tuple("slider", slider, Slider)
     driven = forces_on(beam, forces)
     if not driven and not sliders:
         raise InputError("forces is empty: give at least one PointForce")
@@ -144,14 +144,14 @@ def request_of(
         raise InputError(f"duration = {duration!r} s: the phase of the drive is unknown after 1e12 periods, shorten it")
     replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
     own = before.starts if before and before.contact is not None and sliders else ()
-    starts = own or tuple(one.start_on(beam) for one in sliders)
+    starts = own or tuple(one.initial_position(beam) for one in sliders)
     if sliders:
         check_sliders(beam, sliders, starts)
     speeds = _each("prescribed_speed", prescribed_speed, len(sliders))
-    fixed = tuple(plain(one) for one in _each("fixed_position", fixed_position, len(sliders)))
+    fixed = tuple(python_scalar(one) for one in _each("fixed_position", fixed_position, len(sliders)))
     for speed, one in zip(speeds, fixed, strict=True):
         check_number("prescribed_speed", 0.0 if speed is None else speed, "m/s")
-        check_kind("fixed_position", one, bool)
+        check_type("fixed_position", one, bool)
     grown = _growth(soft_start_periods, envelope, frequency_hz, start == "steady" or before is not None)
     longest = _longest_step(frequency_hz, duration, step, steps_per_period, sliders)
     return Request(
@@ -213,7 +213,7 @@ def _longest_step(
         return inf
     least = STEPS_PER_PERIOD if sliders[0].contact is None else FEET_STEPS_PER_PERIOD
     per_period = least if steps_per_period is None else steps_per_period
-    check_whole("steps_per_period", per_period, 1)
+    check_integer("steps_per_period", per_period, 1)
     longest = 1.0 / (per_period * frequency_hz) if step is None else step
     check_number("step", longest, "seconds", above=0)
     check_step(longest, frequency_hz)

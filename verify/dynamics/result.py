@@ -56,14 +56,14 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     drive_work: float
     """Work of the driving forces; 0 in a steady field, whose drive is not computed."""
     load_work: float
-    """Work of weight, preload, `slider.pull` and of what prescribes a speed."""
+    """Work of weight, preload, `slider.external_force` and of what prescribes a speed."""
     tangential_work: float
     """Work of the surface's own motion along the beam on the sliders."""
     normal_work: float
     """Work of the rising surface, dw/dt of its material, on the feet."""
     slope_work: float
     """Work on sliders of slopes that they move along, N v w': no force along the beam pays for it in tangential
-    kinematics, in which friction and `slider.pull` alone move a slider."""
+    kinematics, in which friction and `slider.external_force` alone move a slider."""
     damping_loss: float
     """In the beam."""
     friction_loss: float

@@ -125,7 +125,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         if request.two_way:
             rates = ((s.steepness or inf) * s.mu * s.normal_force / s.mass for s in request.sliders if s.mu)
             rate = max(rates, default=0.0)
-            if request.sliders[0].normal == "held":
+            if request.sliders[0].normal == "bilateral":
                 longest *= 0.5  # the contact excites waves of its own
         return replace(self, stages=stepped(stages, point_step(stages, z, length, longest, rate)))
 

@@ -10,7 +10,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.registry import Registry
-from verify.validation import check_whole
+from verify.validation import check_integer
 
 SAMPLES = 200
 """Kept of a run, or every step of a shorter one."""
@@ -52,10 +52,10 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
     """The chain of a uniform pinned undamped beam. Raises InputError for any other."""
     if beam.supports != ("pinned", "pinned"):
         raise InputError(f"beam.supports = {beam.supports!r}: the engines' chain is pinned, give ('pinned', 'pinned')")
-    beam.check_added("the engines' chain")
+    beam.check_features("the engines' chain")
     if beam.loss_factor:
         raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: the engines' chain is undamped, give 0")
-    check_whole("count", n, 2)
+    check_integer("count", n, 2)
     check_frequency("frequency_hz", frequency_hz, beam)
     for i, force in enumerate(forces):
         if force.position > beam.length:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 
 if TYPE_CHECKING:
     from verify.arrays import Array
@@ -33,7 +33,7 @@ def plate_error(beam: Beam, mode: int) -> float:
     strip, at least `FLATNESS` times as wide as thick, and for a mode without a counterpart in the plate.
     """
     if not beam.uniform:
-        raise InputError(f"beam.{beam.added[0]}: plate theory covers a strip without it, leave it out")
+        raise InputError(f"beam.{beam.features[0]}: plate theory covers a strip without it, leave it out")
     if beam.width is None or beam.thickness is None:
         raise InputError("beam.width is missing: plate theory needs a rectangle's width and thickness")
     if beam.width < FLATNESS * beam.thickness:
@@ -162,7 +162,7 @@ def _along(supports: tuple[str, str], n: int) -> "list[Any]":
     hermite = np.array(
         [[0.5, -0.6, 0.0, 0.1], [1 / 6, -0.1, -1 / 6, 0.1], [0.5, 0.6, 0.0, -0.1], [-1 / 6, -0.1, 1 / 6, 0.1]]
     )
-    cubic = hermite[[not prevented for support in supports for prevented in HOLDS[support]]].T
+    cubic = hermite[[not prevented for support in supports for prevented in FIXED[support]]].T
     series = []
     for order in range(3):
         derived = legendre.legder(cubic, order)

@@ -14,7 +14,7 @@ from verify.linear.time_basis import TimeBasis
 from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
-from verify.validation import check_kind, check_whole, check_word, several
+from verify.validation import as_tuple, check_choice, check_integer, check_type
 
 Devices: TypeAlias = Device | Sequence[Device]
 """One device alone stands for a list of it."""
@@ -144,7 +144,7 @@ class BeamModel(ABC):
 
     def check_n_modes(self, n_modes: int) -> None:
         """Raise InputError unless it has so many elastic modes."""
-        check_whole("n_modes", n_modes, 1)
+        check_integer("n_modes", n_modes, 1)
         if n_modes > self.n_elastic:
             raise InputError(
                 f"n_modes = {n_modes}: the {self.name} model at count = {self.count} has {self.n_elastic} elastic "
@@ -153,8 +153,8 @@ class BeamModel(ABC):
 
     def check_theory(self) -> None:
         """Raise InputError for an unknown theory, and for one that the beam has no figures for."""
-        check_kind("beam", self.beam, Beam)
-        check_word("theory", self.theory, THEORIES)
+        check_type("beam", self.beam, Beam)
+        check_choice("theory", self.theory, THEORIES)
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(
                 f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: there is more than one such "
@@ -171,7 +171,7 @@ class BeamModel(ABC):
 
     def check_stationed(self, forces: Forces, devices: Devices) -> tuple[tuple[PointForce, ...], Any]:
         """(forces, devices) as tuples. Raises InputError for one off the beam or without effect, and for none."""
-        acting, stationed = forces_on(self.beam, forces), several("devices", devices, Device)
+        acting, stationed = forces_on(self.beam, forces), as_tuple("devices", devices, Device)
         for device in stationed:
             device.check_on(self.beam)
         if not acting and not any(device.amplitude for device in stationed):

@@ -21,11 +21,11 @@ from verify.linear.field import HarmonicField, phasor, point_force
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, frequencies_on, vector_on
 from verify.linear.system import FEW, SUPERPOSED, StructuralSystem, memory
-from verify.linear.time_basis import TimeBasis, check_held
+from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import PointForce
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
-from verify.validation import check_number, check_word
+from verify.validation import check_choice, check_number
 
 
 class DiscreteModel(BeamModel):
@@ -176,8 +176,8 @@ class DiscreteModel(BeamModel):
 
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
         """All its modes for motion in time. Raises InputError for rigid-body motions, and for too many unknowns."""
-        check_held(self.beam)
-        check_word("line", line, self.lines)
+        check_supported(self.beam)
+        check_choice("line", line, self.lines)
         if modes is not None:
             raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} keeps all it has, leave it out")
         values, vectors = self.stable_system.all_modes

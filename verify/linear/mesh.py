@@ -8,7 +8,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.problem.beam import SHORTEST_SECTION, Beam
 from verify.problem.cross_section import Piece
-from verify.validation import check_kind, check_number
+from verify.validation import check_number, check_type
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -110,7 +110,7 @@ def cut_pieces(beam: Beam) -> tuple[Piece, ...]:
 
 def check_division(beam: Beam, count: int, grading: float = 1.0, least: int = 0) -> None:
     """Raise InputError for a wrong grading, and for fewer parts than the beam has sections, or than `least`."""
-    check_kind("beam", beam, Beam)
+    check_type("beam", beam, Beam)
     check_number("grading", grading, "last over first length", at_least=1e-3, at_most=1e3)
     if count < (least := max(least, len(beam.pieces))):
         raise InputError(f"count = {count}: steps, masses and springs cut the beam into {least}, give as many parts")

@@ -8,7 +8,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError, shown
 from verify.problem.beam import Beam, PointForce, check_frequency
-from verify.validation import check_position, several
+from verify.validation import as_tuple, check_position
 
 Numbers: TypeAlias = float | Sequence[float] | Array
 """One, a list or an array."""
@@ -60,7 +60,7 @@ def reshape_like(values: Values, x: Numbers) -> Values:
 
 def forces_on(beam: Beam, forces: Forces) -> tuple[PointForce, ...]:
     """A force, or several, as a tuple. Raises InputError for a position off the beam and for anything else."""
-    acting = several("forces", forces, PointForce)
+    acting = as_tuple("forces", forces, PointForce)
     for force in acting:
         check_position("force.position", force.position, beam.length)
     return acting

@@ -89,7 +89,7 @@ def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int
     return np.ascontiguousarray(np.einsum("kd,drp->pkr", shift, parts))
 
 
-def check_held(beam: Beam) -> None:
+def check_supported(beam: Beam) -> None:
     """Raise InputError for supports that let the beam drift away as a whole."""
     if beam.rigid_motions:
         raise InputError(

@@ -118,7 +118,7 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
     run = case.run(fine, fine * case.steps_per_period + 1, before.run if before else None)
     times, slider = run.times - run.times[0], case.slider
     if times[-1] <= case.period:
-        raise InputError(f"slider.position = {slider.start_on(case.beam):.6g} m: {REASONS['left']}")
+        raise InputError(f"slider.position = {slider.initial_position(case.beam):.6g} m: {REASONS['left']}")
     times = times[times <= (1.0 + 1e-9) * (times[-1] - case.period)]
     ends = np.interp(times + case.period, run.times - run.times[0], run.travelled)
     times, speeds = times + 0.5 * case.period, (ends - run.travelled[: len(times)]) / case.period

@@ -52,7 +52,7 @@ def periodic_orbit(
     height = float(np.ptp(run.height[-61:]) + np.abs(run.end.feet[:, 0]).max()) + 1e-12
     arm = float(np.abs(run.point_offsets).max()) or 1.0
     scale = np.multiply.outer([height, height / arm], [1.0, 2.0 * np.pi * case.frequency_hz]).ravel()
-    feet = assemble(case.beam, (slider,), (slider.start_on(case.beam),), (speed,), (True,)).feet
+    feet = assemble(case.beam, (slider,), (slider.initial_position(case.beam),), (speed,), (True,)).feet
     moves = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]] > 0.0
     free = np.flatnonzero(np.repeat(moves, 2, axis=1).ravel())
     size = np.tile(scale, len(moves))[free]

@@ -85,7 +85,7 @@ class MotorCase(Struct, frozen=True, kw_only=True):
 def surface_motion(case: MotorCase) -> tuple[float, float]:
     """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) of the beam alone, under the slider."""
     field = damped_field(case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping)
-    x = case.slider.start_on(case.beam)
+    x = case.slider.initial_position(case.beam)
     tangential = section_at(case.beam, x).surface_distance * field.omega
     return float(abs(field.deflection([x]))[0]), tangential * float(abs(field.slope([x]))[0])
 

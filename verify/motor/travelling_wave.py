@@ -41,8 +41,8 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
     """
     from scipy.optimize import brentq
 
-    slider.check_stays()
-    slider, start, mean = replace(slider, coupling="one-way"), slider.start_on(beam), 0.0
+    slider.check_bilateral()
+    slider, start, mean = replace(slider, coupling="one-way"), slider.initial_position(beam), 0.0
     no_rows: ComplexArray = np.empty(0, dtype=complex)
 
     def period(speed: float, stage: Stage) -> tuple[float, float]:

@@ -23,7 +23,7 @@ from verify.analysis.solution_cache import Bracket
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
 from verify.registry import Registry
-from verify.validation import plain
+from verify.validation import python_scalar
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
@@ -136,7 +136,7 @@ class Quantity:
             ):
                 raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
         supplied = {"scene": scene, "cache": cache}
-        value = plain(self.function(**{name: supplied[name] for name in self._supplied}, **bound))
+        value = python_scalar(self.function(**{name: supplied[name] for name in self._supplied}, **bound))
         if not isinstance(value, float | int | complex | Bracket):
             raise InputError(f"quantity = {self.name!r} returns {shown(value)}: return a number or a Bracket")
         return value
@@ -216,7 +216,7 @@ def _native(value: Any, name: str) -> Any:
     """A value with Python's numbers for numpy's. Raises InputError for one that is not finite."""
     if isinstance(value, list | tuple | range):
         return [_native(one, name) for one in value]
-    value = plain(value)
+    value = python_scalar(value)
     if isinstance(value, float) and not isfinite(value):
         raise InputError(f"{name} = {value!r}: give a finite number")
     return value

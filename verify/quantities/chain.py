@@ -55,8 +55,8 @@ def hanging_frequency(*, segments: Links, mode: Mode) -> float:
     return hanging_frequency(mode, segments)
 
 
-@quantity("chain.turning_frequency", unit="1", reads=())
-def turning_frequency(*, segments: Links, mode: Mode, speed: HubSpeed) -> float:
+@quantity("chain.rotating_frequency", unit="1", reads=())
+def rotating_frequency(*, segments: Links, mode: Mode, speed: HubSpeed) -> float:
     """Omega sqrt(rho A L^4/EI) of the lead-lag modes of a rotating cantilever."""
     from verify.chain.benchmarks import rotating_frequency
 

@@ -57,7 +57,7 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
         """The scene's slider with these values. Raises InputError where there is none that stays on the surface."""
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
-        scene.slider.check_stays()
+        scene.slider.check_bilateral()
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.linear.factored import sparse_rows
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 from verify.segments.chain import Chain
 
 _BEFORE, _AFTER = 2, 4
@@ -55,7 +55,7 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
     if rule == "lever" or n < 3:
         columns, weights = links[:, None] + np.arange(2), np.stack([1.0 - s, s], axis=1)
     else:
-        reflects = [HOLDS[support] in (HOLDS["pinned"], HOLDS["guided"]) for support in chain.supports]
+        reflects = [FIXED[support] in (FIXED["pinned"], FIXED["guided"]) for support in chain.supports]
         first = np.clip(links - 1, -int(reflects[0]), n - 3 + reflects[1])
         s = s + links - first
         columns, weights = first[:, None] + np.arange(4), np.vander(s, 4) @ _FOUR_JOINTS
@@ -139,7 +139,7 @@ def _correct(chain: Chain, places: Array, rows: list[int], felt: Array, turned: 
     order, there = (-1, n - places) if from_right else (1, places)
     support, elastic = chain.supports[from_right], chain.elastic[from_right]
     start = int(there.min()) - _BEFORE
-    first = max(start, 0 if HOLDS[support].rotation and not elastic else 1)
+    first = max(start, 0 if FIXED[support].rotation and not elastic else 1)
     beyond = max(int(there.max()) + _AFTER, first + max(_FEWEST, 3 + 2 * count))
     if beyond > n - 3:
         return

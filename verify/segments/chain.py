@@ -12,7 +12,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.linear.factored import sparse_rows
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -50,12 +50,12 @@ class Chain:
     @property
     def held(self) -> tuple[bool, bool]:
         """Ends without deflection."""
-        return HOLDS[self.supports[0]].deflection, HOLDS[self.supports[1]].deflection
+        return FIXED[self.supports[0]].deflection, FIXED[self.supports[1]].deflection
 
     @property
     def walls(self) -> tuple[bool, bool]:
         """Ends without rotation, which have a joint at the wall."""
-        return HOLDS[self.supports[0]].rotation, HOLDS[self.supports[1]].rotation
+        return FIXED[self.supports[0]].rotation, FIXED[self.supports[1]].rotation
 
     @property
     def spans(self) -> Array:

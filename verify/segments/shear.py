@@ -45,11 +45,11 @@ def slip_compliances(
             if not body.mass:
                 gives[i], slips[-(body.end or 0)] = slips[-(body.end or 0)], np.inf
         elif body.mass + body.stiffness > 0.0:
-            gives[i] = attachment_give(chain, softness, body.position, weights[i])
+            gives[i] = attachment_compliance(chain, softness, body.position, weights[i])
     return slips, gives
 
 
-def attachment_give(chain: Chain, softness: Array, position: float, weights: Array) -> float:
+def attachment_compliance(chain: Chain, softness: Array, position: float, weights: Array) -> float:
     """Compliance of the slip of an attachment at a position (m) whose weights of the joints are (N + 1,).
 
     Where a force acts a chain slips less than the beam, by sum w_i w_j (|i - j|/2 + delta_ij/4) l/(kappa G A).

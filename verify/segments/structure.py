@@ -11,7 +11,7 @@ from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts
 from verify.linear.system import StructuralSystem
 from verify.options import Attachment, Joints, Wall
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 from verify.segments import shear
 from verify.segments.bodies import Attached
 from verify.segments.chain import Chain, Motions, at_joints, link_mass, plain_factors, selection, squares
@@ -69,7 +69,7 @@ class ChainStructure(DiscreteModel):
     @property
     def n_unknowns(self) -> int:
         """Free joint positions, rotations beyond elastic ends, slips of joints and of bodies."""
-        held = sum(HOLDS[support].deflection for support in self.beam.supports)
+        held = sum(FIXED[support].deflection for support in self.beam.supports)
         found = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self.attached.at_ends)
         if self.theory == "timoshenko":
             bodies = int(self.attached.massive.sum()) if self.attachment == "reciprocal" else 0

@@ -6,7 +6,7 @@ Inside, a joint has the weight 1 of the trapezoidal rule, a link length. At a wa
 import numpy as np
 
 from verify.arrays import Array
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 
 WALLS: dict[str, tuple[float, ...]] = {
     # Gregory's end correction of the trapezoidal rule, weights 3/8, 7/6, 23/24: order 4
@@ -37,7 +37,7 @@ def wall_factors(
             corrections = np.array(WALLS[wall][: n_segments + 1])
             factors[abs(end - np.arange(len(corrections)))] += corrections
         else:
-            factors[end] = np.inf if not HOLDS[support].rotation else factors[end] - 0.5
+            factors[end] = np.inf if not FIXED[support].rotation else factors[end] - 0.5
     return factors
 
 

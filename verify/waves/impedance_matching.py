@@ -25,7 +25,7 @@ from verify.exact.layout import HELD
 from verify.linear.field import wavenumber
 from verify.problem.beam import Beam, check_frequency
 from verify.problem.device import Device, of_impedance
-from verify.validation import check_kind, check_number
+from verify.validation import check_number, check_type
 
 _DECAY = np.array([1j, 1.0])
 """q of e^{-q k x} away from a source: a wave, and a near field."""
@@ -57,7 +57,7 @@ def ending(
     """
     check_number("position", distance, "metres from the end", at_least=0)
     if not beam.uniform:
-        raise InputError(f"beam.{beam.added[0]}: the impedance of a half-infinite beam is that of a uniform one")
+        raise InputError(f"beam.{beam.features[0]}: the impedance of a half-infinite beam is that of a uniform one")
     k, omega = wavenumber(beam, frequency_hz), 2.0 * np.pi * frequency_hz
     unit = 4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3 / omega
 
@@ -73,7 +73,7 @@ def ending(
     motion = (1.0 - 1j) * k**2 + back @ (-_DECAY * k) if turning else back.sum() - (1.0 + 1j)
     if motion == 0.0:
         name = name or f"position = {distance!r} m"
-        raise InputError(f"{name} stands on a {support} support, where a device does nothing: move it")
+        raise InputError(f"{name} is on a {support} support, where a device has no effect: move it")
     own = complex(unit / (1j * motion))
     back = returned(np.array([1.0, 0.0]))
     s = k * (1j - back @ _DECAY) if turning else 1.0 + back.sum()
@@ -92,7 +92,7 @@ def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning:
     Beyond it the beam ends on its nearer support. Raises InputError.
     """
     check_frequency("frequency_hz", frequency_hz, beam)
-    check_kind("turning", turning, bool)
+    check_type("turning", turning, bool)
     check_number("position", position, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
     right = position > 0.5 * beam.length
     distance, support = max(beam.length - position, 0.0) if right else position, beam.supports[right]

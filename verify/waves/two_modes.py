@@ -27,7 +27,7 @@ def lumped_swr(beam: Beam, x: Numbers, modes: tuple[int, int] = (21, 22)) -> Arr
     Infinite at a standing wave. Raises InputError off the beam, for one mode twice and a beam that is not uniform.
     """
     if not beam.uniform:
-        raise InputError(f"beam.{beam.added[0]}: two modes are one wave on a uniform beam alone, leave it out")
+        raise InputError(f"beam.{beam.features[0]}: two modes are one wave on a uniform beam alone, leave it out")
     if modes[0] == modes[1]:
         raise InputError(f"modes = {list(modes)}: one mode with itself stands, give two that differ")
     at, model = vector_on("x", x, beam.length), ExactModel(beam)

@@ -11,7 +11,7 @@ from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response, wavenumber
 from verify.linear.numerics import Rule, gauss_rule
 from verify.problem.beam import Beam
-from verify.validation import check_kind
+from verify.validation import check_type
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
 STANDING, ROUNDING = 1e-12, 1e-13
@@ -86,7 +86,7 @@ def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle
 
 def two_waves(field: HarmonicField, window: Window, wave_number: complex | None = None) -> TwoWaves:
     """The two waves of a field in a window, fitted in the mean square. Raises as `travelling_wave.measure`."""
-    check_kind("field", field, HarmonicField)
+    check_type("field", field, HarmonicField)
     hertz = float(field.frequency_hz)
     check_span(field.beam, [force.position for force in field.forces], window, field.couples, field.theory)
     check_waves(field.beam, hertz, window, field.theory)

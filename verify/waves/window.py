@@ -8,7 +8,7 @@ from verify.errors import InputError, WindowError, shown
 from verify.formatting import as_written
 from verify.linear.field import wavenumber
 from verify.problem.beam import Beam
-from verify.validation import check_kind, plain
+from verify.validation import check_type, python_scalar
 
 Window = tuple[float, float]
 MOST_HALVES = 10_000
@@ -20,7 +20,7 @@ _DEPENDS = {"euler-bernoulli": _SECTION[:3], "rayleigh": _SECTION[:4], "timoshen
 
 def middle_half(beam: Beam) -> Window:
     """The default window [L/4, 3L/4], m."""
-    check_kind("beam", beam, Beam)
+    check_type("beam", beam, Beam)
     return 0.25 * beam.length, 0.75 * beam.length
 
 
@@ -98,7 +98,7 @@ def check_wavenumber(name: str, value: object, span: Window) -> complex:
 
     Raises InputError for one that does not propagate towards +x, or has no or too many half wavelengths in the span.
     """
-    k = plain(value)
+    k = python_scalar(value)
     number = isinstance(k, int | float | complex) and not isinstance(k, bool) and np.isfinite(k)
     if not number or not 0.0 <= -k.imag <= k.real or not k.real:
         raise InputError(
