@@ -103,7 +103,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "chain.transient_deflection": ("undamped", {"segments": 5, "time": 7e-4, "x": 0.31}),
     "chain.axial_departure": ("undamped", {"segments": 5, "force": 30.0, "time": 7e-4}),
     **{f"chain.slider_{n}": ("undamped", {"segments": 5, "coupling": "one-way"}) for n in ("displacement", "mean_speed", "imbalance")},
-    "friction.creep_speed": ("bare", {"mu": 0.23, "slope": 310.0, "pull": 1.1}),
+    "friction.creep_speed": ("bare", {"mu": 0.23, "slope": 310.0, "acceleration": 1.1}),
     "friction.belt_stick_time": ("bare", BELT), "friction.belt_slip_time": ("bare", BELT),
     "slider.winkler_speed_ratio": ("bare", {"contact_half_angle": 1.1}), "slider.layer_efficiency": ("bare", LAYER),
     "friction.coulomb_decrement": ("bare", {"mass": 0.31, "stiffness": 47.0, "force": 0.7}),

@@ -20,7 +20,7 @@ from verify.validation import check_number
 STEPS = 4096
 STEPS_PER_PERIOD = 8000
 BELOW = 1.0 - 1e-6
-"""Share of mu g up to which a pull is balanced: beyond it the creep depends on digits that mu g does not have."""
+"""Largest acceleration over mu g with a creep speed: beyond it the speed depends on digits that mu g does not have."""
 LARGE = 1e100
 """Largest mass, stiffness, force; the least is one over it."""
 LEVER = 1e6
@@ -28,7 +28,7 @@ LEVER = 1e6
 
 
 def _contact(
-    speed: float, mu: float, static: float, slope: float = 0.0, load: float = 1.0, pull: float = 0.0, mass: float = inf
+    speed: float, mu: float, static: float, slope: float = 0.0, load: float = 1.0, force: float = 0.0, mass: float = inf
 ) -> Contacts:
     """One point at x = 0 on the surface; an infinite mass has a prescribed speed and moves the surface."""
     contact = Contacts(
@@ -43,7 +43,7 @@ def _contact(
         presses=False,
     )
     columns = [lay.V, lay.INVERSE_MASS, lay.MU, lay.MU_STATIC, lay.STEEPNESS, lay.PULL]
-    contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, pull
+    contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, force
     contact.points[0, [lay.FACE, lay.IMAGE, lay.WEIGHT, lay.LOAD, lay.LEVER]] = 1.0, 1.0, 1.0, load, LEVER
     return contact
 
@@ -75,11 +75,11 @@ def free_decay(mu: float, slope: float, speed: float, time: float, gravity: floa
     return float(contact.sliders[0, lay.V])
 
 
-def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) -> float:
-    """Final creep speed of a slider under the constant acceleration `pull`, m/s. Raises InputError."""
-    if not abs(pull) <= BELOW * mu * gravity:
-        raise InputError(f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull")
-    contact, step = _contact(0.0, mu, mu, slope, gravity, pull, mass=1.0), 1.0 / (mu * gravity * slope)
+def creep_speed(mu: float, slope: float, acceleration: float, gravity: float = GRAVITY) -> float:
+    """Final creep speed, m/s, under a constant force per mass `acceleration`, m/s^2. Raises InputError."""
+    if not abs(acceleration) <= BELOW * mu * gravity:
+        raise InputError(f"acceleration = {acceleration!r} is not below mu g = {mu * gravity:.6g} m/s^2: lower it")
+    contact, step = _contact(0.0, mu, mu, slope, gravity, acceleration, mass=1.0), 1.0 / (mu * gravity * slope)
     for _ in range(60):
         before = float(contact.sliders[0, lay.V])
         contact.sliders[0, lay.X] = 0.0
