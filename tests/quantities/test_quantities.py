@@ -202,7 +202,7 @@ def test_words_are_read_by_type():
     assert needed["error"] == pytest.approx(0.007, rel=1e-15)
     with pytest.raises(InputError, match=r"did you mean 'mode\.frequency'"):
         parse_arguments("mode.freqency", [])
-    wrong = {"mode": "KEY=VALUE", "mod=3": "did you mean 'mode'", "mode=3 mode=4": "second", "counts=80-20": "upwards"}
+    wrong = {"mode": "KEY=VALUE", "mod=3": "did you mean 'mode'", "mode=3 mode=4": "repeats", "counts=80-20": "upwards"}
     for text, sentence in wrong.items():
         with pytest.raises(InputError, match=sentence):
             parse_arguments("mode.order", text.split())

@@ -228,7 +228,7 @@ def lumped_swr(
 def fastest_crests(
     scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
-    """Largest crest speed of the exact beam with reflection up to `limit`, frequency within 1.5 %, phase 5 to 175 deg."""
+    """Largest crest speed of the exact beam with reflection <= `limit`, frequency within 1.5 %, phase 5 to 175 deg."""
     from verify.travelling_wave import maximum_crest_speed
 
     return maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed
