@@ -122,7 +122,7 @@ class SegmentModel(ChainStructure):
     def chain(self) -> Chain:
         """Links and joints without attachments. Raises InputError where the stiffness of a joint is not positive."""
         lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
-        compliances = self._own_compliances.copy()
+        compliances = self._corrected_compliances.copy()
         compliances[[0, -1]] += self.attached.end_springs
         inertias = link_inertia(masses, lengths)
         if self._thick:
@@ -163,7 +163,7 @@ class SegmentModel(ChainStructure):
         return self._joint_compliances(self.links.stiffnesses)
 
     @cached_property
-    def _own_compliances(self) -> Array:
+    def _corrected_compliances(self) -> Array:
         """1/k of tensioned joints, (N + 1,): EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
         if self.joints != "tensioned" or not self.beam.tension:
             return self._beam_compliances
@@ -235,7 +235,8 @@ class SegmentModel(ChainStructure):
             links = self._links(unknowns)
             return lambda x, derivative: links(x, derivative + 1)
         corrected = self.reading == "corrected"
-        return shear.section_rotation(self.motions, self._wall_factors, self._own_share, unknowns, corrected=corrected)
+        factors, fraction = self._wall_factors, self._beam_fraction
+        return shear.section_rotation(self.motions, factors, fraction, unknowns, corrected=corrected)
 
     def leading_sign(self, vectors: Array) -> Array:
         """Sign of the first free joint's position."""
@@ -245,9 +246,9 @@ class SegmentModel(ChainStructure):
         """Fields of `Modes`: joints as nodes, their readings, and the curvature M/EI of every joint's moment."""
 
         def curvatures() -> Array:
-            there, bent = self._springs, np.zeros((vectors.shape[1], self.n_segments + 1))
-            share = self._own_share / (right_of(self.links.stiffnesses) * self._beam_compliances)
-            bent[:, there] = self.system.strain(vectors)[: len(there)].T * share[there]
+            sprung, bent = self._springs, np.zeros((vectors.shape[1], self.n_segments + 1))
+            share = self._beam_fraction / (right_of(self.links.stiffnesses) * self._beam_compliances)
+            bent[:, sprung] = self.system.strain(vectors)[: len(sprung)].T * share[sprung]
             if self.theory == "timoshenko":
                 values = self.system.rayleigh_quotients(vectors)
                 joints = self._corrected(vectors)

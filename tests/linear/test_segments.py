@@ -311,7 +311,7 @@ def test_two_bodies_that_approach_become_a_single_body():
     ("change", "settings", "message"),
     [
         ({"tension": 1e5}, {"joints": "tensioned"}, "leaves no stiffness in a joint"),
-        ({"foundation": 1.0}, {"wall": "welded"}, "with nothing on them"),
+        ({"foundation": 1.0}, {"wall": "welded"}, "without attachments"),
         ({}, {"attachment": "levr"}, "did you mean 'lever'"),
         ({"tension": -40.0, "supports": ("clamped", "free")}, {}, "buckle at 17.1"),
     ],

@@ -128,7 +128,7 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
             if not np.isfinite(responses[i]).all():
                 fixed = " fixed at its actuators" if case.kind == "displacement" else ""
                 raise ResonanceError(
-                    f"frequency_hz = {hertz!r} is a resonance of the undamped {case.model.name} model{fixed}: give "
+                    f"frequency_hz = {hertz!r} is an undamped resonance of the {case.model.name} model{fixed}: give "
                     "the beam a loss_factor or choose another frequency"
                 )
             k[i] = own
