@@ -186,19 +186,19 @@ class HermiteModel(DiscreteModel):
             self.mesh.lengths,
             self.unit / self.beam.bending_stiffness,
         )
-        found = []
+        strains = []
         if beam.foundation:
             points, weights = np.polynomial.legendre.leggauss(4)
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
             shares = (lengths[:, None] * 0.5 * weights).ravel()
-            found.append((self._rows(x), self._foundation * shares))
+            strains.append((self._rows(x), self._foundation * shares))
         for spring in beam.spring:
             at = np.array([spring.position / self.unit])
             for value, rotation in ((spring.stiffness * self.unit**2, False), (spring.rotational, True)):
                 if value:
                     most = RIGID * self.mesh.stiffnesses.max()
-                    found.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
-        return found
+                    strains.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
+        return strains
 
     def _mass(self) -> Any:
         """Mass matrix M of the elements over the unknowns by scikit-fem, with rotary inertia."""
