@@ -75,21 +75,20 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, gravi
             force[2 * j + axis] -= links[j + 1, column] * force[2 * j + 2 + axis]
 
 
-def flatten(system: ChainSystem, stiffness: Array, immovable: bool) -> tuple[Array, Array, Array, Array]:
-    """(links, loads, gravity, scratch) of a chain, the data of `accelerate`; `stiffness` is EA, N, (N,)."""
+def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
+    """(links, loads, gravity, scratch) of a chain, the data of `accelerate`."""
     n, lengths = system.n_links, system.lengths
     loads = [
         (p.at / lengths[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
         for p in system.loads
     ]
     links = np.zeros((n + 1, 9))
-    links[:-1, :FACTOR] = np.stack(
-        [lengths, system.masses, stiffness / lengths, system.stiffness, system.dashpots], axis=1
-    )
+    springs = system.axial_stiffness / lengths
+    links[:-1, :FACTOR] = np.stack([lengths, system.masses, springs, system.stiffness, system.dashpots], axis=1)
     # L D L^T of the mass matrix: the pivot of a joint that is not free has the reciprocal 0
     diagonal, coupling = joint_masses(system.masses, system.inertias, lengths)
-    for axis, fixed in enumerate((immovable, system.tip == "roller")):
-        reciprocal = 0.0
+    for axis in range(2):
+        reciprocal, fixed = 0.0, axis == 1 and system.tip == "roller"
         for j in range(1, n + 1):
             factor = coupling[j - 1] * reciprocal
             reciprocal = 0.0 if fixed and j == n else 1.0 / (diagonal[j] - factor * coupling[j - 1])

@@ -9,9 +9,6 @@ from verify.chain.system import ChainState, ChainSystem, Rotation, circular
 from verify.errors import InputError
 from verify.validation import check_unmasked
 
-BLOCK = 1 << 18
-"""Angles per block where there are many times, for the sake of memory."""
-
 
 class Positions(NamedTuple):
     """Links at one time, or at times that come first."""
@@ -48,31 +45,18 @@ def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array
     return Positions(directions, spins, joints, velocities)
 
 
-def positions(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
-    """Joints 0..N, (N + 1, 2) m, and their velocities, (N + 1, 2) m/s."""
-    placed = place(system, state.time, *checked(system, state))
-    return placed.joints, placed.velocities
-
-
-def checked(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
-    """Copies of angles and rates. Raises InputError for a wrong shape or a value that is not finite."""
-    arrays = []
-    for name in ("angles", "rates"):
-        check_unmasked(f"state.{name}", getattr(state, name), "SI")
-        values = np.array(getattr(state, name), dtype=float)
-        if values.shape != (system.n_links,) or not np.isfinite(values).all():
-            raise InputError(f"state.{name}: give {system.n_links} finite numbers, one for each joint")
-        arrays.append(values)
-    return arrays[0], arrays[1]
-
-
 def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
     """The state with the tip on its roller, and the largest change of an angle or (times 1 s) of a rate.
 
     One joint angle depends on the others, that with the longest lever arm: the links beyond it turn as one, and their
-    rate cancels the tip's across. Raises InputError where they do not reach the roller.
+    rate cancels the tip's across. Raises InputError where they do not reach the roller, for a wrong shape and a value
+    that is not finite.
     """
-    q, v = checked(system, state)
+    for name in ("angles", "rates"):
+        check_unmasked(f"state.{name}", getattr(state, name), "SI")
+        if np.shape(getattr(state, name)) != (system.n_links,) or not np.isfinite(getattr(state, name)).all():
+            raise InputError(f"state.{name}: give {system.n_links} finite numbers, one for each joint")
+    q, v = (np.array(values, dtype=float) for values in (state.angles, state.rates))
     if system.tip == "free":
         return ChainState(q, v, state.time), 0.0
     joints = place(system, state.time, q, v).joints
@@ -98,15 +82,11 @@ def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
 
 def energies(system: ChainSystem, times: Array, angles: Array, rates: Array) -> Array:
     """Kinetic, elastic (joints and axial spring) and gravitational energy, (3, n), joule, of n states."""
-    block, parts = max(BLOCK // system.n_links, 1), [np.zeros((3, 0))]
-    for first in range(0, len(times), block):
-        part = slice(first, first + block)
-        placed = place(system, times[part], angles[part], rates[part])
-        middles = 0.5 * (placed.joints[:, 1:] + placed.joints[:, :-1])
-        squares = (0.5 * (placed.velocities[:, 1:] + placed.velocities[:, :-1])) ** 2
-        resisted = squares.sum(axis=-1) if system.axial_inertia else squares[..., 1]
-        kinetic = 0.5 * (resisted @ system.masses + placed.rates**2 @ system.inertias)
-        shortening = 2.0 * np.sin(0.5 * placed.directions) ** 2 @ system.lengths
-        elastic = 0.5 * (angles[part] ** 2 @ system.stiffness + system.axial_spring * shortening**2)
-        parts.append(np.stack([kinetic, elastic, -(middles @ np.array(system.gravity)) @ system.masses]))
-    return np.concatenate(parts, axis=1)
+    placed = place(system, times, angles, rates)
+    middles = 0.5 * (placed.joints[:, 1:] + placed.joints[:, :-1])
+    squares = (0.5 * (placed.velocities[:, 1:] + placed.velocities[:, :-1])) ** 2
+    resisted = squares.sum(axis=-1) if system.axial_inertia else squares[..., 1]
+    kinetic = 0.5 * (resisted @ system.masses + placed.rates**2 @ system.inertias)
+    shortening = 2.0 * np.sin(0.5 * placed.directions) ** 2 @ system.lengths
+    elastic = 0.5 * (angles**2 @ system.stiffness + system.axial_spring * shortening**2)
+    return np.stack([kinetic, elastic, -(middles @ np.array(system.gravity)) @ system.masses])

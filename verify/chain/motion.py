@@ -6,19 +6,18 @@ digits may have none right. `from_rest` confirms such a motion by a second run, 
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
+from msgspec import structs
 
 from verify.arrays import Array
 from verify.chain.kinematics import at_rest, energies, hub, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
-from verify.options import LINKS, Links
 from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
 from verify.validation import check_choice, check_number, check_unmasked
 
@@ -47,108 +46,109 @@ class ChainStatistics(Statistics, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MovedChain(ABC):
+class ChainMotion(ABC):
     """Motion of a chain at its times."""
 
     system: ChainSystem
     times: Array
     """(n,), s; fewer than requested where the run stopped early."""
+    states: Array
+    """(n, size), coordinates of the march, their rates, quadratures."""
     statistics: ChainStatistics
-
-    @property
-    def finished(self) -> bool:
-        """Whether every requested time is here."""
-        return self.statistics.finished
 
     @abstractmethod
     def joints(self) -> Array:
-        """Joints 0..N, (n, N + 1, 2), m: positions of rigid links, displacements of stretching ones."""
+        """Positions of joints 0..N, (n, N + 1, 2), m."""
 
-    def heights(self) -> Array:
-        """Deflection of joints 1..N, (n, N), m."""
-        return self.joints()[:, 1:, 1]
+    @abstractmethod
+    def directions(self) -> Array:
+        """Absolute angles of the links, (n, N), rad."""
 
-    def points(self, x: Sequence[float]) -> Array:
-        """Material points at x of the straight chain, on their links, (n, len(x), 2), m; see `joints`."""
-        columns, joints = [], self.joints()
+    @abstractmethod
+    def energies(self) -> Array:
+        """Kinetic, elastic and gravitational energy, (3, n), J."""
+
+    def deflection(self, x: Sequence[float]) -> Array:
+        """Deflection of material points at x of the straight chain, on their links, (n, len(x)), m."""
+        columns, heights = [], self.joints()[..., 1]
         for position in x:
             check_number("x", position, "metres, on the chain", at_least=0, at_most=self.system.length * (1.0 + 1e-12))
             link, at = link_at(self.system, position)
             share = at / self.system.lengths[link - 1]
-            columns.append((1.0 - share) * joints[:, link - 1] + share * joints[:, link])
+            columns.append((1.0 - share) * heights[:, link - 1] + share * heights[:, link])
         return np.stack(columns, axis=1)
 
-    def deflection(self, x: Sequence[float]) -> Array:
-        """Deflection of material points on their links, (n, len(x)), m."""
-        return self.points(x)[..., 1]
 
+class RigidMotion(ChainMotion):
+    """Motion of a chain of rigid links: absolute angles, their rates, energy dissipated, work of loads and hub."""
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ChainMotion(MovedChain):
-    """Motion of a chain of rigid links, and its energy balance."""
+    @property
+    def angles(self) -> Array:
+        """Relative, (n, N), rad."""
+        return np.diff(self.directions(), prepend=hub(self.system.rotation, self.times)[0][:, None])
 
-    angles: Array
-    """(n, N), relative, rad."""
-    rates: Array
-    """(n, N), rad/s."""
-    dissipated: Array
-    """(n,), J since the start."""
-    work_in: Array
-    """(n,), J, of loads and hub since the start."""
+    @property
+    def rates(self) -> Array:
+        """Of the relative angles, (n, N), rad/s."""
+        n = self.system.n_links
+        return np.diff(self.states[:, n : 2 * n], prepend=hub(self.system.rotation, self.times)[1][:, None])
 
     def state(self, index: int) -> ChainState:
         """The state at one of the times."""
         return ChainState(self.angles[index], self.rates[index], float(self.times[index]))
 
-    def energies(self) -> tuple[Array, Array, Array]:
-        """Kinetic, elastic and gravitational energy, (n,) each, J."""
-        kinetic, elastic, gravitational = energies(self.system, self.times, self.angles, self.rates)
-        return kinetic, elastic, gravitational
+    def energies(self) -> Array:
+        """Kinetic, elastic and gravitational energy, (3, n), J."""
+        return energies(self.system, self.times, self.angles, self.rates)
 
     def residual(self) -> Array:
         """Change of energy less work plus dissipation, (n,), J: the error of the time steps."""
-        balance = np.sum(self.energies(), axis=0) - self.work_in + self.dissipated
+        balance = self.energies().sum(axis=0) - self.states[:, -1] + self.states[:, -2]
         return np.asarray(balance - balance[0])
 
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), rad."""
-        return np.asarray(np.cumsum(self.angles, axis=1) + hub(self.system.rotation, self.times)[0][:, None])
+        return self.states[:, : self.system.n_links]
 
     def joints(self) -> Array:
         """Positions of joints 0..N, (n, N + 1, 2), m."""
         return place(self.system, self.times, self.angles, self.rates).joints
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ElasticMotion(MovedChain):
-    """Motion of a chain of stretching links."""
+class ElasticMotion(ChainMotion):
+    """Motion of a chain of stretching links: displacements of joints 0..N from the straight chain, their rates."""
 
-    displacements: Array
-    """(n, N + 1, 2), m from the straight chain."""
-    velocities: Array
-    """(n, N + 1, 2), m/s."""
-    axial_stiffness: Array
-    """EA of the links, N, (N,)."""
+    def moved(self) -> tuple[Array, Array]:
+        """Displacements, m, and velocities, m/s, of joints 0..N, (n, N + 1, 2) each."""
+        u, v = self.states.reshape(len(self.times), 2, -1, 2).transpose(1, 0, 2, 3)
+        return u, v
 
-    @cached_property
+    def spans(self) -> tuple[Array, Array]:
+        """Extent of the links along x less their length, and across, (n, N) each, m."""
+        along, across = np.diff(self.moved()[0], axis=1).transpose(2, 0, 1)
+        return along, across
+
     def energies(self) -> Array:
-        """Kinetic, elastic (of links and joints) and gravitational energy together, (n,), J."""
-        system, v = self.system, self.velocities
+        """Kinetic, elastic (of links and joints) and gravitational energy, (3, n), J."""
+        system, (u, v), (along, across) = self.system, self.moved(), self.spans()
         diagonal, coupling = joint_masses(system.masses, system.inertias, system.lengths)
         kinetic = 0.5 * (v**2).sum(axis=2) @ diagonal + (v[:, 1:] * v[:, :-1]).sum(axis=2) @ coupling
-        lengths, spans = system.lengths, np.diff(self.displacements, axis=1)
-        along, across = lengths + spans[..., 0], spans[..., 1]
-        squares = spans[..., 0] * (2.0 * lengths + spans[..., 0]) + across**2
-        stretches = squares / (np.hypot(along, across) + lengths)
-        bends = np.diff(np.arctan2(across, along), axis=1, prepend=0.0)
+        squares = along * (2.0 * system.lengths + along) + across**2
+        stretches = squares / (np.hypot(system.lengths + along, across) + system.lengths)
+        bends = np.diff(self.directions(), axis=1, prepend=0.0)
         bends -= 2.0 * np.pi * np.round(bends / (2.0 * np.pi))
-        elastic = 0.5 * (stretches**2 @ (self.axial_stiffness / lengths) + bends**2 @ system.stiffness)
-        u = self.displacements @ np.array(system.gravity)
-        return np.asarray(kinetic + elastic - 0.5 * (u[:, 1:] + u[:, :-1]) @ system.masses)
+        elastic = 0.5 * (stretches**2 @ (system.axial_stiffness / system.lengths) + bends**2 @ system.stiffness)
+        fall = u @ np.array(system.gravity)
+        return np.stack([kinetic, elastic, -0.5 * (fall[:, 1:] + fall[:, :-1]) @ system.masses])
+
+    def directions(self) -> Array:
+        """Absolute angles of the links, (n, N), rad."""
+        along, across = self.spans()
+        return np.asarray(np.arctan2(across, self.system.lengths + along))
 
     def joints(self) -> Array:
-        """Displacements of joints 0..N, (n, N + 1, 2), m."""
-        return self.displacements
+        """Positions of joints 0..N, (n, N + 1, 2), m."""
+        return self.moved()[0] + np.stack([self.system.nodes, 0.0 * self.system.nodes], axis=1)
 
 
 def highest_frequency(system: ChainSystem) -> tuple[float, float]:
@@ -191,14 +191,14 @@ def _stable_step(omega: float, damping: float) -> float:
     return float((2.6156 if damping else 2.0 * np.sqrt(2.0)) / fastest) if fastest else float("inf")
 
 
-def elastic_step_limit(system: ChainSystem, axial_stiffness: float | Array) -> float:
+def elastic_step_limit(system: ChainSystem) -> float:
     """A stable step of RK4 of stretching links, s: `step_limit` with bounds on the highest frequency and damping.
 
     Neither exceeds the highest of any link by itself (B. M. Irons and G. Treharne): sqrt(EA l / J) in stretching,
     sqrt(2 (k_i + k_j) / J) in bending, the rate 2 (c_i + c_j) / J of the dashpots.
     """
     springs, dashpots = (rate + np.append(rate[1:], 0.0) for rate in (system.stiffness, system.dashpots))
-    squares = np.maximum(axial_stiffness * system.lengths, 2.0 * springs) / system.inertias
+    squares = np.maximum(system.axial_stiffness * system.lengths, 2.0 * springs) / system.inertias
     return _stable_step(float(np.sqrt(squares.max())), float((2.0 * dashpots / system.inertias).max()))
 
 
@@ -211,12 +211,12 @@ def simulate(
     step: float | None = None,
     tolerance: float = 1e-8,
     progress: Progress = lambda part: None,
-) -> ChainMotion:
+) -> RigidMotion:
     """The motion from `start`, at `times` (ascending, from start.time on), of which the last is a step's exact end.
 
     "rk4" takes a fixed `step`, at most `step_limit`; "adaptive" is Dormand and Prince's pair of orders 5 and 4, its
-    error per step at most `tolerance` of the largest motion so far. A start off the roller is projected. An interrupt
-    returns the states so far. Raises InputError.
+    error per step at most `tolerance` of the largest motion so far. A start off the roller is projected. Raises
+    InputError.
     """
     began = perf_counter()
     check_choice("method", method, get_args(Method))
@@ -247,131 +247,84 @@ def simulate(
     y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
     run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
-    reached = samples[: len(run.kept)]
-    (angle, rate), rows = hub(system.rotation, reached), run.kept
-    return ChainMotion(
-        system=system,
-        times=reached,
-        angles=np.diff(rows[:, :n], prepend=angle[:, None]),
-        rates=np.diff(rows[:, n : 2 * n], prepend=rate[:, None]),
-        dissipated=rows[:, 2 * n],
-        work_in=rows[:, 2 * n + 1],
-        statistics=_statistics(method, run, run.furthest, (ready - began, perf_counter() - ready), correction),
-    )
+    statistics = _statistics(method, run, run.furthest, began, ready, correction)
+    return RigidMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
 
 
 def simulate_elastic(
-    system: ChainSystem,
-    axial_stiffness: float | Array,
-    times: Sequence[float] | Array,
-    *,
-    step: float | None = None,
-    immovable: bool = False,
-    deflected: Array | None = None,
+    system: ChainSystem, times: Sequence[float] | Array, *, step: float | None = None, deflected: Array | None = None
 ) -> ElasticMotion:
     """The motion of stretching links from rest, straight or from joint deflections (N + 1,), at even `times` from 0.
 
-    `axial_stiffness` is EA in newton, of all links or of each (N,); `step` of RK4 is at most `elastic_step_limit`, half
-    of it unless given, shortened to divide the spacing of the times; `immovable` fixes the tip along x too. Raises
-    InputError, also for a rotating hub, an axial spring and links without inertia along x.
+    `step` of RK4 is at most `elastic_step_limit`, half of it unless given, shortened to divide the spacing of the
+    times. Raises InputError, also for a rotating hub, an axial spring and links without inertia along x.
     """
     began = perf_counter()
-    stiffness = np.asarray(axial_stiffness, dtype=float)
-    if stiffness.shape not in ((), (system.n_links,)):
-        raise InputError(
-            f"axial_stiffness has the shape {stiffness.shape}: give one value or one for each of {system.n_links} links"
-        )
-    for value in np.atleast_1d(stiffness).tolist():
-        check_number("axial_stiffness", value, "newton", above=0)
     turned = system.rotation.rate or system.rotation.amplitude or system.rotation.offset
-    if turned or system.axial_spring or not system.axial_inertia:
+    if system.rigid or turned or system.axial_spring or not system.axial_inertia:
         raise InputError(
-            "chain: stretching links take no rotation, no axial_spring (give immovable = True) and no axial_inertia = "
-            "False"
+            "chain: stretching links have an axial_stiffness, no rotation, no axial_spring and no axial_inertia = False"
         )
     check_unmasked("times", times, "seconds")
     samples = np.asarray(times, dtype=float)
     if samples.ndim != 1 or len(samples) < 2 or samples[0] != 0.0 or np.ptp(np.diff(samples)) > 1e-9 * samples[1]:
         raise InputError("times: give two or more, evenly spaced, from 0")
-    limit = elastic_step_limit(system, stiffness)
+    limit = elastic_step_limit(system)
     step = 0.5 * limit if step is None else step
     check_number("step", step, "seconds", above=0, at_most=limit)
     from verify.chain import elastic_links
     from verify.chain.runge_kutta import RK4, integrate
 
-    size, stiffness = 2 * system.n_links + 2, np.broadcast_to(stiffness, system.n_links)
-    model, y = elastic_links.flatten(system, stiffness, immovable), np.zeros(2 * size)
+    size = 2 * system.n_links + 2
+    model, y = elastic_links.flatten(system), np.zeros(2 * size)
     y[1:size:2] = 0.0 if deflected is None else deflected
     spacing, ready = float(samples[1]), perf_counter()
     step = spacing / np.ceil(spacing / step - 1e-9)
     run = integrate(elastic_links.accelerate, model, RK4, size, y, 0.0, samples, step, (0.0, 0.0, 0.0, np.inf))
-    places, speeds = (run.kept[:, part].reshape(-1, system.n_links + 1, 2) for part in (slice(size), slice(size, None)))
-    spans = np.diff(places, axis=1)
-    furthest = float(abs(np.arctan2(spans[..., 1], system.lengths + spans[..., 0])).max())
-    return ElasticMotion(
-        system=system,
-        times=samples[: len(places)],
-        displacements=places,
-        velocities=speeds,
-        axial_stiffness=stiffness,
-        statistics=_statistics("rk4", run, furthest, (ready - began, perf_counter() - ready)),
-    )
+    statistics = _statistics("rk4", run, 0.0, began, ready)
+    motion = ElasticMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
+    return replace(motion, statistics=structs.replace(statistics, furthest=float(abs(motion.directions()).max())))
 
 
 def _statistics(
-    method: Method, run: "Marched", furthest: float, took: tuple[float, float], correction: float = 0.0
+    method: Method, run: "Marched", furthest: float, began: float, ready: float, correction: float = 0.0
 ) -> ChainStatistics:
-    """Cost and end of a run; `took` are the seconds before and in it."""
-    steps, rejected, evaluations, _ = (int(count) for count in run.counts)
-    reasons = ("", "", "diverged at", "the step became too small at")
+    """Cost and end of a run that began and was ready for its steps at these times."""
+    steps, rejected, evaluations, _ = run.counts.tolist()
+    reason = {2: "diverged", 3: "the step became too small"}
     return ChainStatistics(
         method=method,
         steps=steps,
         rejected=rejected,
         evaluations=evaluations,
         step_s=run.step,
-        set_up_s=took[0],
-        wall_s=took[1],
-        stopped=END if run.status == 1 else f"{reasons[run.status]} t = {run.time:.6g} s",
+        set_up_s=ready - began,
+        wall_s=perf_counter() - ready,
+        stopped=END if run.status == 1 else f"{reason[run.status]} at t = {run.time:.6g} s",
         correction=correction,
         furthest=furthest,
     )
 
 
-def check_drives(moved: ChainMotion | ElasticMotion) -> None:
-    """Raise InputError for a motion that did not reach its end."""
-    if not moved.finished:
-        raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces or a smaller step")
-
-
 def from_rest(
-    system: ChainSystem,
-    links: Links,
-    axial_stiffness: Array,
-    times: Array,
-    *,
-    tolerance: float,
-    progress: Progress = lambda part: None,
-) -> ChainMotion | ElasticMotion:
-    """The motion from rest at `times`, (n,), s: rigid links with `tolerance`, or those of `axial_stiffness`, N, (N,).
+    system: ChainSystem, times: Array, *, tolerance: float, progress: Progress = lambda part: None
+) -> ChainMotion:
+    """The motion from rest at `times`, (n,), s, of rigid links with `tolerance` or of stretching ones.
 
     Where links turn by more than `FAR` a run at ten times the tolerance (half the step) confirms it to `AGREED` of the
     largest deflection. Raises InputError for a run that diverges and one that is not confirmed.
     """
-    check_choice("links", links, LINKS)
 
-    def run(size: float | None) -> ChainMotion | ElasticMotion:
-        if links == "stretching":
-            return simulate_elastic(system, axial_stiffness, times, step=size)
-        return simulate(system, at_rest(system), times, tolerance=size or tolerance, progress=progress)
+    def run(size: float | None) -> ChainMotion:
+        if system.rigid:
+            return simulate(system, at_rest(system), times, tolerance=size or tolerance, progress=progress)
+        return simulate_elastic(system, times, step=size)
 
     motion = run(None)
-    check_drives(motion)
+    check_moved(motion)
     if motion.statistics.furthest > FAR:
-        stretching = links == "stretching"
-        name, other = ("step", 0.5 * motion.statistics.step_s) if stretching else ("tolerance", 10.0 * tolerance)
-        second: Any = run(other)
-        heights, others = motion.heights(), second.heights()
+        name, other = ("tolerance", 10.0 * tolerance) if system.rigid else ("step", 0.5 * motion.statistics.step_s)
+        heights, others = (one.joints()[..., 1] for one in (motion, run(other)))
         largest = np.maximum.accumulate(abs(heights).max(axis=1))[: len(others)]
         apart = ~(abs(heights[: len(others)] - others).max(axis=1) <= AGREED * largest)
         if apart.any() or len(others) < len(heights):
@@ -382,3 +335,9 @@ def from_rest(
                 "time or smaller forces"
             )
     return motion
+
+
+def check_moved(motion: ChainMotion) -> None:
+    """Raise InputError for a motion that did not reach its end."""
+    if not motion.statistics.finished:
+        raise InputError(f"the chain's motion {motion.statistics.stopped}: give smaller forces or a smaller step")

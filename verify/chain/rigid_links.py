@@ -195,14 +195,3 @@ def begin(system: ChainSystem, state: ChainState, numbers: Array) -> Array:
     placed = place(system, state.time, state.angles, state.rates)
     numbers[PIVOT] = np.argmax(abs(placed.joints[-1, 0] - placed.joints[:-1, 0]))
     return np.concatenate([placed.directions, placed.rates, [0.0, 0.0]])
-
-
-def accelerations(system: ChainSystem, state: ChainState) -> Array:
-    """Relative angular accelerations, (N,), rad/s^2, at a state that meets the roller."""
-    model, turn = flatten(system), system.rotation
-    y = begin(system, state, model[2])
-    out = np.zeros_like(y)
-    accelerate(state.time, y, out, *model)
-    omega = circular(turn.frequency_hz)
-    base = -turn.amplitude * omega**2 * np.sin(omega * state.time + np.deg2rad(turn.phase_deg))
-    return np.diff(out[system.n_links : -2], prepend=base)

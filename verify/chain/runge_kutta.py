@@ -226,8 +226,7 @@ def integrate(
     """
     k, kept, clock = np.zeros((len(tableau.c) + 3, y.size)), np.zeros((len(samples), y.size)), np.array([start, step])
     counts, numbers = np.zeros(4, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])
-    # some tens of milliseconds between two looks at the keyboard
-    budget, status = max(200_000 // y.size, 16), RUNNING
+    budget, status = max(200_000 // y.size, 16), RUNNING  # some tens of milliseconds between two interrupts
     run: Any = march
     while status == RUNNING:
         status = run(accelerate, *model, *tableau, n, y, k, clock, samples, kept, numbers, counts, budget)

@@ -15,9 +15,9 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.chain.kinematics import at_rest, energies
-from verify.chain.motion import ElasticMotion, elastic_step_limit, from_rest, highest_frequency, step_limit
+from verify.chain.motion import elastic_step_limit, from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
-from verify.chain.system import ChainState, LinkLoad, axial_stiffness, build_system, straight_chain
+from verify.chain.system import ChainState, LinkLoad, build_system, straight_chain
 from verify.dynamics import layout as lay
 from verify.dynamics.initial_state import PASSES, set_down
 from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
@@ -27,16 +27,16 @@ from verify.dynamics.slider_run import Progress, SliderRun
 from verify.dynamics.stepping import Contacts, Run
 from verify.errors import InputError
 from verify.linear.positions import Forces, Numbers
-from verify.options import LINKS, Links
+from verify.options import Links
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 from verify.segments.reading import contact_line
-from verify.validation import check_choice, check_integer, check_number
+from verify.validation import check_integer, check_number
 
 RADIANS = 0.5
 """Phase of the highest mode in a step of the two-way march."""
 CHUNK, MARCHED = 20_000, 200
-"""Steps between two checks for an interrupt, one-way and two-way."""
+"""Steps between two interrupts, one-way and two-way."""
 
 
 def slide_on_chain(
@@ -69,7 +69,6 @@ def slide_on_chain(
     with two-way coupling for normal = "bilateral", feet on stretching links, and a preload that depends on deflection.
     """
     began = perf_counter()
-    check_choice("links", links, LINKS)
     check_integer("count", count, 2)
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
     request = request_of(
@@ -94,14 +93,16 @@ def slide_on_chain(
                 "slider.preload depends on the deflection, by preload_stiffness or a mirrored foot: the equilibrium of "
                 "a nonlinear chain is under constant loads, give coupling = 'one-way'"
             )
-    system = build_system(beam, count, request.forces, frequency_hz, load="reciprocal", joint_dashpot=joint_dashpot)
+    system = build_system(
+        beam, count, request.forces, frequency_hz, load="reciprocal", joint_dashpot=joint_dashpot, links=links
+    )
     basis = basis_of(beam, "segment", count, None, "spline")
     stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
     notes = (f"the nonlinear chain of {links} links from rest; coupling and margins are those of the linear one",)
     run = ChainRun.of(request, basis, stages, notes, sequence=not isinstance(slider, Slider))
     up = np.triu(np.ones((count, count + 1)), 1)  # joints beyond a unit step across rise with it
     line = contact_line(straight_chain(system), up)
-    motion = replace(run, system=system, line=line, links=links, tolerance=tolerance).converged(progress)
+    motion = replace(run, system=system, line=line, tolerance=tolerance).converged(progress)
     statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
     return replace(motion, model="chain", statistics=statistics, end=replace(motion.end, model="chain"))
 
@@ -113,7 +114,6 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     """ChainSystem."""
     line: Any = None
     """Contact line by unit steps across from joint to joint, (x, derivative) -> (N, len(x))."""
-    links: Links = "rigid"
     tolerance: float = 1e-9
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
@@ -154,23 +154,17 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         """States of the chain at half steps, two-way of the first alone, and the step of the march, s."""
         from verify.chain.rigid_links import begin
 
-        system, rigid = self.system, self.links == "rigid"
-        axial = axial_stiffness(self.request.beam, system.n_links)
+        system = self.system
         if contacts.two_way:
-            states, limit = np.zeros((3, 4 * system.n_links + 4)), elastic_step_limit(system, axial) / 4.0
-            if rigid:
+            if not system.rigid:
+                states, limit = np.zeros((3, 4 * system.n_links + 4)), elastic_step_limit(system) / 4.0
+            else:
                 states = np.zeros((3, 2 * system.n_links + 2))
                 states[0] = begin(system, self._static(contacts), numbers)
                 limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
             return states, float(0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit))
         times = np.linspace(0.0, steps.duration, 2 * steps.n + 1)
-        moved = from_rest(system, self.links, axial, times, tolerance=self.tolerance, progress=progress)
-        if isinstance(moved, ElasticMotion):
-            parts = [part.reshape(len(times), -1) for part in (moved.displacements, moved.velocities)]
-        else:
-            works = np.stack([moved.dissipated, moved.work_in], axis=1)
-            parts = [moved.directions(), np.cumsum(moved.rates, axis=1), works]
-        return np.concatenate(parts, axis=1), steps.dt
+        return from_rest(system, times, tolerance=self.tolerance, progress=progress).states, steps.dt
 
     def _marched(
         self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
@@ -180,10 +174,8 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         from verify.chain.slider_kernels import STALE, advance
 
         (stage,), system, began = stages, self.system, thread_time()
-        steps, count, rigid, two_way = stage.steps, system.n_links, self.links == "rigid", contacts.two_way
-        axial = axial_stiffness(self.request.beam, count)
-        flat = rigid_links.flatten(system) if rigid else elastic_links.flatten(system, axial, False)
-        links, loads, numbers, scratch = flat
+        steps, count, rigid, two_way = stage.steps, system.n_links, system.rigid, contacts.two_way
+        links, loads, numbers, scratch = rigid_links.flatten(system) if rigid else elastic_links.flatten(system)
         if two_way:  # dead loads at the far joints
             spare = np.zeros((count, 7))
             spare[:, 0], spare[:, 6] = 0.5 * system.lengths if rigid else 1.0, np.arange(count)

@@ -5,7 +5,7 @@ across it. Coordinates are the paper's relative joint angles q_i = theta_i - the
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import pi, radians, sin
 
 import numpy as np
@@ -13,12 +13,12 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
-from verify.options import TIPS, Joints, Load, Tip, Wall
+from verify.options import LINKS, TIPS, Joints, Links, Load, Tip, Wall
 from verify.problem.beam import Beam, PointForce
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
-from verify.validation import check_number, check_unmasked
+from verify.validation import check_choice, check_number, check_unmasked
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +33,8 @@ class Rotation:
     phase_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        for field in ("offset", "rate", "amplitude", "frequency_hz", "phase_deg"):
-            check_number(f"rotation.{field}", getattr(self, field), "SI, degrees for the phase")
+        for name in ("offset", "rate", "amplitude", "frequency_hz", "phase_deg"):
+            check_number(f"rotation.{name}", getattr(self, name), "SI, degrees for the phase")
 
     @property
     def constant(self) -> float:
@@ -85,6 +85,8 @@ class ChainSystem:
     tip: Tip = "free"
     axial_spring: float = 0.0
     """N/m between the roller and the end of the straight chain; EA/L makes an end immovable."""
+    axial_stiffness: Array = field(default_factory=lambda: np.zeros(0))
+    """(N,), EA of links that stretch, N; (0,) of rigid ones."""
     axial_inertia: bool = True
     """Whether links resist acceleration along x. Rigid links transmit it entirely, a real beam does not."""
     gravity: tuple[float, float] = (0.0, 0.0)
@@ -97,14 +99,15 @@ class ChainSystem:
         n = len(self.lengths)
         if n == 0:
             raise InputError("chain.lengths is empty: give at least one link")
-        for field in ("lengths", "masses", "inertias", "stiffness", "dashpots"):
-            check_unmasked(f"chain.{field}", getattr(self, field), "SI")
-            values = np.asarray(getattr(self, field), dtype=float)
+        stretching = () if self.rigid else ("axial_stiffness",)
+        for name in ("lengths", "masses", "inertias", "stiffness", "dashpots", *stretching):
+            check_unmasked(f"chain.{name}", getattr(self, name), "SI")
+            values = np.asarray(getattr(self, name), dtype=float)
             if values.shape != (n,):
-                raise InputError(f"chain.{field} has the shape {values.shape}: give one value for each of {n} links")
-            limit = "at_least" if field in ("stiffness", "dashpots") else "above"
+                raise InputError(f"chain.{name} has the shape {values.shape}: give one value for each of {n} links")
+            limit = "at_least" if name in ("stiffness", "dashpots") else "above"
             for i, value in enumerate(values.tolist(), start=1):
-                check_number(f"chain.{field} of link {i}", value, "SI", **{limit: 0.0})
+                check_number(f"chain.{name} of link {i}", value, "SI", **{limit: 0.0})
         check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
         for value in self.gravity:
             check_number("chain.gravity", value, "m/s^2")
@@ -126,6 +129,11 @@ class ChainSystem:
     def n_links(self) -> int:
         """N."""
         return len(self.lengths)
+
+    @property
+    def rigid(self) -> bool:
+        """Whether links do not stretch."""
+        return not len(self.axial_stiffness)
 
     @property
     def length(self) -> float:
@@ -159,17 +167,17 @@ def build_system(
     load: Load = "lever",
     wall: Wall = "gregory",
     joints: Joints = "series",
-    grading: float = 1.0,
     joint_dashpot: float = 0.0,
     axial_inertia: bool = True,
-    immovable: bool = False,
+    links: Links = "rigid",
 ) -> ChainSystem:
     """The nonlinear chain of a beam, its joints those of `segment_model`, under transverse harmonic forces.
 
     Pinned or clamped on the left; free, or pinned as a roller, on the right. `load` applies a force to its link
-    ("lever") or to the four joints around it ("reciprocal"). `immovable` adds the axial spring EA/L of all links in
-    series. Raises InputError for other supports, a loss factor, and forces off the beam.
+    ("lever") or to the four joints around it ("reciprocal"); `links` that are "stretching" have the EA of their
+    section. Raises InputError for other supports, a loss factor, and forces off the beam.
     """
+    check_choice("links", links, LINKS)
     left, right = beam.supports
     if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
         raise InputError(
@@ -184,18 +192,21 @@ def build_system(
         )
     beam.check_features("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
-    chain = SegmentModel(beam, n_segments, wall=wall, joints=joints, grading=grading).chain
+    chain = SegmentModel(beam, n_segments, wall=wall, joints=joints).chain
     unit, mass = chain.unit, beam.mass_per_length
     stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
+    axial = np.zeros(0)
+    if links == "stretching":
+        axial = divide(beam, n_segments).axial_stiffnesses * beam.own.axial_stiffness
     system = ChainSystem(
         lengths=chain.lengths * unit,
         masses=chain.masses * mass * unit,
         inertias=chain.inertias * mass * unit**3,
         stiffness=stiffness,
         dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0),
+        axial_stiffness=axial,
         axial_inertia=axial_inertia,
         tip="roller" if right == "pinned" else "free",
-        axial_spring=1.0 / sum(p.length / p.axial_stiffness for p in beam.pieces) if immovable else 0.0,
     )
     loads = []
     for force in forces:
@@ -214,11 +225,6 @@ def build_system(
         drive = {"frequency_hz": frequency_hz, "phase_deg": force.phase_deg}
         loads += [LinkLoad(link=i, at=at, force=(0.0, part * force.amplitude), **drive) for i, at, part in shares]
     return replace(system, loads=tuple(loads))
-
-
-def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
-    """EA of every link, each of its own section, (N,), newton. Raises InputError as `divide` does."""
-    return divide(beam, n_segments, grading).axial_stiffnesses * beam.own.axial_stiffness
 
 
 def straight_chain(system: ChainSystem) -> Chain:

@@ -10,7 +10,7 @@ import numpy as np
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.friction import coulomb_force, elastic_force, held_force, line_force, tanh_force
-from verify.jit import FAST, inline
+from verify.jit import FAST, inline, jit
 
 SWEEPS = 100
 """Sweeps before the friction forces of a step are solved as a block."""
@@ -285,7 +285,7 @@ def slide(
     return abs(gained - slider[lay.GAINED]) / light if light > 0.0 else 0.0
 
 
-@inline
+@jit(no_cpython_wrapper=True)
 def solve(
     dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
     shapes: Array, response: Array, couplings: Array, spans: Array, block: Array, balance: Array,

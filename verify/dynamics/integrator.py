@@ -54,7 +54,7 @@ def add_powers(
     balance[lay.LOST] += weight * lost
 
 
-@inline
+@jit(no_cpython_wrapper=True)
 def move(
     dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
     spans: Array,
@@ -106,7 +106,7 @@ def move(
             contacts[i, lay.STRETCH] = min(max(contacts[i, lay.STRETCH] + since * slip, -top), top)
 
 
-@inline
+@jit(no_cpython_wrapper=True)
 def add_sums(
     dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
     feet_of: Indices, shapes: Array, response: Array, spans: Array, sums: Array, balance: Array,
@@ -176,7 +176,7 @@ def add_sums(
         sums[feet_of[k], lay.PRESSED] += dt * force * (feet[k, lay.CLIMB] + 0.5 * feet[k, lay.LIFTED])
 
 
-@inline
+@jit(no_cpython_wrapper=True)
 def write_events(
     time: float, dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices,
     spans: Array, events: Array, tally: Indices,
@@ -203,7 +203,7 @@ def write_events(
             tally[lay.EVENTS] += 1
 
 
-@inline
+@jit(no_cpython_wrapper=True)
 def sample(
     span: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
     factors: Array, places: Array, samples: Array, heights: Array, pressures: Array, deflections: Array, sums: Array,

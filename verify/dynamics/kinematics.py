@@ -4,7 +4,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
-from verify.jit import FAST, inline
+from verify.jit import FAST, inline, jit
 
 START, HALF, MIDDLE, END = range(4)
 """Instants of a step. HALF is mid-step; MIDDLE has the deflection of mid-step and, of feet, the MEAN velocity over the
@@ -127,7 +127,7 @@ def touch(
     return at, level, slope / length, rise, turn / length, 2.0 * bend / (length * length), over / length
 
 
-@inline
+@jit(no_cpython_wrapper=True)
 def look(
     when: int,
     mark: int,

@@ -83,4 +83,4 @@ def rk4_stability(part: float) -> float:
     motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step)
     kinetic, elastic, _ = motion.energies()
     total = kinetic + elastic
-    return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.finished else inf
+    return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.statistics.finished else inf
