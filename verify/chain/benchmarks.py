@@ -1,7 +1,7 @@
 """Benchmark problems of the nonlinear chain, and its departure from the linear chain by axial inertia.
 
-Rigid links cannot stretch, so that bending draws the tip in and accelerates the chain's mass along x: an inertia of
-relative size (kL)^2 <theta^2>, which grows with the square of the force. Links that stretch by EA/l have part of it.
+Rigid links do not stretch: bending shortens the chain and accelerates its mass along x, an inertia of relative size
+(kL)^2 <theta^2>, which grows with the square of the force. It is smaller for links that stretch with EA/l.
 """
 
 from collections.abc import Sequence
@@ -35,13 +35,13 @@ CANTILEVER = Beam(
     length=1.0, width=1.2, thickness=0.01, youngs_modulus=1e7, density=1000.0, supports=("clamped", "free")
 )
 EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CANTILEVER.mass_per_length)
-"""Bending stiffness of the cantilever, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
+"""EI of `CANTILEVER`, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
 NODE = 1e-9
-"""Displacement over that of the free beam, F / (m omega^2), below which a place is a node but for rounding."""
+"""Displacement over that of the free beam, F / (m omega^2), below which a position is a node within rounding."""
 
 
 def silent(part: float) -> None:
-    """Show no progress."""
+    """Ignore progress."""
 
 
 def cantilever_tip(load: float, count: int, wall: Wall = "gregory") -> Bent:
@@ -53,18 +53,18 @@ def cantilever_tip(load: float, count: int, wall: Wall = "gregory") -> Bent:
 
 
 def rollup_gap(count: int, wall: Wall = "half", turns: float = 1.0) -> float:
-    """Distance of the ends over L of a cantilever under an end moment 2 pi EI / L times `turns`.
+    """Distance between the ends over L of a cantilever under an end moment 2 pi EI / L times `turns`.
 
-    Equal joints, the wall's 2EI/l among them, close the circle exactly; Gregory's weights leave a gap.
+    Equal joints, with 2EI/l at the wall, close the circle exactly; Gregory's weights leave a gap.
     """
     return float(np.hypot(*bend(CANTILEVER, count, moment=2.0 * pi * turns * EI, wall=wall).tip))
 
 
 def hanging_frequency(mode: int, count: int) -> float:
-    """Omega sqrt(L / g) of uniform links hanging from a pin, without springs.
+    """Natural frequency omega sqrt(L / g) of uniform links without springs that hang from a pin.
 
-    sqrt(3/2) for one link; its limit j_{0,n} / 2 (Daniel Bernoulli) is approached with order 2. Raises InputError for
-    more modes than links.
+    sqrt(3/2) for one link; it converges to j_{0,n} / 2 (Daniel Bernoulli) with order 2. Raises InputError for more
+    modes than links.
     """
     check_integer("segments", count, mode)
     unit, zero = np.full(count, 1.0 / count), np.zeros(count)
@@ -74,10 +74,10 @@ def hanging_frequency(mode: int, count: int) -> float:
 
 
 def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregory") -> float:
-    """Omega sqrt(rho A L^4 / EI) of a cantilever in the plane of its hub's rotation, `speed` in the same unit.
+    """Lead-lag frequency omega sqrt(rho A L^4 / EI) of a rotating cantilever, hub speed `speed` in the same unit.
 
-    Lead-lag: its square is that of the flapping beam less the speed's (A. D. Wright et al., J. Appl. Mech. 49 (1982)
-    197). Order 2, by the centrifugal force. Raises InputError for more modes than links.
+    Its square is the square of the flapping frequency less that of the speed (A. D. Wright et al., J. Appl. Mech. 49
+    (1982) 197). Order 2, due to the centrifugal force. Raises InputError for more modes than links.
     """
     check_integer("segments", count, mode)
     system = replace(build_system(CANTILEVER, count, wall=wall), rotation=Rotation(rate=speed * OMEGA))
@@ -87,9 +87,9 @@ def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregor
 def _sine_shape(
     beam: Beam, count: int, amplitude: float, axial_spring: float = 0.0
 ) -> tuple[ChainSystem, ChainState, float]:
-    """Chain between hinges, its state at rest on amplitude sin(pi x / L), and its first linear frequency, rad/s."""
+    """(chain between hinges, state at rest with w = amplitude sin(pi x / L), first linear frequency, rad/s)."""
     if beam.supports != ("pinned", "pinned"):
-        raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark is of a beam with pinned ends")
+        raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark takes pinned ends, give those")
     check_integer("segments", count, 2)
     check_number("amplitude", amplitude / beam.length, "of the length at mid-span", above=0, at_most=0.1)
     system = replace(build_system(beam, count), axial_spring=axial_spring)
@@ -99,7 +99,7 @@ def _sine_shape(
 
 
 def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress: Progress = silent) -> float:
-    """First frequency between immovable hinges over the linear chain's, `amplitude` in radii of gyration sqrt(I/A).
+    """First frequency between immovable hinges over the linear one; `amplitude` in radii of gyration sqrt(I/A).
 
     The immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J. Appl. Mech. 17 (1950) 35): q'' +
     q + a^2/4 q^3 = 0, which a chain of equal links obeys but for the square of its slopes. Raises InputError for a
@@ -115,16 +115,16 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress
     motion = simulate(system, start, times, tolerance=1e-10, progress=progress)
     check_moved(motion)
     middle = motion.deflection([0.5 * beam.length])[:, 0]
-    k = int(np.argmax(middle <= 0.0))  # stiffer than linear: back within a quarter of the linear period
+    k = int(np.argmax(middle <= 0.0))  # stiffer than linear: zero within a quarter of the linear period
     return pi / 2.0 / float(np.interp(0.0, [middle[k], middle[k - 1]], [times[k], times[k - 1]])) / linear
 
 
 def energy_drift(
     beam: Beam, count: int, step: float | None = None, tolerance: float = 1e-8, progress: Progress = silent
 ) -> float:
-    """Largest change of energy over the energy of an undamped roller-ended chain released from L/20 sin(pi x/L).
+    """Largest relative change of energy of an undamped roller-ended chain released from L/20 sin(pi x/L).
 
-    Over a period of the linear first mode, by RK4 where a step (s) is given, else adaptive. Raises InputError.
+    Over a period of the linear first mode, by RK4 with `step` (s), adaptive for None. Raises InputError.
     """
     system, start, linear = _sine_shape(beam, count, 0.05 * beam.length)
     times = np.linspace(0.0, 2.0 * pi / linear, 65)
@@ -138,8 +138,8 @@ def energy_drift(
 def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progress = silent) -> float:
     """Largest residual of a chain's energy balance over its damping loss.
 
-    A hub that rotates and swings, an eccentric harmonic load with a moment and dashpots do work; the tip is free or a
-    roller on an axial spring.
+    Work is done by a hub that rotates and oscillates, an eccentric harmonic load with a moment, and dashpots; the tip
+    is free, or a roller with an axial spring.
     """
     check_integer("segments", count, 3)
     force, moment, hertz = (0.2 * EI, -0.4 * EI), 0.13 * EI, 0.9 * OMEGA
@@ -159,9 +159,9 @@ def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progr
 
 
 def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
-    """Largest error of the surface slope of a chain in one of its modes on the piece at x, over the largest slope.
+    """Largest error of the contact line's slope in a mode on the piece at x, over the largest slope.
 
-    The exact mode is the reference. Order 3, at a clamped wall 1.
+    Reference: the exact mode. Order 3, at a clamped wall 1.
     """
     from verify.analytic_modes import ExactModel
     from verify.segment_model import SegmentModel
@@ -179,9 +179,9 @@ def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
 
 
 def linear_deflection(system: ChainSystem, times: Array, x: float) -> Array:
-    """Deflection at x of the linearised chain from rest, undamped, by its modes, (n,), m.
+    """Deflection at x of the undamped linearised chain from rest by modal superposition, (n,), m.
 
-    The system is straight and its loads are transverse and harmonic. Raises InputError for x off the chain.
+    For a straight system with transverse harmonic loads. Raises InputError for x off the chain.
     """
     from scipy.linalg import eigh
 
@@ -220,7 +220,7 @@ def transient(
     tolerance: float = 1e-9,
     progress: Progress = silent,
 ) -> ChainMotion:
-    """The chain from rest under harmonic forces; links without inertia along x ("transverse") or of axial stiffness EA.
+    """The chain from rest under harmonic forces; rigid links ("full", "transverse") or links that stretch ("elastic").
 
     Raises InputError for a run that diverges, and for large rotations that a second run does not confirm.
     """
@@ -230,10 +230,10 @@ def transient(
 
 
 class Departure(NamedTuple):
-    """Deflection of a nonlinear chain less the linear one's at one place, over the rms of the latter."""
+    """Deflection of the nonlinear less the linear chain at one position, over the rms of the latter."""
 
     end: float
-    """At the end of the run."""
+    """Value at the end of the run."""
     rms: float
     slope: float
     """Rms rotation of the links, rad."""
@@ -250,14 +250,14 @@ def departure(
     inertia: Inertia = "full",
     progress: Progress = silent,
 ) -> Departure:
-    """Effect of axial inertia on the deflection at x (mid-span unless given) from rest. Raises InputError at a node."""
+    """Effect of axial inertia on the deflection at x (default: mid-span) from rest. Raises InputError at a node."""
     x = 0.5 * beam.length if x is None else x
     times = np.linspace(0.0, duration, max(1001, ceil(40 * frequency_hz * duration) + 1))
     system = build_system(beam, count, forces, frequency_hz)
     linear = linear_deflection(system, times, x)
     largest = max(abs(load.force[1]) for load in system.loads)
     if not rms(linear) > NODE * largest / (system.masses.sum() * (2.0 * pi * frequency_hz) ** 2):
-        raise InputError(f"x = {x!r}: the beam does not move there under these forces, give another place")
+        raise InputError(f"x = {x!r}: these forces do not move the beam at this position, give another")
     motion = transient(beam, forces, frequency_hz, times, count, inertia=inertia, tolerance=1e-10, progress=progress)
     gap = motion.deflection([x])[:, 0] - linear
     return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear), rms(motion.directions()))
