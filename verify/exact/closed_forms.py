@@ -29,7 +29,7 @@ _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
 
 
 def check_mode(mode: int) -> None:
-    """Raise InputError unless `mode` counts from 1 to `HIGHEST`."""
+    """Raise InputError unless `mode` is an integer from 1 to `HIGHEST`."""
     check_integer("mode", mode, 1, HIGHEST)
 
 
