@@ -119,13 +119,13 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
     return np.array([brentq(at, x[i], x[i + 1], xtol=1e-14 * length, rtol=1e-14) for i in changes])
 
 
-def observed_order(counts: Sequence[float], errors: Sequence[complex], sizes: str = "") -> float:
+def observed_order(counts: Sequence[float], errors: Sequence[complex], label: str = "") -> float:
     """Minus the least-squares slope of log |error| over log count; `errors` signed or complex.
 
-    `sizes` names sizes other than counts: 'steps = [...]'. Raises InputError for fewer than three different sizes, an
+    `label` names sizes other than counts: 'steps = [...]'. Raises InputError for fewer than three different sizes, an
     error that changes sign (or phase by more than 90 degrees), and one below `ORDER_FLOOR`.
     """
-    sizes = sizes or f"counts = {list(counts)}"
+    label = label or f"counts = {list(counts)}"
     sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=complex)
     least, wrong = abs(values).min(initial=np.inf), ""
     if len(sizes) < 3 or len(set(counts)) != len(sizes):
@@ -137,26 +137,26 @@ def observed_order(counts: Sequence[float], errors: Sequence[complex], sizes: st
     elif (np.outer(values, values.conj()).real < 0.0).any():
         wrong = "the error changes sign between these sizes and has no order, choose others"
     if wrong:
-        raise InputError(f"{sizes}: {wrong}")
+        raise InputError(f"{label}: {wrong}")
     return float(-np.polyfit(np.log(sizes), np.log(abs(values)), 1)[0])
 
 
 def asymptotic_order(
-    counts: Sequence[float], errors: Sequence[complex], expected: int | None = None, sizes: str = ""
+    counts: Sequence[float], errors: Sequence[complex], expected: int | None = None, label: str = ""
 ) -> float:
     """`observed_order` in the asymptotic range: orders from size to size within `ORDER_SPREAD` of `expected`.
 
     Without `expected`, within `ORDER_SPREAD` of each other. Raises InputError outside the asymptotic range: sizes are
     too coarse, or the error is about to change sign.
     """
-    order = observed_order(counts, errors, sizes)
+    order = observed_order(counts, errors, label)
     by_size = sorted(zip(counts, np.abs(errors), strict=True))
     orders = [float(np.log(e / f) / np.log(m / n)) for (n, e), (m, f) in pairwise(by_size)]
     low, high = (min(orders), max(orders)) if expected is None else (expected, expected)
     if min(orders) <= 0.0 or max(orders) - low > ORDER_SPREAD or high - min(orders) > ORDER_SPREAD:
         listed = ", ".join(f"{one:.2f}" for one in orders)
         raise InputError(
-            f"{sizes or f'counts = {list(counts)}'}: outside the asymptotic range, orders from size to size are "
+            f"{label or f'counts = {list(counts)}'}: outside the asymptotic range, orders from size to size are "
             f"{listed}{'' if expected is None else f' and {expected} is expected'}: choose other sizes"
         )
     return order

@@ -16,25 +16,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SHOWN = 10
-"""Candidates in the table; all are in the data."""
+"""Largest number of candidates in the table; all are in the data."""
 STATUS = {
     "identified": "Identified",
     "ambiguous": "Ambiguous: other candidates or faults agree within a factor of two of the rms difference. Best",
-    "exact": "No discretisation visible: the exact beam agrees within a factor of two of the rms difference. Best",
+    "exact": "No discretisation detected: the exact beam agrees within a factor of two of the rms difference. Best",
     "few": "Too few frequencies to identify a model. Nearest",
     "unknown": "No known candidate agrees within 0.1 %. Nearest",
 }
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
-"""What alone changes all frequencies by a factor, and in which power of it."""
-TIP_MASS = "A clamp of k_r = c EI/L on a cantilever has the frequencies of a mass rho A L / c at the other end."
-TIP_LINK = "EI/l at the wall, or a fixed first link, equals 2EI/l with twice the mass, or none, at the free end."
-UNEVEN = "With steps or attachments inside a part, a larger N may exceed the tolerance again."
+"""Parameters that change all frequencies by a common factor, with the power of the factor."""
+TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
+TIP_LINK = "EI/l at the wall (a fixed first link) is equivalent to 2EI/l with twice the mass (no mass) at the free end."
+UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
 ENTRY = (Column("entry"), Column("mode"), Column("given", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
 RMS = (Column("rms", format=".3g", percent=True), Column("largest", format=".3g", percent=True))
 
 
 class Entry(msgspec.Struct, frozen=True):
-    """A frequency of the list: its entry from 1, its mode from 1 by place, number or shape."""
+    """A frequency of the list: entry from 1, and mode from 1 by position, number or shape."""
 
     entry: int
     mode: int
@@ -44,7 +44,7 @@ class Entry(msgspec.Struct, frozen=True):
 
     @property
     def error(self) -> float:
-        """Relative to exact."""
+        """Error relative to the exact frequency."""
         return self.given_hz / self.exact_hz - 1.0
 
 
@@ -58,9 +58,9 @@ def result_of(
     warnings: list[str],
     within: float | None,
 ) -> Result:
-    """The result of a comparison, `data["passed"]` its acceptance. A warning is a fault of the list.
+    """The result of a comparison with acceptance `data["passed"]`; `warnings` are faults of the list.
 
-    `required` are candidates, modes, and N for 1 % and 0.1 %.
+    `required`: candidates, modes, and N for 1 % and 0.1 %.
     """
     best, beam = found.best, data.beam
     faults = (best.fault.kind != "none") + len(warnings)
@@ -78,7 +78,7 @@ def result_of(
         for one in found.ranking[:SHOWN]
     ]
     notes = [
-        "rms: of the log frequency differences. Equivalent: same frequencies. Alternative: rms below twice the best."
+        "rms: log frequency differences. Equivalent: equal frequencies. Alternative: rms below twice that of the best."
     ]
     columns = [Column("candidate"), Column("N"), Column("order"), *RMS, Column("status")]
     tables = [_modes(best, rows), Table("Candidates", columns, lines, notes)]
@@ -118,7 +118,7 @@ def result_of(
 
 
 def _figure(beam: Beam, found: Identification, rows: list[Entry]) -> Figure:
-    """Errors of the list, of the best candidate and of the next."""
+    """Errors of the list, the best and the next candidate."""
     best = found.best
     following = next((one for one in found.ranking[1:] if one not in found.equivalent), None)
     n = max(row.mode for row in rows)
@@ -134,12 +134,12 @@ def _figure(beam: Beam, found: Identification, rows: list[Entry]) -> Figure:
         ax.set(xlabel="mode", ylabel="frequency error, %")
         ax.legend()
 
-    caption = "Points: the list as given, against the exact beam (Euler-Bernoulli). Lines: the best and next candidate."
-    return Figure("compare", "Frequencies beside the best candidates", caption, draw)
+    caption = "Errors against the exact Euler-Bernoulli beam. Points: the list. Lines: the best and the next candidate."
+    return Figure("compare", "Frequencies and best candidates", caption, draw)
 
 
 def _modes(best: Fit, rows: list[Entry]) -> Table:
-    """Every frequency beside the exact one and that of the best candidate, with the fault and without."""
+    """Table of frequencies of the list, the exact beam and the best candidate, with and without the fault."""
     fault, shaped = best.fault, any(row.mac is not None for row in rows)
     faulty, factor = fault.kind != "none", best.parameter if fault.kind in ("unit", "factor") else 1.0
     columns = [*ENTRY, Column("error", format=".4g", percent=True)]

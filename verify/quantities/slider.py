@@ -160,7 +160,7 @@ def order(
             raise InputError(f"step = {slider.step!r} contradicts steps: leave it out")
         exact = displacement(by, min(steps) / 16.0)
         errors = [relative_error(displacement(by, step), exact) for step in steps]
-        return asymptotic_order([1.0 / step for step in steps], errors, sizes=f"steps = {list(steps)}")
+        return asymptotic_order([1.0 / step for step in steps], errors, label=f"steps = {list(steps)}")
     assert counts is not None
     check_sizes("counts", counts)
     if by.count is not None or not MODELS.named(by.model).sized:
