@@ -163,13 +163,13 @@ def choose(
             names.append(model.name)
         except InputError as problem:
             left_out[model.name] = str(problem)
-    found = {one: sufficient_size(cache, one.model, mode, error, one.settings) for one in rules.variants(names)}
+    sizes = {one: sufficient_size(cache, one.model, mode, error, one.settings) for one in rules.variants(names)}
     for one in rules.alternatives(beam):
-        own = max((size.count for same, size in found.items() if same.model == one.model), default=0)
+        own = max((size.count for same, size in sizes.items() if same.model == one.model), default=0)
         try:
-            if one not in found:
+            if one not in sizes:
                 most = max(LARGEST_ALTERNATIVE, 5 * own)
-                found[one] = sufficient_size(cache, one.model, mode, error, one.settings, most)
+                sizes[one] = sufficient_size(cache, one.model, mode, error, one.settings, most)
         except InputError as problem:
             left_out[one.title] = str(problem)
     highest = mode[-1] if isinstance(mode, range) else mode
@@ -177,9 +177,9 @@ def choose(
     def solver(one: Variant, count: int) -> Callable[[], object]:
         return lambda: MODELS[one.model].build(beam, count, **dict(one.settings)).modes(highest)
 
-    times = interleaved_medians([solver(one, size.count) for one, size in found.items()])
+    times = interleaved_medians([solver(one, size.count) for one, size in sizes.items()])
     choices = []
-    for (one, size), seconds in zip(found.items(), times, strict=True):
+    for (one, size), seconds in zip(sizes.items(), times, strict=True):
         law = not one.settings and beam.uniform and one.model in LAWS and has_law(beam, size.mode, size.count)
         below = range(1, size.mode if not isinstance(mode, range) and size.mode <= LOWER_MODES else 1)
         errors = {n: cache.error_or_reason(one.model, size.count, n, one.settings)[0] for n in below}

@@ -68,12 +68,12 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             changed = [value for value in self._values(name) if value != default]
             if changed and not any(name in MODELS.named(model).settings() for model in names):
                 raise InputError(f"{name} = {changed[0]!r} is not a setting of {' or '.join(names)}: leave it out")
-        found = (
+        variants = (
             Variant(model, tuple(one for one in chosen if one[0] in MODELS.named(model).settings()))
             for model in names
             for chosen in self.combinations
         )
-        return tuple(dict.fromkeys(found))
+        return tuple(dict.fromkeys(variants))
 
     def _values(self, name: str) -> tuple[Any, ...]:
         value = getattr(self, name)
@@ -87,15 +87,15 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     def alternatives(self, beam: Beam) -> tuple[Variant, ...]:
         """All combinations of the rules of the literature for this beam: wall 2EI/l, tensioned joints, lever."""
-        found = []
+        variants = []
         for chosen in map(dict, self.combinations):
             # axial force and shear reduce the order of joints in series by two
             loses = bool(beam.tension) or chosen.get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
             rules = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
             rules += [("attachment", "lever")] * attached_within(beam)
             able = ((model.name, *rule) for rule in rules for model in discrete() if rule[0] in model.settings())
-            found += [Variant(model, not_default(chosen | {name: value})) for model, name, value in able]
-        return tuple(dict.fromkeys(found))
+            variants += [Variant(model, not_default(chosen | {name: value})) for model, name, value in able]
+        return tuple(dict.fromkeys(variants))
 
     def without_effect(self, beam: Beam) -> dict[str, str]:
         """Settings other than the default without effect on this beam, with the reason."""

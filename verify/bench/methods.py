@@ -100,15 +100,15 @@ def field(problem: Problem) -> Iterator[Question]:
     rounding = rms(solver("analytic", 1e-7)(0), exact) * 1e7 * 8 * np.finfo(float).eps
     methods = by_model(problem, solver, "exact")
     title = f"deflection at {problem.frequency_hz:g} Hz, rms over the beam"
-    yield Question("field", title, "exact field", rounding, lambda found: rms(found, exact), methods)
+    yield Question("field", title, "exact field", rounding, lambda result: rms(result, exact), methods)
 
 
 def moved(problem: Problem, model: str, count: int | None, **more: Any) -> Any:
     """Motion from rest."""
     from verify.dynamics.simulate import simulate
 
-    given = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
-    run = simulate(*given, model=model, count=count, soft_start_periods=SOFT_START, **more)
+    driven = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
+    run = simulate(*driven, model=model, count=count, soft_start_periods=SOFT_START, **more)
     if not run.statistics.finished:
         raise InputError(f"the run {run.statistics.stopped}: shorten motion.duration")
     return run
@@ -125,7 +125,7 @@ def transient(problem: Problem) -> Iterator[Question]:
     uncertainty = max(rms(solver("analytic")(0), exact), 1e-13)
     methods = by_model(problem, solver, "exact, 400 modes")
     title = f"deflection at 0.37 L, rms over time, {problem.name}"
-    yield Question("transient", title, "exact beam, 800 modes", uncertainty, lambda found: rms(found, exact), methods)
+    yield Question("transient", title, "exact beam, 800 modes", uncertainty, lambda result: rms(result, exact), methods)
 
 
 def slider(problem: Problem) -> Iterator[Question]:
@@ -153,7 +153,7 @@ def ride(problem: Problem) -> Iterator[Question]:
 
         fine, finer = run(1024), run(2048)
         steps = (16, 32, 64, 128, 256)
-        own = Method(coupling, run, steps, "steps / period", error=lambda found: found / finer - 1.0)
+        own = Method(coupling, run, steps, "steps / period", error=lambda result: result / finer - 1.0)
         return own, abs(fine / finer - 1.0)
 
     pairs = [method("one-way"), method("two-way")]
@@ -189,7 +189,7 @@ def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array
     rk4 = Method("RK4", lambda n: run(method="rk4", step=problem.duration / n), steps, "steps", "segment")
     adaptive = Method("adaptive", lambda size: run(tolerance=size), (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), "tolerance")
     uncertainty = max(rms(run(4000, tolerance=1e-9)[1], exact), 1e-10)
-    return [rk4, adaptive], lambda found: rms(found[1], spline(found[0])), uncertainty
+    return [rk4, adaptive], lambda result: rms(result[1], spline(result[0])), uncertainty
 
 
 def chain(problem: Problem) -> Iterator[Question]:
@@ -240,10 +240,10 @@ def engines(problem: Problem) -> Iterator[Question]:
 
     def motion(adapter: Any) -> Callable[[int], Any]:
         def run(count: int) -> Any:
-            found = adapter.run(links, count, end)
-            if found.failure:
-                raise InputError(f"engines: {found.failure}")
-            return found.times, found.deflection
+            result = adapter.run(links, count, end)
+            if result.failure:
+                raise InputError(f"engines: {result.failure}")
+            return result.times, result.deflection
 
         return run
 

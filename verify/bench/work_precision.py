@@ -177,8 +177,8 @@ RATIO_NOTE = (
 
 def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
     """Tables, a log-log chart for each question, and data."""
-    rows = [(q.id, *_cells(row)) for q, found in measured for row in found]
-    compared = {q.id: ratios(q, found) for q, found in measured}
+    rows = [(q.id, *_cells(row)) for q, rows_of in measured for row in rows_of]
+    compared = {q.id: ratios(q, rows_of) for q, rows_of in measured}
     tables = [
         Table("Time over error", COLUMNS, rows),
         Table(
@@ -194,11 +194,11 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
         "machine": {"processor": processor(), **environment()},
         "questions": [
             {"id": q.id, "title": q.title, "reference": q.reference, "uncertainty": q.uncertainty}
-            | {"rows": [asdict(row) for row in found], "ratios": compared[q.id]}
-            for q, found in measured
+            | {"rows": [asdict(row) for row in rows_of], "ratios": compared[q.id]}
+            for q, rows_of in measured
         ],
     }
-    figures = [_figure(q, found) for q, found in measured]
+    figures = [_figure(q, rows_of) for q, rows_of in measured]
     return Result(tables=[*tables, references], figures=figures, data=data)
 
 

@@ -87,9 +87,9 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def settings(self) -> dict[str, str]:
         """Keywords of the `verify` model."""
-        given = {"wall": self.wall, "joints": self.joints, "attachment": self.attachment, "theory": self.theory}
+        settings = {"wall": self.wall, "joints": self.joints, "attachment": self.attachment, "theory": self.theory}
         usual = ("series", "reciprocal", EULER)
-        return {name: value for name, value in given.items() if value is not None and value not in usual}
+        return {name: value for name, value in settings.items() if value is not None and value not in usual}
 
     def order(self, beam: Beam) -> int | None:
         """Order of convergence of the frequencies for a beam; None if unknown."""

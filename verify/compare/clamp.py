@@ -65,5 +65,5 @@ def fit_clamp(
             raise InputError(f"count = {count}: the model has {len(hertz)} modes, raise count")
         return np.asarray(logs - np.log(hertz[modes]))
 
-    found = least_squares(left, [np.log(start)], diff_step=1e-4, xtol=1e-9)
-    return float(np.exp(found.x[0])), np.asarray(found.fun)
+    solution = least_squares(left, [np.log(start)], diff_step=1e-4, xtol=1e-9)
+    return float(np.exp(solution.x[0])), np.asarray(solution.fun)

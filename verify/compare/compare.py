@@ -41,21 +41,21 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def compare(
-    scene: Any, given: FrequencyList, shapes: ModeShapes | None = None, options: Options | None = None
+    scene: Any, listed: FrequencyList, shapes: ModeShapes | None = None, options: Options | None = None
 ) -> Result:
     """Identify the discretisation behind frequencies of the scene's beam and their errors. Raises InputError.
 
     `shapes`, one per frequency, identify the modes. `data["passed"]` of the result is the acceptance.
     """
-    beam, options, hertz = scene.beam, options or Options(), given.hertz
+    beam, options, hertz = scene.beam, options or Options(), listed.hertz
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
             check_integer(field, getattr(options, field), 1)
     if shapes is not None and len(shapes.values) != len(hertz):
         raise InputError(f"modes = {len(shapes.values)} shapes for {len(hertz)} frequencies: give one for each")
     if shapes is None and (np.diff(hertz) < 0.0).any():
-        raise InputError(f"{given.source}: frequencies do not ascend: sort them, or give the shapes of the modes")
-    n = max(len(hertz), *(given.numbers or (0,))) + SPARE
+        raise InputError(f"{listed.source}: frequencies do not ascend: sort them, or give the shapes of the modes")
+    n = max(len(hertz), *(listed.numbers or (0,))) + SPARE
     exact_hz, rigid = frequencies_hz(Candidate(model=EXACT, theory=options.theory), beam, None, n), 0
     for k in range(min(len(hertz), 7) - 1, 0, -1):
         gap = min(4.0 * exact_hz[k - 1] / exact_hz[k], 1.0)
@@ -63,27 +63,27 @@ def compare(
             rigid = k
             break
     if not hertz[rigid:].all():
-        raise InputError(f"{given.source} has zeros but no elastic mode: give elastic frequencies")
+        raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
     entries = modes = np.arange(len(hertz) - rigid)
     likeness, ordered = None, shapes is None
     if shapes is not None:
         paired, macs = pair_shapes(beam, shapes.x, shapes.values[rigid:])
         entries = np.flatnonzero(macs >= LEAST_MAC)
         modes, likeness = paired[entries], macs[entries]
-    elif given.numbers is not None:
-        modes = np.array(given.numbers)[rigid:] - 1 - (rigid if given.numbers[0] == 1 else 0)
+    elif listed.numbers is not None:
+        modes = np.array(listed.numbers)[rigid:] - 1 - (rigid if listed.numbers[0] == 1 else 0)
         ordered = bool((modes == entries).all())
     data = Data(
         beam=beam,
         logs=np.log(hertz[rigid:]),
-        rounding=given.rounding[rigid:],
+        rounding=listed.rounding[rigid:],
         members=candidates(beam, options.kind),
         entries=entries,
         modes=modes,
         ordered=ordered,
         count=options.count,
     )
-    found = identify(data)
+    fits = identify(data)
     macs = np.full(len(modes), None) if likeness is None else likeness
     rows = [
         Entry(int(e) + rigid + 1, int(m) + 1, float(hertz[e + rigid]), float(exact_hz[m]), like)
@@ -91,24 +91,24 @@ def compare(
     ]
     disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
     unlike = 0 if likeness is None else len(hertz) - rigid - int((likeness >= LOW_MAC).sum())
-    supports = _other_supports(beam, data.logs[entries], modes) if found.status == "unknown" else ()
-    told = {
+    supports = _other_supports(beam, data.logs[entries], modes) if fits.status == "unknown" else ()
+    messages = {
         f"The list starts with {rigid} rigid-body motions, the beam of the scene has {beam.rigid_motions}.": rigid
         and rigid != beam.rigid_motions,
         "Frequencies are not in the order of the modes: see the column entry.": disorder,
         f"{unlike} of the shapes have a MAC below {LOW_MAC} with all modes of the beam: check beam.supports.": unlike,
         f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
     }
-    warnings = [text for text, holds in told.items() if holds]
+    warnings = [text for text, holds in messages.items() if holds]
     mode = options.mode or max(row.mode for row in rows)
     sized: list[Candidate] = []
-    if found.status != "unknown" and (best := found.best.candidate).sized:  # and the most accurate of its kind
+    if fits.status != "unknown" and (best := fits.best.candidate).sized:  # and the most accurate of its kind
         wall, joints = "gregory" if "clamped" in beam.supports else None, "tensioned" if beam.tension else "series"
         chain = Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=best.theory)
         accurate = Candidate(model=ELEMENTS, mass="consistent", theory=best.theory)
         sized = list(dict.fromkeys([best, chain if best.model == CHAIN else accurate]))
     required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in sized]
-    return result_of(scene.name, given, data, found, rows, required, warnings, options.within)
+    return result_of(scene.name, listed, data, fits, rows, required, warnings, options.within)
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:

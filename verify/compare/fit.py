@@ -281,19 +281,19 @@ def _solved(data: Data, fit: Fit, count: int | None) -> Fit | None:
         return fit if data.count is not None else _scanned(data, candidate, fault, (count,))
     try:
         logs = data.logs[fault.entries]
-        found, left = fit_clamp(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
+        parameter, left = fit_clamp(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
     except InputError:
         return None
-    return _fit(data, candidate, count, fault, found, left, np.full(len(logs), fit.effect))
+    return _fit(data, candidate, count, fault, parameter, left, np.full(len(logs), fit.effect))
 
 
 def _logs(beam: Beam, candidate: Candidate, count: int | None, n_modes: int) -> Array:
     """Log of a candidate's frequencies, (n_modes,), NaN for missing modes."""
     try:
-        found = frequencies_hz(candidate, beam, count, n_modes)
+        hertz = frequencies_hz(candidate, beam, count, n_modes)
     except InputError:
-        found = np.empty(0)
-    return np.append(np.log(found), np.full(n_modes - len(found), np.nan))
+        hertz = np.empty(0)
+    return np.append(np.log(hertz), np.full(n_modes - len(hertz), np.nan))
 
 
 @lru_cache(maxsize=500)

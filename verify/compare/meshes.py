@@ -98,12 +98,12 @@ def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, A
     """(points, arrays at them, field data) by meshio, which prints and exits on failure. Raises InputError."""
     import meshio
 
-    said = io.StringIO()
+    output = io.StringIO()
     try:
-        with redirect_stdout(said), redirect_stderr(said):
+        with redirect_stdout(output), redirect_stderr(output):
             mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # readers of many formats raise many types
-        why = one_line(str(error) or said.getvalue())[:200]
+        why = one_line(str(error) or output.getvalue())[:200]
         raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
     arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
     return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}

@@ -70,15 +70,15 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
         numbered = 0
     units = {k: next((u for u, pattern in _UNITS.items() if re.search(pattern, name, re.IGNORECASE)), None)
              for k, name in enumerate(head) if k != numbered}  # fmt: skip
-    columns = [k for k, found in units.items() if found] or [k for k in range(table.shape[1]) if k != numbered]
+    columns = [k for k, matches in units.items() if matches] or [k for k in range(table.shape[1]) if k != numbered]
     if len(columns) != 1:
         raise InputError(f"{source} has {len(columns)} columns that may be frequencies: name one of them 'hz'")
     column, numbers = columns[0], None
     if numbered is not None:
-        given = table[:, numbered]
-        if (given % 1.0).any() or not (np.diff(given) > 0.0).all() or not 0 <= given[0] <= given[-1] <= MOST:
-            raise InputError(f"{source}: mode numbers {given[:5].tolist()} do not count upwards: number them from 1")
-        numbers = tuple(int(number) + (given[0] == 0) for number in given)
+        order = table[:, numbered]
+        if (order % 1.0).any() or not (np.diff(order) > 0.0).all() or not 0 <= order[0] <= order[-1] <= MOST:
+            raise InputError(f"{source}: mode numbers {order[:5].tolist()} do not count upwards: number them from 1")
+        numbers = tuple(int(number) + (order[0] == 0) for number in order)
     cells = [row[column] for row in rows]
     return listed(source, table[:, column].tolist(), cells, unit=unit or units.get(column) or "Hz", numbers=numbers)
 

@@ -53,17 +53,17 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     rows = [(names[i], int(modes[i]) + 1, float(mac[i]), errors[i]) for i in order]
     error = Column("shape error", format=".3g", percent=True)
     tables = [Table("Shapes", [Column("shape"), Column("mode"), Column("MAC", format=".6f"), error], rows, notes)]
-    found = {UNLIKE: (mac < LOW_MAC).any(), DISORDER: (np.diff(modes) < 0).any(), COARSE: len(x) - 1 < 2 * n}
-    warnings = [words for words, holds in found.items() if holds]
+    faults = {UNLIKE: (mac < LOW_MAC).any(), DISORDER: (np.diff(modes) < 0).any(), COARSE: len(x) - 1 < 2 * n}
+    warnings = [words for words, holds in faults.items() if holds]
     listed = None
     if mesh.frequencies is not None:
         hertz, rounding = mesh.frequencies.hertz[bent], mesh.frequencies.rounding[bent]
-        given = msgspec.structs.replace(mesh.frequencies, hertz=hertz, rounding=rounding)
-        listed = compare(scene, given, ModeShapes(x=x, values=values), options)
+        frequencies = msgspec.structs.replace(mesh.frequencies, hertz=hertz, rounding=rounding)
+        listed = compare(scene, frequencies, ModeShapes(x=x, values=values), options)
     known = None if listed is None else listed.data["best"]["count"]
     near = _nearest(beam, x, values, modes, options.count or known or len(x) - 1)
     tables.append(Table("Models by shape error", [Column("model"), Column("N"), error], near))
-    passed = not (found[UNLIKE] or found[DISORDER])
+    passed = not (faults[UNLIKE] or faults[DISORDER])
     summary = f"{len(rows)} shapes, lowest MAC {mac.min():.4f}; nearest model by shape: {near[0][0]}."
     data = {"scene": scene.name, "source": mesh.source, "passed": passed}
     if listed is None:

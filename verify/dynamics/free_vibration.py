@@ -172,10 +172,10 @@ def _start(
     return q, rates, 0.0
 
 
-def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]:
+def _projected(basis: TimeBasis, name: str, shape: Shape) -> tuple[Array, float]:
     """(modal amplitudes of a shape, (m,), truncation error, rms over rms). Raises InputError."""
     beam = basis.beam
-    function, breaks = _function(name, given, beam.length)
+    function, breaks = _function(name, shape, beam.length)
     if name == "shape":
         ends = np.array([0.0, beam.length])
         largest = abs(function(np.linspace(0.0, beam.length, 33))).max()
@@ -207,26 +207,26 @@ def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]
     return q, sqrt(float(weight @ (values - q @ shapes) ** 2) / size) if size > 0.0 else 0.0
 
 
-def _function(name: str, given: Shape, length: float) -> tuple[Callable[[Array], Array], Array]:
+def _function(name: str, shape: Shape, length: float) -> tuple[Callable[[Array], Array], Array]:
     """(the shape as a function of positions (n,), positions of its corners, m). Raises InputError."""
-    if callable(given):
+    if callable(shape):
 
         def values(x: Array) -> Array:
             try:
-                result: object = given(x)
+                result: object = shape(x)
             except (TypeError, ValueError):  # a function of one number
-                result = [given(float(one)) for one in x]
-            found = real_array(f"{name}(x)", result, "SI")
-            if found.shape not in ((), x.shape) or not np.isfinite(found).all():
+                result = [shape(float(one)) for one in x]
+            array = real_array(f"{name}(x)", result, "SI")
+            if array.shape not in ((), x.shape) or not np.isfinite(array).all():
                 raise InputError(f"{name}(x) = {shown(result)} for {len(x)} positions: return as many finite numbers")
-            return np.broadcast_to(found, x.shape)
+            return np.broadcast_to(array, x.shape)
 
         return values, np.empty(0)
-    if not isinstance(given, list | tuple | np.ndarray) or len(given) != 2:
-        raise InputError(f"{name} = {shown(given)}: give a function of x, a pair (x, values), or a mode as shape")
-    x, y = real_array(f"{name}[0]", given[0], "metres"), real_array(f"{name}[1]", given[1], "SI")
+    if not isinstance(shape, list | tuple | np.ndarray) or len(shape) != 2:
+        raise InputError(f"{name} = {shown(shape)}: give a function of x, a pair (x, values), or a mode as shape")
+    x, y = real_array(f"{name}[0]", shape[0], "metres"), real_array(f"{name}[1]", shape[1], "SI")
     if x.ndim != 1 or x.shape != y.shape or len(x) < 2 or not np.isfinite(y).all():
         raise InputError(f"{name} has x of the shape {x.shape} and values of {y.shape}: give as many finite ones")
     if not (np.diff(x) > 0).all() or max(abs(x[0]), abs(x[-1] - length)) > 1e-9 * length:
-        raise InputError(f"{name}[0] = {shown(given[0])}: give x that ascends from 0 to {length!r} m")
+        raise InputError(f"{name}[0] = {shown(shape[0])}: give x that ascends from 0 to {length!r} m")
     return lambda at: np.asarray(np.interp(at, x, y)), x

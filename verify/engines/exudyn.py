@@ -25,8 +25,8 @@ class Exudyn:
         system, _ = assemble(chain)
         system.Assemble()
         with redirect_stdout(StringIO()):
-            found, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
-        return np.sort(np.asarray(found, dtype=float))[-(chain.n - 1) :]
+            hertz, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
+        return np.sort(np.asarray(hertz, dtype=float))[-(chain.n - 1) :]
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
         """Motion by the trapezoidal rule."""

@@ -133,14 +133,14 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     vectors = nearest(strains, w, narrow * (1.0 + stiffening(half_width, nu)) ** 2, 8)
     mass = np.sum((w @ vectors) ** 2, axis=0)
     share = (beam @ (along[0] @ vectors[::terms_across])) ** 2 / (beam @ beam) / mass
-    found = int(share.argmax())
-    if share[found] <= 0.5:
+    best = int(share.argmax())
+    if share[best] <= 0.5:
         raise InputError(
             f"mode = {mode}: on a strip of length / width = {aspect:.3g} no plate mode has more than half of its modal "
-            f"mass in this mode of the beam ({100.0 * share[found]:.0f} %), choose a narrower strip or another mode"
+            f"mass in this mode of the beam ({100.0 * share[best]:.0f} %), choose a narrower strip or another mode"
         )
-    energy = sum(float(np.sum((part @ vectors[:, found]) ** 2)) for part in strains)
-    return sqrt(energy / float(mass[found]) / narrow) - 1.0
+    energy = sum(float(np.sum((part @ vectors[:, best]) ** 2)) for part in strains)
+    return sqrt(energy / float(mass[best]) / narrow) - 1.0
 
 
 def _along(supports: tuple[str, str], n: int) -> "list[Any]":

@@ -131,11 +131,11 @@ def _taylor(starts: Any, sums: Any, products: Any, derivative: int = 0) -> Itera
 
 def _starts(division: Division, states: Any, of: int = 0) -> Any:
     """(4, n_pieces, k), an entry of the state and its derivatives by t at the left end of each piece."""
-    rates, here, found = division.rates[division.span], states[division.left], []
+    rates, here, starts = division.rates[division.span], states[division.left], []
     for _ in range(4):
-        found.append(here[:, of])
+        starts.append(here[:, of])
         here = rates @ here
-    return np.array(found)
+    return np.array(starts)
 
 
 def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]] = ()) -> tuple[Any, Any]:
@@ -184,15 +184,15 @@ def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]]
     if real and np.iscomplexobj(right):  # real and imaginary parts side by side
         right = right.view(float)
     (gbsv,) = get_lapack_funcs(("gbsv",), (matrix, right))
-    *_, found, info = gbsv(_LOWER, _UPPER, matrix, right, overwrite_ab=True, overwrite_b=True)
-    if info or not np.isfinite(found).all():
+    *_, states, info = gbsv(_LOWER, _UPPER, matrix, right, overwrite_ab=True, overwrite_b=True)
+    if info or not np.isfinite(states).all():
         raise np.linalg.LinAlgError("singular")
-    found = np.ascontiguousarray(found)
+    states = np.ascontiguousarray(states)
     if real and np.iscomplexobj(jumps):
-        found = found.view(complex)
-    found = found.reshape(n_ends, 4, -1)
-    forces = found[held, 0].reshape(len(imposed), len(division.omega2), found.shape[2]).swapaxes(0, 1)
-    return over @ found + jumps, forces * division.sizes[:, 3, None, None]
+        states = states.view(complex)
+    states = states.reshape(n_ends, 4, -1)
+    forces = states[held, 0].reshape(len(imposed), len(division.omega2), states.shape[2]).swapaxes(0, 1)
+    return over @ states + jumps, forces * division.sizes[:, 3, None, None]
 
 
 class Motion(msgspec.Struct, frozen=True, eq=False):

@@ -135,8 +135,8 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
     @property
     def efficiency(self) -> float | None:
         """Power over surface power; None if one is negative or the surface power is zero."""
-        given = self.means.surface_power
-        return self.power / given if given > 0.0 and self.power >= 0.0 else None
+        supplied = self.means.surface_power
+        return self.power / supplied if supplied > 0.0 and self.power >= 0.0 else None
 
     def converged(self, *figures: Figure) -> bool:
         """Whether `figures` (default: all) have converged."""
@@ -151,13 +151,13 @@ def steady_state(
     A force with a relative error below `relative` counts as converged. Raises InputError where the motion diverges.
     """
     first = copysign(max(abs(speed), presliding_speed(case.slider, FIRST * case.period)), speed) if speed else 0.0
-    found = _window(case, first, FIRST, before, None)
-    found = _window(case, speed, FIRST, found.run, found)
-    while found.not_converged and 2 * found.periods <= periods:
-        if found.errors.force < relative * abs(found.means.force):
+    state = _window(case, first, FIRST, before, None)
+    state = _window(case, speed, FIRST, state.run, state)
+    while state.not_converged and 2 * state.periods <= periods:
+        if state.errors.force < relative * abs(state.means.force):
             break
-        found = _window(case, speed, found.periods, found.run, found)
-    return found
+        state = _window(case, speed, state.periods, state.run, state)
+    return state
 
 
 def _window(

@@ -153,12 +153,12 @@ def _run_by_id(name: str) -> Outcome:
 def _error(error: Error, value: float) -> tuple[float, str]:
     """(error, infinite if the function fails; 'error' or 'refused')."""
     try:
-        found = float(error(value))
+        size = float(error(value))
     except InputError:
         return inf, "refused"
     except (ArithmeticError, ValueError, RuntimeError):  # a baseline overflows, is singular, or does not converge
         return inf, "error"
-    return (found, "error") if isfinite(found) else (inf, "error")
+    return (size, "error") if isfinite(size) else (inf, "error")
 
 
 def worst(*errors: Any) -> float:
