@@ -256,7 +256,7 @@ def test_body_between_the_joints():
 @pytest.mark.parametrize(
     ("hertz", "options", "message"),
     [
-        ([30.0, 20.0], {}, "do not rise"),
+        ([30.0, 20.0], {}, "do not ascend"),
         ([0.0, 0.0], {}, "no elastic mode"),
         ([-1.0], {}, "finite numbers from 0"),
         ([float("nan")], {}, "finite numbers from 0"),

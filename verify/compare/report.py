@@ -110,7 +110,7 @@ def result_of(
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit}
     about |= {"passed": all(check[3] for check in checks), "status": fits.status, "best": _plain(best, beam)}
     groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
-    about |= {name: [_plain(one, beam) for one in fits] for name, fits in groups.items()}
+    about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
     figure = _figure(beam, fits, rows)
     return Result(summary, tables, [figure], warnings=warnings, data=about)
 
