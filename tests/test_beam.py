@@ -74,7 +74,7 @@ def test_a_plain_section_needs_no_sizes_and_says_what_it_does_not_know():
     assert beam.own.area is None
     with pytest.raises(InputError, match=r"beam\.extreme_fibre is missing"):
         _ = plain().surface_distance
-    with pytest.raises(InputError, match=r"has no axial one"):
+    with pytest.raises(InputError, match=r"has no axial stiffness"):
         _ = beam.own.axial_stiffness
 
 
@@ -128,11 +128,11 @@ def test_what_is_added_is_named():
         "tension": -0.1,
     }
     beam = Beam(**SIZES, **everything)
-    assert beam.added == ("section", "mass", "tension")
+    assert beam.features == ("section", "mass", "tension")
     assert not beam.uniform
     assert Beam(**SIZES, section=(Section(length=0.73),)).uniform
-    with pytest.raises(InputError, match=r"beam\.mass: the wheel takes none, leave it out"):
-        beam.check_added("the wheel", ("section", "tension"))
+    with pytest.raises(InputError, match=r"beam\.mass: the wheel does not model it, leave it out"):
+        beam.check_features("the wheel", ("section", "tension"))
 
 
 def test_supports_in_a_row_of_numpys_are_those_of_a_pair():

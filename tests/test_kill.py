@@ -30,7 +30,7 @@ def started(folder, *words):
     return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=os.environ)
 
 
-def check_whole(folder):
+def check_integer(folder):
     """Every page under `reports` is complete."""
     pages = [page for page in folder.rglob("[!.]*.html") if not any(p.startswith(".") for p in page.parts)]
     assert all(page.read_text("utf-8").rstrip().endswith("</html>") for page in pages)
@@ -44,12 +44,12 @@ def test_killed_run_leaves_no_half_file(tmp_path):
         sleep(draw.uniform(0.1, 2.5))
         process.send_signal(how)
         process.communicate(timeout=120)
-        check_whole(tmp_path / "reports")
+        check_integer(tmp_path / "reports")
     process = started(tmp_path, "run", "mine.toml")
     out, err = process.communicate(timeout=120)
     assert (process.returncode, err) == (0, b""), out
     assert (tmp_path / "reports").is_dir()
-    check_whole(tmp_path / "reports")
+    check_integer(tmp_path / "reports")
 
 
 def test_interrupted_command_ends_with_status_130(tmp_path):

@@ -185,10 +185,9 @@ def test_feet_are_pressed_as_much_and_carried_the_other_way(given):
         (plain(thickness=0.0019), pushes, 0.377, feet, -0.02),
         (plain(thickness=0.0019).mirrored(), other_side(pushes), LENGTH - 0.377, turned, 0.02),
     ):
-        law = {"law": "coulomb"} if "tangential_stiffness" in given else {"slope": 70.0}
-        slider = Slider(
-            mass=0.021, mu=0.3, preload=0.4, position=place, contact=Contact(**given), foot=foot, pull=pull, **law
-        )
+        law = {"external_force": pull}
+        law |= {"law": "coulomb"} if "tangential_stiffness" in given else {"slope": 70.0}
+        slider = Slider(mass=0.021, mu=0.3, preload=0.4, position=place, contact=Contact(**given), foot=foot, **law)
         runs.append(simulate(beam, forces, 433.0, 0.01, slider=slider, count=24))
     one, other = runs
     assert abs(one.travelled + other.travelled).max() <= 1e-6 * abs(one.travelled).max()

@@ -1,15 +1,15 @@
-"""The analytical model of a beam, against which the paper verifies its chain of segments (Section II.A).
+"""The exact model of a beam, the paper's reference for its chain of segments (Section II.A).
 
-With the deflection w and the rotation psi of the sections a beam vibrates by
+The deflection w and the rotation psi of the sections satisfy
 
     (kappa G A (w' - psi))' + T w'' - k_f w = rho A d2w/dt2,    (EI psi')' + kappa G A (w' - psi) = rho I d2psi/dt2,
 
-Timoshenko's theory; Rayleigh's where w' = psi, Euler-Bernoulli's where rho I = 0 as well: EI w'''' = rho A omega^2 w
-between pinned ends has the frequencies (n pi / L)^2 sqrt(EI / rho A) / 2 pi, mode 22 of the paper's beam at 4470 Hz
-(printed: 4467 Hz). In general frequencies are the roots of one characteristic equation with a count of the roots below
-any trial (`exact.characteristic`); shapes and harmonic fields are multiple-shooting solutions (`exact.transfer`). Steps
-of the section, point masses with rotary inertia, springs, axial force T and foundation k_f are exact. The loss factor
-acts on EI and kappa G A; springs, foundation and axial force have no losses.
+which is Timoshenko theory; w' = psi is Rayleigh theory, w' = psi and rho I = 0 Euler-Bernoulli theory: between pinned
+ends EI w'''' = rho A omega^2 w has the frequencies (n pi / L)^2 sqrt(EI / rho A) / 2 pi; mode 22 of the paper's beam is
+at 4470 Hz (printed: 4467 Hz). In general frequencies are roots of a characteristic equation, with a count of the roots
+below a trial value (`exact.characteristic`); shapes and harmonic fields come from multiple shooting (`exact.transfer`).
+Sections, point masses with rotary inertia, springs, axial force T and foundation k_f are exact. The loss factor acts on
+EI and kappa G A; springs, foundation and axial force have no losses.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,33 +33,32 @@ from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, frequencies_on, positions_on, reshape_like, vector_on
 from verify.linear.system import RESONANCE
-from verify.linear.time_basis import TimeBasis, check_held
+from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
-from verify.problem.supports import HOLDS
-from verify.validation import check_whole
+from verify.problem.supports import FIXED
+from verify.validation import check_integer
 
 EXACT_MODES = 400
-"""Default number of modes of a time basis; the response of the higher modes is quasi-static."""
+"""Default number of modes of a time basis; higher modes respond quasi-statically."""
 MOST_MODES = 100_000
 _TAYLOR_DEGREE = 8
-"""Degree of the polynomials of shapes in time: error 1e-9 for the highest mode, far less for the others."""
+"""Degree of the shapes' polynomials in time integration: error 1e-9 for the highest mode, less for lower modes."""
 _TOGETHER, _SWEPT_TOGETHER = 32, 128
-"""Modes, and frequencies of a sweep, in one multiple-shooting solution."""
+"""Number of modes, or frequencies of a sweep, in one multiple-shooting solution."""
 _SAME_PLACE = 1e-9
-"""Distance, relative to the beam's length, at which two imposed displacements act at one place."""
+"""Distance, relative to the beam's length, below which two imposed displacements have the same position."""
 _NEAR = 1e-4
-"""Relative distance to an undamped resonance within which field and modal part differ by less than their rounding."""
+"""Relative distance to an undamped resonance within which field and modal part differ by rounding alone."""
 _LOSSES = 0.06 * np.arange(1.0, 7.0)
-"""Loss factors from which a tail is extrapolated to none, relative: its error is the product of their squares, 1e-9."""
+"""Relative loss factors from which a tail is extrapolated to zero loss: error 1e-9, the product of their squares."""
 
 
 @dataclass(frozen=True)
 class ExactModel(BeamModel):
     """The exact beam by the theory "euler-bernoulli", "rayleigh" or "timoshenko".
 
-    Raises InputError for section properties that the theory needs and the beam lacks, and for an axial force by the
-    last two.
+    Raises InputError for missing section properties, and for an axial force in Rayleigh or Timoshenko theory.
     """
 
     name: ClassVar[str] = "analytic"
@@ -77,7 +76,7 @@ class ExactModel(BeamModel):
 
     @property
     def n_elastic(self) -> int:
-        """Largest number of modes of one request; the beam has infinitely many."""
+        """Largest number of modes of one call; the beam has infinitely many."""
         return MOST_MODES
 
     @cached_property
@@ -90,7 +89,7 @@ class ExactModel(BeamModel):
     def frequency_hz(self, mode: int) -> float:
         """Frequency of one elastic mode, Hz, to rounding. Raises InputError.
 
-        Modes rank by frequency: above sqrt(kappa G A / rho I) a Timoshenko beam has a second family among them.
+        Modes are numbered by frequency; above sqrt(kappa G A / rho I) a Timoshenko beam has a second family of modes.
         """
         closed_forms.check_mode(mode)
         return (
@@ -105,7 +104,7 @@ class ExactModel(BeamModel):
 
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes; shapes have derivatives of any order. Raises InputError."""
-        check_whole("n_modes", n_modes, 1, MOST_MODES)
+        check_integer("n_modes", n_modes, 1, MOST_MODES)
         frequencies = np.array([self.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
         blocks = [range(first, min(first + _TOGETHER, n_modes + 1)) for first in range(1, n_modes + 1, _TOGETHER)]
@@ -127,11 +126,11 @@ class ExactModel(BeamModel):
     def mode_shape(self, mode: int, x: Numbers, derivative: int = 0) -> Array:
         """Mass-normalised shape of one elastic mode, or a derivative of any order, at x (m), (*shape of x), SI.
 
-        Positive where the beam first moves off its left end, from the right where it jumps; attached masses and rotary
-        inertia belong to the modal mass. By Timoshenko's theory the deflection. Raises InputError.
+        Positive next to the left end, right-continuous at jumps; the modal mass includes attached masses and rotary
+        inertia. In Timoshenko theory the deflection. Raises InputError.
         """
         closed_forms.check_mode(mode)
-        check_whole("derivative", derivative, 0)
+        check_integer("derivative", derivative, 0)
         at = positions_on("x", x, self.beam.length).ravel()
         return reshape_like(self._shapes(range(mode, mode + 1), at, derivative)[0], x)
 
@@ -156,8 +155,8 @@ class ExactModel(BeamModel):
         """
         if modal_damping:
             raise InputError(
-                f"modal_damping = {modal_damping!r} is for models of parts: give the exact beam loss_factor = "
-                f"{2.0 * modal_damping!r}"
+                f"modal_damping = {modal_damping!r} is for discrete models: give the beam loss_factor = "
+                f"{2.0 * modal_damping!r} instead"
             )
         return self._field(*self.check_stationed(forces, devices), (), frequency_hz)
 
@@ -168,12 +167,12 @@ class ExactModel(BeamModel):
         drives, stationed = self.check_stationed(displacements, devices)
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
-        fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if HOLDS[end].deflection]
+        fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if FIXED[end].deflection]
         gaps = [b - a for a, b in pairwise(places)] + [abs(at - end) for at in places for end in fixed]
         if any(gap <= _SAME_PLACE * length for gap in gaps):
             raise InputError(
-                "drive.force.position: displacements are imposed at one place twice, or at a support without "
-                "deflection: move one, or leave it out"
+                "drive.force.position: two displacements are imposed at one position, or one at a support without "
+                "deflection, move one or leave it out"
             )
         return self._field((), stationed, drives, frequency_hz)
 
@@ -184,11 +183,11 @@ class ExactModel(BeamModel):
         drives: tuple[PointForce, ...],
         frequency_hz: Numbers,
     ) -> HarmonicField:
-        """The field under forces (N), with devices, under imposed displacements (`drives`, m)."""
+        """The field under forces (N) and imposed displacements (`drives`, m), with devices."""
         beam, frequencies, one = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
         if (devices or drives) and not one:
             raise InputError(
-                "frequency_hz has several values: with devices or imposed displacements give one at a time"
+                "frequency_hz has several values: give one frequency with devices or imposed displacements"
             )
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
@@ -242,7 +241,7 @@ class ExactModel(BeamModel):
         return responses
 
     def _stationed(self, positions: tuple[float, ...] = (), devices: Sequence[Device] = ()) -> BeamLayout:
-        """The layout with stations at further positions (m) and at devices."""
+        """The layout with additional stations at positions (m) and devices."""
         check_stable(self.beam)
         return layout_of(self.beam, self.theory, positions, tuple(devices))
 
@@ -265,13 +264,13 @@ class ExactModel(BeamModel):
             states, forces = solve(division, jumps, imposed)
         except np.linalg.LinAlgError:
             raise InputError(
-                f"frequency_hz = {float(frequencies[0])!r}: the rigid motion of an unsupported beam exceeds floating "
-                "point, give a higher frequency_hz or other supports"
+                f"frequency_hz = {float(frequencies[0])!r}: the rigid-body motion of an unsupported beam overflows, "
+                "give a higher frequency_hz or other supports"
             ) from None
         return Motion(division, states), forces * unit
 
     def _resonances(self, layout: BeamLayout, frequencies: Array) -> list[int]:
-        """Number of the undamped resonance at each frequency, rigid motions included; 0 off resonance."""
+        """Number of the undamped resonance at each frequency, rigid-body motions included; 0 off resonance."""
         if self.beam.loss_factor:
             return [0] * len(frequencies)
         low, high = self._omega2(frequencies * (1.0 - RESONANCE)), self._omega2(frequencies * (1.0 + RESONANCE))
@@ -279,7 +278,7 @@ class ExactModel(BeamModel):
         return [up_to if up_to > below else 0 for below, up_to in zip(*counts, strict=True)]
 
     def _check_resonance(self, frequencies: Array, drives: Sequence[PointForce], devices: Sequence[Device]) -> None:
-        """Raise ResonanceError at an undamped resonance of the beam with devices, pinned at imposed displacements."""
+        """Raise ResonanceError at an undamped resonance of the beam with devices and imposed displacements."""
         length = self.beam.length
         layout = self._stationed(tuple(drive.position for drive in drives), devices)
         layout = with_stations(layout, [(one.position / length, Station(support="pinned")) for one in drives])
@@ -303,7 +302,7 @@ class ExactModel(BeamModel):
     # --- Buckling, waves, motion in time ---
 
     def buckling_load(self) -> float:
-        """The smallest compression at which the beam buckles, N: Euler's load. Raises InputError."""
+        """Lowest buckling load in compression, N (Euler). Raises InputError."""
         return buckling_load(self.beam)
 
     def wavenumber(self, frequency_hz: float) -> complex:
@@ -311,17 +310,17 @@ class ExactModel(BeamModel):
         return wavenumber(self.beam, frequency_hz, self.theory)
 
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
-        """The first `modes` modes (default 400) and the contribution of the others to a steady field.
+        """The first `modes` modes (default: 400) and the quasi-static response of the higher modes.
 
-        For Euler-Bernoulli beams with steps and point masses: the damping ratio is the same in every mode, which
-        springs, foundation and axial force, without losses, would contradict. Raises InputError, also for rigid-body
-        motions.
+        For Euler-Bernoulli beams with steps and point masses, whose damping ratio is the same in every mode; the
+        lossless stiffness of springs, foundation and axial force would make it differ. Raises InputError, also for
+        rigid-body motions.
         """
         beam, n_modes = self.beam, EXACT_MODES if modes is None else modes
         check_in_time(beam)
         if self.theory != "euler-bernoulli":
-            raise InputError(f"theory = {self.theory!r}: the exact beam in time is of euler-bernoulli, choose that")
-        check_whole("modes", n_modes, 1, MOST_MODES)
+            raise InputError(f"theory = {self.theory!r}: the exact beam in time takes euler-bernoulli alone, choose it")
+        check_integer("modes", n_modes, 1, MOST_MODES)
         own = self.modes(n_modes)
         omegas = 2.0 * pi * own.frequencies_hz
         spans, inner = np.array(self.layout.spans), np.array(self.layout.positions[1:-1]) * beam.length
@@ -329,7 +328,7 @@ class ExactModel(BeamModel):
         read = lru_cache(maxsize=16)(lambda x, derivative: own.shapes(np.frombuffer(x), derivative))
 
         def fourth(omega: Any, x: Array) -> Array:
-            """beta^4 at x: the fourth derivative over the deflection."""
+            """beta^4 at x, the ratio of the fourth derivative to the deflection."""
             return np.asarray(omega**2 / beam.wave_constant**2 * ratios[np.searchsorted(inner, x, side="right")])
 
         def shapes(x: Array, derivative: int) -> Array:
@@ -345,9 +344,9 @@ class ExactModel(BeamModel):
         def tail(forces: Sequence[PointForce], frequency_hz: float, damping: Any) -> Callable[[Array, int], Any]:
             """The exact field less the part of the modes: the quasi-static response of the higher modes.
 
-            At an undamped resonance of a mode the field does not exist, but this difference does. Its mean over the
-            loss factors +eta and -eta is a series in eta^2: extrapolated to eta = 0 from `_LOSSES` values, which lie
-            within the distance to the resonance of the first mode left out, where the series ends.
+            This difference is finite at an undamped resonance of a mode, where the field does not exist. Its mean over
+            the loss factors +eta and -eta is a series in eta^2, extrapolated to eta = 0 from `_LOSSES`, which are
+            within the radius of convergence: the distance to the resonance of the first truncated mode.
             """
             if damping or abs(2.0 * pi * frequency_hz / omegas - 1.0).min() > _NEAR:
                 return without_modes(forces, frequency_hz, 2.0 * float(damping))
@@ -377,20 +376,20 @@ class ExactModel(BeamModel):
             loads=lambda position: shapes(np.array([position]), 0)[:, 0],
             edges=np.concatenate([np.zeros(1), *pieces]),
             degree=_TAYLOR_DEGREE,
-            method=f"the first {n_modes} exact modes, the rest quasi-static",
+            method=f"the first {n_modes} exact modes, higher modes quasi-static",
             tail=tail,
         )
 
 
-def check_in_time(beam: Beam, instead: str = "give model = 'fem' or 'segment'") -> None:
-    """Raise InputError for a beam without an exact time basis; `instead` is the remedy in the message."""
-    beam.check_added("the exact beam in time", ("section", "mass"), instead)
-    check_held(beam)
+def check_in_time(beam: Beam, remedy: str = "give model = 'fem' or 'segment'") -> None:
+    """Raise InputError for a beam without an exact time basis; `remedy` ends the message."""
+    beam.check_features("the exact beam in time", ("section", "mass"), remedy)
+    check_supported(beam)
 
 
 @lru_cache(maxsize=256)  # a basis of 400 modes has some twenty blocks
 def _modal_motion(model: ExactModel, modes: range) -> Motion:
-    """The motions of consecutive modes."""
+    """Free motions of consecutive modes."""
     numbers, rigid = range(modes[0] - 1, modes[-1] + 2), model.beam.rigid_motions
     betas = [wavenumber_length(model.layout, mode + rigid) if mode else 0.0 for mode in numbers]
     return modal_motion(model.layout, np.array(betas), np.array(modes))

@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from reprlib import Repr
 
 SENTENCE, VALUE = 1600, 120
-"""Longest message, and longest value in a message, characters."""
+"""Largest length of a message, and of a value in a message, characters."""
 NAMES = 12
-"""Known names that a message lists."""
+"""Largest number of known names in a message."""
 
 
 class InputError(ValueError):
-    """Bad input: a sentence for each error, which names the field, its value and the remedy.
+    """Invalid input: a sentence for each error, which names the field, its value and the remedy.
 
-    A long message is shortened in its middle; what a terminal should not receive is escaped.
+    A long message is shortened in its middle; control characters are escaped.
     """
 
     def __init__(self, *sentences: str) -> None:
@@ -23,18 +23,18 @@ class InputError(ValueError):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """One for each error."""
+        """The sentences, one for each error."""
         return self.args
 
 
 class NoBracketError(InputError):
-    """Neither theory nor rounding allows a two-sided bound."""
+    """A two-sided bound does not exist in theory, or is within rounding."""
 
 
 class NoFigureError(InputError):
-    """One point of a sweep has no value, though its neighbours may: a gap in a map.
+    """A point of a sweep has no value, while its neighbours may have one: a gap in a map.
 
-    The mesh is too coarse for the wave, nothing moves, or a standing wave has no energy flux.
+    Causes: a mesh too coarse for the wave, a zero field, a standing wave without energy flux.
     """
 
 
@@ -47,14 +47,14 @@ class WindowError(NoFigureError):
 
 
 def raise_all(sentences: Sequence[str], most: int = 1_000_000) -> None:
-    """Raise InputError with the first `most` of these sentences, each once; nothing for none."""
+    """Raise InputError with the first `most` distinct sentences; no sentences raise nothing."""
     sentences = list(dict.fromkeys(sentences))
     if sentences:
         raise InputError(*sentences[:most], *[f"and {len(sentences) - most} more"] * (len(sentences) > most))
 
 
 def near_name(word: str, known: Sequence[str]) -> str:
-    """The remedy for an unknown word: the nearest known one, else the known ones, or the first of many."""
+    """The remedy for an unknown name: the nearest known name, else the first `NAMES` known names."""
     from difflib import get_close_matches
 
     plain = {name.casefold(): name for name in known}
@@ -90,11 +90,11 @@ def shown(value: object) -> str:
 
 
 def written(number: float) -> str:
-    """A number without rounding residues: 30 for 30.000000000000004."""
+    """A number to 12 digits, without rounding residues: 30 for 30.000000000000004."""
     return f"{number:.12g}"
 
 
 def shortened(text: str, limit: int) -> str:
-    """A text without its middle where it is longer than `limit`."""
-    kept = (limit - 5) // 2
-    return text if len(text) <= limit else f"{text[:kept]} ... {text[-kept:]}"
+    """A text without its middle where it is longer than `limit` characters."""
+    half = (limit - 5) // 2
+    return text if len(text) <= limit else f"{text[:half]} ... {text[-half:]}"

@@ -1,13 +1,13 @@
 """The finite-element model of a beam: cubic Hermite elements, or Timoshenko elements, by scikit-fem.
 
-scikit-fem makes the mesh and the degrees of freedom and assembles stiffness and mass. Its K alone would lose the low
-eigenvalues to rounding like N^4; so the stiffness d of every element strain (mean curvature, its gradient, two shear
+scikit-fem defines mesh and degrees of freedom and assembles stiffness and mass. Rounding in the assembled K costs the
+low eigenvalues digits like N^4; so the stiffness d of every element strain (mean curvature, its gradient, two shear
 strains) is extracted from its entries, and K = B^T diag(d) B stays factored, B a product of two difference operators.
 
-Elements end at the steps of the beam and at masses and springs: a mass makes the shear force jump, a rotary inertia the
-moment, and a cubic, whose curvature is linear, cannot represent a jump inside the element. There frequencies are of
-order 3 (mass) and 1 (rotary inertia), with a node there of order 4. Lengths are in mean element lengths L/N: nodes of
-equal elements are whole numbers, exact at any N.
+Elements end at the steps of the beam and at masses and springs. The shear force jumps at a mass, the moment at a rotary
+inertia, and the linear curvature of a cubic cannot represent a jump inside an element: frequencies are then of order 3
+(mass) or 1 (rotary inertia), with a node at the attachment of order 4. Lengths are in mean element lengths L/N: nodes
+of equal elements are integers, exact at any N.
 """
 
 from collections.abc import Callable
@@ -27,20 +27,20 @@ from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem
 from verify.options import Theory
 from verify.problem.beam import Beam
-from verify.problem.supports import HOLDS
-from verify.validation import MOST_PARTS, check_whole
+from verify.problem.supports import FIXED
+from verify.validation import MOST_PARTS, check_integer
 
 RIGID = 1e14
-"""Cap on stiffness, relative to that of an element: above it frequencies change by less than 1e-13."""
+"""Largest stiffness relative to that of an element: above it frequencies change by less than 1e-13."""
 
 
 @dataclass(frozen=True)
 class HermiteModel(DiscreteModel):
-    """A beam of `n_elements` elements with consistent mass; its frequencies are upper bounds and of order 4.
+    """A beam of `n_elements` elements with consistent mass; its frequencies are upper bounds of order 4.
 
-    `grading` is the length of a stretch's last element over its first. Theories `euler-bernoulli`, `rayleigh` (rotary
-    inertia) and `timoshenko` (shear as well). Raises InputError for a size that the beam cannot be divided into, or
-    that exceeds the memory, and for section properties that the theory needs and the beam lacks.
+    `grading` is the length of a section's last element over its first. Theories: `euler-bernoulli`, `rayleigh` (rotary
+    inertia), `timoshenko` (rotary inertia and shear). Raises InputError for fewer elements than sections, a size that
+    exceeds the memory, and missing section properties.
     """
 
     beam: Beam
@@ -57,7 +57,7 @@ class HermiteModel(DiscreteModel):
     modal_settings = ("grading", "theory")
 
     def __post_init__(self) -> None:
-        check_whole("n_elements", self.n_elements, 1, MOST_PARTS)
+        check_integer("n_elements", self.n_elements, 1, MOST_PARTS)
         self.check_theory()
         check_division(self.beam, self.n_elements, self.grading, len(cut_pieces(self.beam)))
         self.check_memory()
@@ -81,12 +81,12 @@ class HermiteModel(DiscreteModel):
 
     @property
     def n_unknowns(self) -> int:
-        """Nodal values that the supports leave free, and two shear strains in each Timoshenko element."""
-        return (4 if self.shear else 2) * self.n_elements + 2 - sum(sum(HOLDS[end]) for end in self.beam.supports)
+        """Number of free nodal values, and of two shear strains in each Timoshenko element."""
+        return (4 if self.shear else 2) * self.n_elements + 2 - sum(sum(FIXED[end]) for end in self.beam.supports)
 
     @cached_property
     def mesh(self) -> Parts:
-        """The elements; nodes at steps, masses and springs."""
+        """The elements, with nodes at steps, masses and springs."""
         pieces = cut_pieces(self.beam)
         return divide(self.beam, self.n_elements, self.grading, pieces if len(pieces) > len(self.beam.pieces) else ())
 
@@ -100,9 +100,9 @@ class HermiteModel(DiscreteModel):
 
     @cached_property
     def unknowns(self) -> Indices:
-        """Number of each degree of freedom among the unknowns, (n_all,); -1 where a support prevents it."""
+        """Index of each degree of freedom among the unknowns, (n_all,); -1 where a support prevents it."""
         ends = [
-            2 * self.n_elements * i + j for i, end in enumerate(self.beam.supports) for j in (0, 1) if HOLDS[end][j]
+            2 * self.n_elements * i + j for i, end in enumerate(self.beam.supports) for j in (0, 1) if FIXED[end][j]
         ]
         free = np.delete(np.arange((4 if self.shear else 2) * self.n_elements + 2), ends)
         unknowns = np.full(len(free) + len(ends), -1)
@@ -115,13 +115,13 @@ class HermiteModel(DiscreteModel):
     def system(self) -> StructuralSystem:
         """K = B^T diag(d) B and M over the free degrees of freedom, B in two factors.
 
-        Strains are theta_1 - theta_0 and theta_0 + theta_1 - 2 (w_1 - w_0)/l of each element, whose squares times EI/l
-        and 3 EI/l are twice its bending energy; a constant shear strain g_0 adds 2 g_0 to the latter.
+        The strains of an element are theta_1 - theta_0 and theta_0 + theta_1 - 2 (w_1 - w_0)/l; their squares times
+        EI/l and 3 EI/l are twice its bending energy. A constant shear strain g_0 adds 2 g_0 to the second strain.
         """
         from scipy.sparse import csr_array, vstack
 
         n, free, lengths, every = self.n_elements, self.n_unknowns, self.mesh.lengths, self.unknowns
-        # first factor: differences of neighbouring deflections, which are exact, then all unknowns
+        # first factor: differences of neighbouring deflections, exact in floating point, then all unknowns
         e, own = np.arange(n), np.arange(free)
         ends = np.concatenate([np.stack([every[2 * e], every[2 * e + 2]], 1), np.stack([own, own], 1)])
         signs = np.repeat([[-1.0, 1.0], [1.0, 0.0]], [n, free], axis=0)
@@ -159,7 +159,7 @@ class HermiteModel(DiscreteModel):
 
     @property
     def own_stiffness(self) -> Array:
-        """D of the elements' own strains, (2N,) or (4N,), read off the element matrices of scikit-fem.
+        """Stiffness d of the element strains, (2N,) or (4N,), from the element matrices of scikit-fem.
 
         K of an element has -4 d_1 / l^2 between its deflections and d_1 - d_0 between its slopes.
         """
@@ -176,9 +176,9 @@ class HermiteModel(DiscreteModel):
         return np.concatenate(own)
 
     def _foundation_and_spring_strains(self) -> list[tuple[Any, Array]]:
-        """(rows over the unknowns, stiffness of each) of foundation and springs.
+        """(strain rows over the unknowns, their stiffness) of foundation and springs.
 
-        A foundation is read at four points of Gauss in each element, which integrate the square of a cubic.
+        Four Gauss points per element integrate the foundation's energy, the square of a cubic, exactly.
         """
         beam, nodes, lengths, scale = (
             self.beam,
@@ -186,22 +186,22 @@ class HermiteModel(DiscreteModel):
             self.mesh.lengths,
             self.unit / self.beam.bending_stiffness,
         )
-        found = []
+        strains = []
         if beam.foundation:
             points, weights = np.polynomial.legendre.leggauss(4)
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
             shares = (lengths[:, None] * 0.5 * weights).ravel()
-            found.append((self._rows(x), self._foundation * shares))
+            strains.append((self._rows(x), self._foundation * shares))
         for spring in beam.spring:
             at = np.array([spring.position / self.unit])
             for value, rotation in ((spring.stiffness * self.unit**2, False), (spring.rotational, True)):
                 if value:
                     most = RIGID * self.mesh.stiffnesses.max()
-                    found.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
-        return found
+                    strains.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
+        return strains
 
     def _mass(self) -> Any:
-        """M of the elements over the unknowns by scikit-fem, with rotary inertia."""
+        """Mass matrix M of the elements over the unknowns by scikit-fem, with rotary inertia."""
         from scipy.sparse import csc_array
 
         from verify.elements import element as el
@@ -215,7 +215,7 @@ class HermiteModel(DiscreteModel):
         return csc_array((data[free], (rows[free], columns[free])), shape=(self.n_unknowns,) * 2)
 
     def _bodies(self) -> Any:
-        """Rows (r, n) whose squares are the masses and rotary inertias of attached bodies."""
+        """Rows R (r, n) of attached bodies: R^T R is their part of M."""
         from scipy.sparse import vstack
 
         beam, unit = self.beam, self.unit
@@ -237,14 +237,14 @@ class HermiteModel(DiscreteModel):
         return shapes[self.unknowns >= 0]
 
     def _lower_bound(self) -> float:
-        """Lower bound k_f / (rho A) of omega^2 by the foundation, without attached bodies; 0 under compression."""
+        """Lower bound k_f / (rho A) of omega^2 due to the foundation, without bodies; 0 under compression."""
         beam = self.beam
         if not beam.foundation or beam.tension < 0.0 or self.theory != "euler-bernoulli":
             return 0.0
         return self._foundation / float(self.mesh.masses_per_length.max())
 
     def lossy_stiffness(self, omega: float) -> Any:
-        """D with the beam's loss factor on its own bending and shear, (m,)."""
+        """Stiffness d with the beam's loss factor on bending and shear, (m,)."""
         stiffness, own = self.system.stiffness, (4 if self.shear else 2) * self.n_elements
         if not self.beam.loss_factor:
             return stiffness
@@ -258,11 +258,11 @@ class HermiteModel(DiscreteModel):
         return rows(self.mesh.nodes, x, self.unknowns, derivative, rotation=rotation)
 
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
-        """Weights of the unknowns at positions in m, sparse (n_positions, n)."""
+        """Shape functions of the unknowns at positions (m), sparse (n_positions, n)."""
         return self._rows(np.asarray(positions) / self.unit, rotation=rotation)
 
     def _read(self, unknowns: Any, which: int) -> Callable[[Array, int], Any]:
-        """Deflection (0) or rotation (1) of unknowns (n, k); at a node by the element on its right."""
+        """Deflection (which = 0) or rotation (1) of unknowns (n, k); at a node that of the right element."""
 
         @cache
         def polynomials() -> Any:
@@ -275,21 +275,21 @@ class HermiteModel(DiscreteModel):
         return lambda x, derivative: np.ascontiguousarray(polynomials()(x, derivative).T)
 
     def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
-        """The elements' own cubics, (x in m, derivative) -> (k, len(x))."""
+        """Deflection by the cubics of the elements: (x in m, derivative) -> (k, len(x))."""
         return self._read(unknowns, 0)
 
     def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
-        """The rotation of Timoshenko elements likewise; None where it is the slope."""
+        """Section rotation of Timoshenko elements: (x in m, derivative) -> (k, len(x)); None without shear."""
         return self._read(unknowns, 1) if self.shear else None
 
     def leading_sign(self, vectors: Array) -> Array:
-        """+-1 for each mode: by the first of deflection, slope, curvature that the left end leaves free."""
+        """+-1 for each mode: the sign of the first of deflection, slope, curvature that is free at the left end."""
         clamped = self.beam.supports[0] == "clamped"
         leading = (self._rows(np.zeros(1), 2) @ vectors)[0] if clamped else vectors[0]
         return np.where(leading < 0.0, -1.0, 1.0)
 
     def modes_of(self, vectors: Array) -> dict[str, Any]:
-        """Nodes, five points and two points of Gauss, where the curvature is of order 4, in each element."""
+        """Fields of `Modes`: nodes, even points, and two Gauss points per element, at which curvature is of order 4."""
         nodes, lengths, unit = self.mesh.nodes, self.mesh.lengths, self.unit
         inside = [(nodes[:-1, None] + lengths[:, None] * xi).ravel() * unit
                   for xi in (np.arange(4) / 4.0, 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0))]  # fmt: skip
@@ -305,7 +305,7 @@ class HermiteModel(DiscreteModel):
         }
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
-        """The cubics of all modes for motion in time, right-continuous at nodes."""
+        """Cubics of all modes for motion in time, right-continuous at nodes."""
         fields = {"shapes": self.line(vectors), "edges": self.mesh.nodes * self.unit, "degree": 3}
         if self.shear and self.beam.mass:
             at = np.array([mass.position for mass in self.beam.mass])
@@ -315,11 +315,11 @@ class HermiteModel(DiscreteModel):
     # --- Constants -----------------------------------------------------------------------------------------------
 
     def expected_order(self) -> int:
-        """Nodes are at steps, masses and springs: order 4."""
+        """Order 4, since nodes are at steps, masses and springs."""
         return 4
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of waves along equal elements of the beam's own section, 1/m; of the exact beam in other cases.
+        """Wavenumber along equal elements of the beam's own section, 1/m; in other cases that of the exact beam.
 
         The determinant of both nodal equations is a quadratic in s^2 = sin^2(k l/2), m = omega^2 rho A l^4 / 420 EI:
         ((48 + 216 m) s^2 - 420 m) (12 - 2 m - (8 + 12 m) s^2) = 4 s^2 (1 - s^2) (12 + 26 m)^2.
@@ -334,14 +334,15 @@ class HermiteModel(DiscreteModel):
 
     @property
     def cut_off_hz(self) -> float:
-        """Where a half wave fits on the worst element, (1680/17) EI/(rho A l^4) = omega^2 of a plain one.
+        """Cut-off frequency, Hz: half a wavelength on the element with the lowest one.
 
-        Otherwise from one element whose ends move oppositely, as those of all elements do at that wavelength.
+        omega^2 = (1680/17) EI/(rho A l^4) without tension, foundation or shear; in other cases that of one element
+        whose ends move in opposite phase.
         """
         plain = self.theory == "euler-bernoulli" and not (
             self.beam.section or self.beam.tension or self.beam.foundation
         )
-        if plain:  # scenes are checked by it: neither scipy nor scikit-fem is loaded
+        if plain:  # scene validation calls it: neither scipy nor scikit-fem is imported
             return float(np.sqrt(1680.0 / 17.0) * self._omega_unit / (2.0 * pi) / self.mesh.lengths.max() ** 2)
         from scipy.linalg import eigh
 

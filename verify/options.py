@@ -1,80 +1,84 @@
-"""Options of scenes, scripts and commands whose values are words."""
+"""Named choices of scenes, scripts and commands."""
 
 from typing import Literal, get_args
 
 Support = Literal["pinned", "clamped", "free", "guided"]
 SUPPORTS: tuple[str, ...] = get_args(Support)
-"""An end of a beam. pinned: w = 0. clamped: w = w' = 0. free: no constraint. guided: w' = 0."""
+"""Support of an end of a beam. pinned: w = 0. clamped: w = w' = 0. free: no constraint. guided: w' = 0."""
 
 Shape = Literal["rectangle", "round", "tube"]
-"""A beam's section. rectangle: width and thickness. round: a diameter. tube: a diameter and a wall_thickness."""
+"""Cross-section. rectangle: width and thickness. round: diameter. tube: diameter and wall_thickness."""
 
 Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko"]
 THEORIES: tuple[str, ...] = get_args(Theory)
-"""Beam theory. rayleigh adds rotary inertia to euler-bernoulli, timoshenko shear as well."""
+"""Beam theory. rayleigh: euler-bernoulli with rotary inertia. timoshenko: rayleigh with shear."""
 
 Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
 WALLS: tuple[str, ...] = get_args(Wall)
-"""Joints of a chain at a clamped end, by their weights from the wall on (`segments.walls`).
+"""Compliances, in l/EI, of the joints of a chain next to a clamped end (`segments.walls`).
 
 gregory: 3/8, 7/6, 23/24, frequencies of order 4. half: the literature's k = 2EI/l, order 2. welded: half a segment is
-part of the wall, order 2. third-order: 5/12, 13/12. five-joint: order 4, a smaller constant at low modes.
+part of the wall, order 2. third-order: 5/12, 13/12. five-joint: order 4, a smaller error at low modes.
 """
 
 Joints = Literal["series", "printed", "tensioned"]
 JOINTS: tuple[str, ...] = get_args(Joints)
-"""The spring between two links. series: the paper's Eq. (1), two half links in series. printed: its indices as printed.
-tensioned: series less T l/12 under a tension T, and rotary inertia corrected likewise: order 4 under axial force, in
-Rayleigh theory and in Timoshenko theory."""
+"""Stiffness of a joint. series: the paper's Eq. (1) corrected, two half links in series. printed: Eq. (1) with its
+indices as printed. tensioned: series with corrections of axial force (less T l/12) and rotary inertia: order 4 under
+axial force and in Rayleigh and Timoshenko theory."""
 
 Attachment = Literal["reciprocal", "lever"]
 ATTACHMENTS: tuple[str, ...] = get_args(Attachment)
-"""A point mass or spring on a chain. reciprocal: on four joints, order 4. lever: on its rigid link, order 1 or 2."""
+"""Distribution of a point mass or spring on a chain. reciprocal: over four joints, order 4. lever: to its rigid link,
+order 1 or 2."""
 
 Load = Literal["reciprocal", "lever"]
 LOADS: tuple[str, ...] = get_args(Load)
-"""A point force on a chain. reciprocal: on four joints, order 4. lever: on the two joints of its link, order 2."""
+"""Distribution of a point force on a chain. reciprocal: over four joints, order 4. lever: over the two joints of its
+link, order 2."""
 
 Reading = Literal["corrected", "raw", "links"]
 READINGS: tuple[str, ...] = get_args(Reading)
-"""Deflection between joints. corrected: the spline through y + delta^2 y / 12. raw: the spline through y. links: the
-straight links."""
+"""Interpolation between joints. corrected: spline through y + delta^2 y / 12. raw: spline through y. links: straight
+links."""
 
 Line = Literal["spline", "raw"]
 LINES: tuple[str, ...] = get_args(Line)
-"""Contact line on a chain. spline: the paper's C2 spline (Section II.B). raw: the links' straight edges."""
+"""Contact line of a chain. spline: the paper's C2 spline (Section II.B). raw: the straight edges of the links."""
 
 Links = Literal["rigid", "stretching"]
 LINKS: tuple[str, ...] = get_args(Links)
-"""Links of a nonlinear chain. rigid: the paper's. stretching: with the beam's EA / l."""
+"""Links of a nonlinear chain. rigid: as in the paper. stretching: axial stiffness EA / l."""
 
 Inertia = Literal["full", "transverse", "elastic"]
-"""Axial inertia of links. full: rigid links. transverse: rigid links without it. elastic: stretching links."""
+"""Axial inertia of links. full: rigid links. transverse: rigid links, none along x. elastic: stretching links."""
 
 Tip = Literal["free", "roller"]
 TIPS: tuple[str, ...] = get_args(Tip)
 """Far end of a nonlinear chain. free: no constraint. roller: y = 0, free along x."""
 
 Law = Literal["tanh", "coulomb"]
-"""Friction law. tanh: the paper's Eq. (3), which never sticks. coulomb: mu N against the motion, with stiction."""
+"""Friction law. tanh: the paper's Eq. (3), without stiction. coulomb: Coulomb's law with stiction."""
 
 CouplingChoice = Literal["two-way", "one-way"]
-"""Coupling of slider and beam. one-way: the slider does not act on the beam."""
+"""Coupling of slider and beam. two-way: contact forces act on both. one-way: on the slider alone."""
 
 Kinematics = Literal["tangential", "following"]
-"""Slider kinematics. tangential: m dv/dt = F, dx/dt = v. following: a point that follows the surface exactly."""
+"""Slider kinematics. tangential: m dv/dt = F, dx/dt = v. following: exact motion on the moving surface."""
 
-NormalChoice = Literal["held", "massless"]
-"""Normal force of a two-way coupled slider. held: weight and inertia. massless: none, as in the paper."""
+NormalChoice = Literal["bilateral", "massless"]
+"""Normal force of a two-way coupled slider on the beam. bilateral: weight and inertia. massless: none, as in the
+paper."""
 
 Face = Literal["upper", "lower"]
-"""Face of the beam that a foot is on."""
+"""Face of the beam on which a foot rests."""
 
 Start = Literal["rest", "steady"]
-"""Initial state of a motion. rest: at rest, with the static sag under a slider. steady: the drive's steady state."""
+"""Initial state of a motion. rest: at rest, with the static deflection under a slider. steady: steady state under the
+drive."""
 
 DriveKind = Literal["force", "displacement"]
-"""Kind of a drive. force: N. displacement: imposed, m."""
+"""Kind of a drive. force: imposed forces, N. displacement: imposed displacements, m."""
 
 Reference = Literal["closed form", "independent method", "published", "other code", "regression"]
 """Reference of a gate's expected value. closed form: a formula. independent method: another derivation. published: a

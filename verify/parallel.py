@@ -1,4 +1,4 @@
-"""Independent work in several processes: results in order, the same to the last digit."""
+"""Parallel evaluation in several processes, with the results of a serial one in the same order."""
 
 import os
 import sys
@@ -14,7 +14,7 @@ VARIABLE = "VERIFY_JOBS"
 
 
 def n_jobs() -> int:
-    """Number of worker processes. Raises InputError where VERIFY_JOBS is no whole number above 0."""
+    """Number of worker processes. Raises InputError unless VERIFY_JOBS is a positive integer."""
     text = os.environ.get(VARIABLE, "") or "1"
     if not (text.isascii() and text.isdigit() and int(text)):
         raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
@@ -27,11 +27,11 @@ def map_processes(
     progress: Callable[[int], None] = lambda done: None,
     max_workers: int | None = None,
 ) -> list[Result]:
-    """`[function(item) for item in items]`, shared among `max_workers` processes, VERIFY_JOBS unless set.
+    """`[function(item) for item in items]` in `max_workers` processes; default: VERIFY_JOBS.
 
-    `progress` is called with the number of items done, after each. The first item is done in this process, so that
-    workers inherit what it compiles and caches. Function and items are picklable where the platform cannot fork.
-    Raises the error of the first item that fails; pending items are cancelled.
+    `progress` is called with the number of completed items. The first item runs in this process, so that workers
+    inherit compiled functions and caches. Function and items must be picklable where the platform cannot fork. Raises
+    the error of the first item that fails; pending items are cancelled.
     """
     todo = list(items)
     workers = min(max_workers or n_jobs(), len(todo) - 1)

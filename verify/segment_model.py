@@ -1,21 +1,20 @@
 """The finite-segment model of a beam (Section II.A of the paper): rigid links, revolute joints and their springs.
 
-A beam of N links has N + 1 joints. Between two links i and j of lengths l and bending stiffnesses EI a spring resists
-their relative angle, two half links in series:
+A beam of N links has N + 1 joints. A rotational spring at the joint of links i and j, two half links in series, has
 
-    k_ij = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i),    k = EI / l between identical ones.    (1), (2)
+    k_ij = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i),    k = EI / l for identical links.    (1), (2)
 
-The paper has no clamped end; there the compliances of the first three joints are l/EI times 3/8, 7/6, 23/24 (Gregory's
-end correction, `segments.walls`). Each link has its mass m at its middle and its own inertia m l^2/12. In small motion
+The paper has no clamped end. At a clamped end the compliances of the first three joints are l/EI times 3/8, 7/6, 23/24
+(Gregory's end correction, `segments.walls`). A link has mass m and inertia m l^2/12 about its middle. For small motion
 about the straight chain the unknowns are the transverse positions y of the joints that the supports leave free; the
-links' rotations are their differences.
+rotation of a link is the difference of its joint positions over l.
 
 A joint's angle is l times the mean curvature of the beam around it, and the second difference of a deflection w is l^2
-w'' + l^4 w''''/12: the beam's deflection at the joint is w = y + l^2 y''/12, order 4 (`segments.reading`). As in
-Section II.B a spline makes the contact line smooth; here it is C2, through the corrected joints on the neutral line,
-and the surface moves by u_x = -(h/2) w'. The paper interpolates uncorrected upper corners and the joints' velocities.
+w'' + l^4 w''''/12: the beam's deflection at the joint is w = y + l^2 y''/12, order 4 (`segments.reading`). The contact
+line is a C2 spline through these corrected positions on the neutral line, and the surface moves by u_x = -(h/2) w'.
+The paper (Section II.B) interpolates uncorrected upper corners of the links and the velocities of the joints.
 
-Quantities over the unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses in rho A unit.
+Unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses in rho A unit.
 """
 
 from collections.abc import Callable
@@ -40,18 +39,18 @@ from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.structure import ChainStructure
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
-from verify.validation import MOST_PARTS, check_number, check_whole, check_word, plain
+from verify.validation import MOST_PARTS, check_choice, check_integer, check_number, python_scalar
 
 _WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
 _FEWEST_CORRECTED = 6
-"""Smallest N for which the mass with tensioned Timoshenko joints is positive definite, whatever is at the ends."""
+"""Smallest N for which the mass matrix with tensioned Timoshenko joints is positive definite at all supports."""
 _PASSES, _CONVERGED = 60, 1e-13
 """Iteration limit and relative tolerance of the buckling load of tensioned joints, which depend on it."""
 
 
 @dataclass(frozen=True)
 class SegmentModel(ChainStructure):
-    """A beam as `n_segments` rigid links. Raises InputError for settings that are unknown or contradict each other."""
+    """A beam of `n_segments` rigid links. Raises InputError for unknown and contradictory settings."""
 
     name: ClassVar[str] = "segment"
     parts: ClassVar[str] = "segments"
@@ -68,31 +67,31 @@ class SegmentModel(ChainStructure):
     wall: Wall = "gregory"
     """Compliances of the joints at a clamped end, in l/EI: "gregory" 3/8, 7/6, 23/24; "half" 1/2, the literature's."""
     joints: Joints = "series"
-    """Eq. (1) corrected ("series") or as "printed"; "tensioned" has order 4 under axial force too."""
+    """Eq. (1) corrected ("series") or as "printed"; "tensioned" is of order 4 under axial force too."""
     grading: float = 1.0
-    """Last link of a section over its first, in geometric progression."""
+    """Length of a section's last link over its first; lengths are in geometric progression."""
     theory: Theory = "euler-bernoulli"
     attachment: Attachment = "reciprocal"
-    """Attached bodies and springs on the joints around them, order 4, or on their rigid link ("lever")."""
+    """Distribution of attached bodies and springs: over four joints, order 4, or to their rigid link ("lever")."""
     load: Load = "reciprocal"
-    """Point forces on four joints, order 4, or on those of their link ("lever"), order 2."""
+    """Distribution of point forces: over four joints, order 4, or the two joints of their link ("lever"), order 2."""
     reading: Reading = "corrected"
-    """Deflection of the beam: by the "corrected" joints, the "raw" ones, or the rigid "links"."""
+    """Deflection between joints: spline through "corrected" or "raw" joint positions, or the rigid "links"."""
     joint_dashpot: float = 0.0
     """c of a dashpot at every joint, N m s, in harmonic motion."""
 
     def __post_init__(self) -> None:
         for one in fields(self):
-            object.__setattr__(self, one.name, plain(getattr(self, one.name)))
-        check_whole("n_segments", self.n_segments, self.fewest, MOST_PARTS)
+            object.__setattr__(self, one.name, python_scalar(getattr(self, one.name)))
+        check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         for name, words in _WORDS.items():
-            check_word(name, getattr(self, name), words)
+            check_choice(name, getattr(self, name), words)
         check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
         self.check_theory()
         check_division(self.beam, self.n_segments, self.grading)
-        if self.wall == "welded" and (self.beam.added or self.grading != 1.0 or self.theory != "euler-bernoulli"):
+        if self.wall == "welded" and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
-                "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
+                "wall = 'welded' is for uniform beams of equal segments without attachments: choose another wall"
             )
         if self.joints == "tensioned" and self.theory == "timoshenko" and self.n_segments < _FEWEST_CORRECTED:
             raise InputError(
@@ -108,7 +107,7 @@ class SegmentModel(ChainStructure):
 
     @property
     def unit(self) -> float:
-        """Mean length of a link, m; of a "welded" wall half a link at each clamped end is a part."""
+        """Mean length of a link, m; wall = "welded": half a link at each clamped end is not counted."""
         halves = self.beam.supports.count("clamped") if self.wall == "welded" else 0
         return self.beam.length / (self.n_segments + 0.5 * halves)
 
@@ -116,14 +115,14 @@ class SegmentModel(ChainStructure):
 
     @cached_property
     def links(self) -> Parts:
-        """Lengths and properties of the links, which end on the beam's steps."""
+        """Lengths and properties of the links; steps of the beam are at joints."""
         return divide(self.beam, self.n_segments, self.grading)
 
     @cached_property
     def chain(self) -> Chain:
-        """The links and joints by themselves. Raises InputError where a tensioned joint has no stiffness left."""
+        """Links and joints without attachments. Raises InputError where the stiffness of a joint is not positive."""
         lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
-        compliances = self._own_compliances.copy()
+        compliances = self._corrected_compliances.copy()
         compliances[[0, -1]] += self.attached.end_springs
         inertias = link_inertia(masses, lengths)
         if self._thick:
@@ -143,13 +142,13 @@ class SegmentModel(ChainStructure):
         )
 
     def _joint_compliances(self, stiffnesses: Array) -> Array:
-        """1/k of joints 0..N by Eq. (1), (N + 1,), times the factors of walls; `stiffnesses` (N,) are EI of links."""
+        """1/k of joints 0..N by Eq. (1), (N + 1,), times the wall factors; `stiffnesses` (N,) are EI of the links."""
         lengths = self.links.lengths
         halves = 0.5 * lengths / stiffnesses
         inner = halves[:-1] + halves[1:]
         if self.joints == "printed":
-            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) has the right unit and the wrong pairing: order 1
-            # where both I and E / l differ; of EI given without E, E is one and "printed" is "series"
+            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) is dimensionally right but pairs the wrong links:
+            # order 1 where both I and E / l differ; for EI without E, E is 1 and "printed" equals "series"
             e, i = self.links.moduli, self.links.second_moments
             inner = 0.5 * lengths[1:] / (e[1:] * i[:-1]) + 0.5 * lengths[:-1] / (e[:-1] * i[1:])
         return np.concatenate([2.0 * halves[:1], inner, 2.0 * halves[-1:]]) * self._wall_factors
@@ -160,12 +159,12 @@ class SegmentModel(ChainStructure):
 
     @cached_property
     def _beam_compliances(self) -> Array:
-        """1/k of the joints by the beam's bending stiffness, (N + 1,)."""
+        """1/k of the joints with the beam's bending stiffness, (N + 1,)."""
         return self._joint_compliances(self.links.stiffnesses)
 
     @cached_property
-    def _own_compliances(self) -> Array:
-        """Those of tensioned joints: EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
+    def _corrected_compliances(self) -> Array:
+        """1/k of tensioned joints, (N + 1,): EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
         if self.joints != "tensioned" or not self.beam.tension:
             return self._beam_compliances
         lengths, stiffnesses = self.links.lengths, self.links.stiffnesses - self._tension * self.links.lengths**2 / 12.0
@@ -177,15 +176,15 @@ class SegmentModel(ChainStructure):
         if stiffnesses.min() <= 0.0 or compliances.min() <= 0.0:
             raise InputError(
                 f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
-                f"{self.n_segments} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of "
-                "it: give more segments or choose joints = 'series'"
+                f"{self.n_segments} segments (limit 12 EI/l^2, at a clamped wall two thirds of it): give more segments "
+                "or choose joints = 'series'"
             )
         return compliances
 
     # --- Loads and readings --------------------------------------------------------------------------------------
 
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
-        """Weights of the unknowns, by the rule of `load`; of couples, those of attachments."""
+        """Weights of the unknowns by `load`; a couple has the weights of an attachment."""
         from scipy.sparse import vstack
 
         if not rotation:
@@ -200,25 +199,25 @@ class SegmentModel(ChainStructure):
         return vstack(each, format="csr")
 
     def device_rows(self, positions: Array) -> Any:
-        """By the weights of an attached body: those of a force lack its compliance to itself and are of order 3."""
+        """Weights of an attached body, order 4: those of a force omit its compliance at its own position, order 3."""
         from scipy.sparse import vstack
 
         weights = [attachment_weights(self.chain, [at], self.attachment)[0] for at in positions.tolist()]
         return vstack(weights, format="csr") @ self.motions.positions
 
     def _joints(self, unknowns: Any) -> Any:
-        """Positions of joints 0..N of unknowns (n, k), (k, N + 1)."""
+        """Positions of joints 0..N, (k, N + 1), from unknowns (n, k)."""
         return (self.motions.positions @ unknowns).T
 
     def _corrected(self, unknowns: Any) -> Any:
-        """The beam's deflection there, (k, N + 1)."""
+        """The beam's deflection at joints 0..N, (k, N + 1), from unknowns (n, k)."""
         if self.theory != "timoshenko":
             return corrected_reading(self.chain, self._joints(unknowns))
         change = shear.shear_change(self.motions, self._shear_compliances, unknowns)
         return corrected_reading(self.chain, self._joints(unknowns), (self.motions.rotations @ unknowns).T, change)
 
     def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
-        """The C2 spline through the joints by the rule of `reading`, or the links."""
+        """The C2 spline through the joints, or the links, by `reading`."""
         if self.reading == "links":
             return self._links(unknowns)
         read = self._corrected if self.reading == "corrected" else self._joints
@@ -236,19 +235,20 @@ class SegmentModel(ChainStructure):
             links = self._links(unknowns)
             return lambda x, derivative: links(x, derivative + 1)
         corrected = self.reading == "corrected"
-        return shear.section_rotation(self.motions, self._wall_factors, self._own_share, unknowns, corrected=corrected)
+        factors, fraction = self._wall_factors, self._beam_fraction
+        return shear.section_rotation(self.motions, factors, fraction, unknowns, corrected=corrected)
 
     def leading_sign(self, vectors: Array) -> Array:
-        """By the first free joint."""
+        """Sign of the first free joint's position."""
         return np.asarray(np.where(vectors[0] < 0.0, -1.0, 1.0))
 
     def modes_of(self, vectors: Array) -> dict[str, Any]:
-        """Joints as nodes, their readings, and the curvature M/EI of every joint's moment."""
+        """Fields of `Modes`: joints as nodes, their readings, and the curvature M/EI of every joint's moment."""
 
         def curvatures() -> Array:
-            there, bent = self._springs, np.zeros((vectors.shape[1], self.n_segments + 1))
-            share = self._own_share / (right_of(self.links.stiffnesses) * self._beam_compliances)
-            bent[:, there] = self.system.strain(vectors)[: len(there)].T * share[there]
+            sprung, bent = self._springs, np.zeros((vectors.shape[1], self.n_segments + 1))
+            share = self._beam_fraction / (right_of(self.links.stiffnesses) * self._beam_compliances)
+            bent[:, sprung] = self.system.strain(vectors)[: len(sprung)].T * share[sprung]
             if self.theory == "timoshenko":
                 values = self.system.rayleigh_quotients(vectors)
                 joints = self._corrected(vectors)
@@ -262,16 +262,16 @@ class SegmentModel(ChainStructure):
         return places | {"readings": readings, "sampled": readings["corrected"], "curvatures": curvatures}
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
-        """The contact line through the corrected joints, or the "raw" links, and the rotations of attached masses."""
+        """Contact line through the corrected joints, or the "raw" links, and rotations of attached masses."""
         if self.reading != "corrected":
             raise InputError(
-                f"reading = {self.reading!r} is for harmonic fields: in time give line = 'spline' (corrected joints) "
-                "or 'raw' (rigid links)"
+                f"reading = {self.reading!r} is for harmonic fields: for motion in time give line = 'spline' "
+                "(corrected joints) or 'raw' (rigid links)"
             )
         if self.joint_dashpot:
             raise InputError(
-                f"joint_dashpot = {self.joint_dashpot!r} is for harmonic motion: leave it out in time, or give the "
-                "beam a loss_factor"
+                f"joint_dashpot = {self.joint_dashpot!r} is for harmonic fields: for motion in time leave it out or "
+                "give the beam a loss_factor"
             )
         index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 
@@ -291,9 +291,9 @@ class SegmentModel(ChainStructure):
     # --- Buckling, order, waves ----------------------------------------------------------------------------------
 
     def buckling_load(self) -> float:
-        """The compression at which the chain buckles first, N, whatever the beam's own axial force.
+        """Lowest buckling load of the chain in compression, N; the beam's own axial force is ignored.
 
-        Between pinned ends (4 EI/l^2) sin^2(pi/(2N)), order 2; tensioned joints stiffen as the force grows: order 4.
+        Between pinned ends (4 EI/l^2) sin^2(pi/(2N)), order 2; with tensioned joints order 4.
         """
         force = 0.0 if self._tilts else self.beam.bending_stiffness / self.beam.length**2
         for _ in range(_PASSES if force else 0):
@@ -305,7 +305,7 @@ class SegmentModel(ChainStructure):
         return force
 
     def expected_order(self) -> int | None:
-        """Order of its frequencies in N (`segments.orders`); None where it depends on N."""
+        """Order of the frequencies in N (`segments.orders`); None where it depends on N."""
         return order_of(self.beam, **{name: getattr(self, name) for name in self.modal_settings})
 
     def wavenumber(self, frequency_hz: float) -> complex:
@@ -325,7 +325,7 @@ class SegmentModel(ChainStructure):
 
     @property
     def cut_off_hz(self) -> float:
-        """Frequency of a half wave on the worst link, Hz."""
+        """Cut-off frequency, Hz: half a wavelength on the link with the lowest one."""
         share = 2.0 / 3.0 if self.joints == "tensioned" else 1.0  # 1 - 4/12: a joint bends twice the link's rotation
         lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
         inertias = link_inertia(masses, lengths) + (share * self._rotary_inertias if self._thick else 0.0)

@@ -1,19 +1,19 @@
 """The travelling wave on a driven beam, the principle of the motor (Section I of the paper), and its measures.
 
-Two actuators a quarter period apart (Section III: 4276 Hz, d = 11.6 mm from both ends) drive the beam's line,
+Two actuators in quadrature (Section III: 4276 Hz, d = 11.6 mm from both ends) drive the deflection
 Re(w(x) e^{i omega t}). Between them, away from near fields,
 
     w = A+ e^{-ik(x - m)} + A- e^{+ik(x - m)}
 
-about the middle m of a window: a wave towards +x and a wave towards -x, which `measure` fits. With the reflection
+with m the middle of a window: a wave towards +x and a wave towards -x, which `measure` fits. With the reflection
 Gamma = |weaker| / |stronger| the standing-wave ratio is (1 + Gamma) / (1 - Gamma): 1 for a travelling wave, infinite
 for a standing wave.
 
-A point of the surface, h/2 above the line, moves by u_x = -(h/2) psi and u_y = w, where psi is the rotation of its
-section (w' without shear), on the elliptic path of the paper's introduction. Its Stokes parameters are
+A point of the surface, h/2 above the neutral line, moves by u_x = -(h/2) psi and u_y = w, where psi is the rotation of
+the section (w' without shear), on the elliptic path of the paper's introduction. Its Stokes parameters are
 S0 = |u_x|^2 + |u_y|^2 and S3 = 2 Im(conj(u_x) u_y), the area of the ellipse being pi/2 |S3|; the axis ratio is tan chi
-with sin 2 chi = S3 / S0. A wave towards +x has S3 < 0: its points turn counter-clockwise and move backwards at the
-crests, where they touch a slider, which therefore runs against the wave.
+with sin 2 chi = S3 / S0. A wave towards +x has S3 < 0: points move counter-clockwise, backwards at the crests, where
+they are in contact with a slider, which therefore moves against the wave.
 
     field = ExactModel(beam).harmonic(forces, 4276.0)
     measure(field, middle_half(beam)).standing_wave_ratio
@@ -46,14 +46,14 @@ __all__ = [
     "middle_half", "phasors", "power_imbalance", "surface_motion", "two_waves",
 ]  # fmt: skip
 POINTS_PER_HALF_WAVE = 24
-"""Points in half a wavelength at which surface quantities are tabulated and the search for extremes starts."""
+"""Points per half wavelength for tables of surface quantities and as start of the search for extremes."""
 POINTS_PER_PART = 8
-"""Points in a segment or element in that search: the field of a discrete model ripples at their length."""
+"""Points per segment or element in the search for extremes: a discrete field ripples at that length."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class WaveMeasures:
-    """The wave in a window of a field and the motion of the surface; figures are computed on first use."""
+    """The wave in a window of a field and the motion of the surface; properties are computed on first use."""
 
     guide: Waveguide
     omega: float
@@ -66,9 +66,9 @@ class WaveMeasures:
     section_rotation: Callable[[Array], ComplexArray]
     """psi at any x of the window, rad."""
     x: Array
-    """(n,), m: 24 points in each half wavelength of the exact beam; those of a time series."""
+    """(n,), m: 24 points per half wavelength of the exact beam, or the positions of a time series."""
     fine: Array
-    """(m,), m: fine enough to separate the extremes of the field."""
+    """(m,), m: positions that separate the extremes of the field."""
 
     @property
     def reflection(self) -> float:
@@ -90,8 +90,8 @@ class WaveMeasures:
     def travelling_index(self) -> float:
         """1 / cond of [Re w, Im w] in the mean square, 0 to 1 (Feeny, J. Sound Vib. 310 (2008) 77).
 
-        The interval is the largest whole number of half wavelengths in the middle of the window, over which it equals
-        (1 - Gamma) / (1 + Gamma) for two waves.
+        Over the largest whole number of half wavelengths in the middle of the window; for two waves it equals
+        (1 - Gamma) / (1 + Gamma).
         """
         whole, halves = whole_halves(self.window, self.waves.wavenumber.real)
         rule = gauss_rule(whole, 2 * halves)
@@ -109,7 +109,7 @@ class WaveMeasures:
 
     @cached_property
     def mean_axis_ratio(self) -> float:
-        """Mean signed axis ratio over whole half wavelengths; -+ `ideal_axis_ratio` for thin beams, kh -> 0.
+        """Mean signed axis ratio over whole half wavelengths; -+ `ideal_axis_ratio` in the limit kh -> 0.
 
         1/|w|^2 has the mean 1/||A+|^2 - |A-|^2| over half a wavelength, and S3 is constant.
         """
@@ -118,12 +118,12 @@ class WaveMeasures:
 
     @cached_property
     def ideal_axis_ratio(self) -> float:
-        """Axis ratio of a pure wave, unsigned: k h/2, times psi/w' of a travelling wave by Timoshenko's theory."""
+        """Unsigned axis ratio of a pure travelling wave: k h/2, in Timoshenko theory times psi/w'."""
         return float(self.guide.axis_ratio(self.omega, self.waves.wavenumber))
 
     @cached_property
     def s3_range(self) -> tuple[float, float, float]:
-        """Least, mean and largest Stokes parameter S3 over the window, m^2."""
+        """(least, mean, largest) Stokes parameter S3 over the window, m^2."""
         halves = whole_halves(self.window, self.waves.wavenumber.real)[1]
         low, high = extremes(lambda x: self._ellipse(x)[2], self.fine)
         return low, mean_over(lambda x: self._ellipse(x)[2], self.window, 2 * halves), high
@@ -132,7 +132,7 @@ class WaveMeasures:
     def signed_area_spread(self) -> float:
         """(max - min) / |mean| of S3, or of the signed area of the ellipses; 0 for undamped waves without near fields.
 
-        There S3 is proportional to the energy flux, which is constant. Raises NoFigureError for a standing wave.
+        In such waves S3 is proportional to the constant energy flux. Raises NoFigureError for a standing wave.
         """
         self.waves.check_travelling()
         least, mean, largest = self.s3_range
@@ -140,7 +140,7 @@ class WaveMeasures:
 
     @cached_property
     def crest_speed(self) -> float:
-        """Velocity of the surface along +x at the crests, m/s: `Waveguide.crest_speed`; negative towards +x."""
+        """Velocity of the surface along +x at the crests, m/s; negative for a wave towards +x."""
         waves = self.waves
         return float(self.guide.crest_speed(self.omega, waves.wavenumber, waves.forward, waves.backward))
 
@@ -156,7 +156,7 @@ def measure(field: HarmonicField, window: Window, wave_number: complex | None = 
 
     The wavenumber (1/m, complex for a damped wave) is fitted by default. Raises InputError for a window that is not
     between two neighbouring forces, contains a device or an attachment, or is shorter than half a wavelength, for a
-    field that is zero in it, and for a fit that ends at the edge of its search.
+    field that is zero in the window, and for a fit that ends at the edge of its search.
     """
     waves = two_waves(field, window, wave_number)
     start, end = map(float, window)
@@ -186,11 +186,11 @@ def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
     if t.ndim != 1 or values.ndim != 2 or len(values) != len(t) or not values.size:
         raise InputError(f"times, {t.shape}, and values, {values.shape}: give (n_times,) and (n_times, n_points)")
     if not (np.isfinite(t).all() and np.isfinite(values).all() and (np.diff(t) > 0).all()):
-        raise InputError("times and values have to be finite and times ascending: leave out what is not")
+        raise InputError("times and values: give finite numbers and ascending times")
     step = float(t[-1] - t[0]) / max(len(t) - 1, 1)
     if step * frequency_hz > 0.5 * (1.0 - 1e-9):
-        raise InputError(f"times have {1.0 / (step * frequency_hz):.4g} samples in each period: give more than two")
-    # the last sample stands for a step of its own, so that n samples of a period cover it
+        raise InputError(f"times have {1.0 / (step * frequency_hz):.4g} samples per period: give more than two")
+    # the last sample represents a step too, so that n samples cover a period
     periods = int(np.floor((t[-1] - t[0] + step) * frequency_hz * (1.0 + 1e-9)))
     used = t > t[-1] - periods / frequency_hz + 0.5 * step * (1.0 - 1e-6)
     if periods < 1 or used.sum() < 8:
@@ -209,29 +209,28 @@ def measure_series(
 ) -> WaveMeasures:
     """The wave in time series at positions x (m, ascending), values (n_times, n_positions), m; by Euler-Bernoulli.
 
-    Between the positions the field is a cubic spline through their phasors; its slope is that of the two fitted waves.
-    Forces and devices between the positions are unknown to it: a large `waves.residual` indicates them. Raises
-    InputError for a sampling in time or space with two points or fewer in a period or wavelength (Nyquist), for
-    shorter series than one period and half a wavelength, and for positions off the beam; WindowError for an attachment
-    between them.
+    Between the positions the field is a cubic spline through their phasors, with the slope of the two fitted waves. A
+    large `waves.residual` indicates forces or devices between the positions. Raises InputError for a sampling in time
+    or space with two points or fewer per period or wavelength (Nyquist), for series shorter than one period or half a
+    wavelength, and for positions off the beam; WindowError for an attachment between the positions.
     """
     from scipy.interpolate import CubicSpline
 
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
     at = positions_on("x", x, beam.length)
     if not (at.ndim == 1 and (np.diff(at) > 0).all() and np.shape(values)[1:] == at.shape):
-        raise InputError("x has to be ascending and as long as values are wide")
+        raise InputError("x: give ascending positions, one for each column of values")
     own = wavenumber(beam, frequency_hz)
     if len(at) < 4 or (at[-1] - at[0]) * own.real < np.pi:
-        raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
+        raise InputError("x covers less than half a wavelength or four points: give a longer span")
     stated = None if k is None else check_wavenumber("k", k, (float(at[0]), float(at[-1])))
     if (gap := float(np.diff(at).max())) >= (half := float(np.pi / (stated or own).real)):
-        raise InputError(f"x has a gap of {gap:.4g} m, half a wavelength ({half:.4g} m) or more: give points within it")
+        raise InputError(f"x has a gap of {gap:.4g} m, half a wavelength ({half:.4g} m) or more: give points in it")
     start, end = float(at[0]), float(at[-1])
     check_clear(beam, (start, end), f"x from {start:.6g} to {end:.6g} m")
     measured = phasors(times, values, frequency_hz)
     if not abs(measured).max() > ROUNDING * abs(np.asarray(values)).max():
-        raise NoFigureError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
+        raise NoFigureError(f"values have no component at frequency_hz = {frequency_hz!r}: give its frequency")
     waves = fit_waves(at, measured, stated or fitted_wavenumber(at, measured, own))
 
     def slope(x: Array) -> ComplexArray:
@@ -253,13 +252,13 @@ def measure_series(
 def surface_motion(beam: Beam, rotation: ComplexArray, x: Numbers) -> ComplexArray:
     """u_x of the upper surface at x, m: -(h/2) times the rotation of the section (rad, of the shape of x).
 
-    Where two sections meet, h is that of the right section. Raises InputError off the beam.
+    At a step h is that of the right section. Raises InputError off the beam.
     """
     return np.asarray(-surface_distance_at(beam, x) * np.asarray(rotation, dtype=complex))
 
 
 def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
-    """(signed axis ratio tan chi, tilt in degrees, S3) of the paths u_x = `across`, u_y = `up` of any one shape, m.
+    """(signed axis ratio tan chi, tilt in degrees, S3) of the paths u_x = `across`, u_y = `up`, m, of equal shape.
 
     Stokes parameters (Born and Wolf, Principles of Optics, section 1.4): S0, S1 = |u_x|^2 +- |u_y|^2,
     S2 + i S3 = 2 conj(u_x) u_y, tan 2 tilt = S2/S1, sin 2 chi = S3/S0. The path encloses -pi/2 S3, counter-clockwise.
@@ -281,14 +280,14 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     beam, middle = field.beam, 0.5 * sum(measures.window)
     if field.couples:
         raise InputError(
-            f"device.position = {field.couples[0]!r}: a power balance takes no device against rotation, leave it out"
+            f"device.position = {field.couples[0]!r}: a power balance models no device against rotation, leave it out"
         )
-    beam.check_added("a power balance", ("mass", "spring", "tension", "foundation"))
+    beam.check_features("a power balance", ("mass", "spring", "tension", "foundation"))
     measures.waves.check_travelling()
     left = [force for force in field.forces if force.position <= measures.window[0]]
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
     power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
-    # the third derivative jumps at a force, the second at a couple: quadrature in between
+    # the third derivative jumps at a force, the second at a couple: quadrature between the jumps
     jumps = [one.position for one in (*field.forces, *beam.attached)]
     cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
     edges = np.unique([*cells, *(x for x in jumps if x < middle)])

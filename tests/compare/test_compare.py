@@ -155,7 +155,7 @@ class TestFaults:
 
     def test_rigid_motions_of_a_clamped_beam(self):
         result = compared(PROPPED, [0.0, 1e-4, *rigid_links(PROPPED, 37)[:8]], count=37)
-        assert "starts with 2 rigid motions, the beam of the scene has 0" in result.warnings[0]
+        assert "starts with 2 rigid-body motions, the beam of the scene has 0" in result.warnings[0]
         assert best(result, "wall") == ("half",)
         assert [row["entry"] for row in table(result, "Modes")] == list(range(3, 11))
         assert not result.data["passed"]
@@ -256,7 +256,7 @@ def test_body_between_the_joints():
 @pytest.mark.parametrize(
     ("hertz", "options", "message"),
     [
-        ([30.0, 20.0], {}, "do not rise"),
+        ([30.0, 20.0], {}, "do not ascend"),
         ([0.0, 0.0], {}, "no elastic mode"),
         ([-1.0], {}, "finite numbers from 0"),
         ([float("nan")], {}, "finite numbers from 0"),

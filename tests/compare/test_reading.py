@@ -48,7 +48,7 @@ def test_bad_list_is_one_sentence(tmp_path, text, message):
 
 
 @pytest.mark.parametrize(
-    ("text", "message"), [("0.2;1\n0.1;2\n0.3;1\n", "rising places"), ("0.1;0\n0.2;0\n0.3;0\n", "zero or not finite")]
+    ("text", "message"), [("0.2;1\n0.1;2\n0.3;1\n", "ascending x"), ("0.1;0\n0.2;0\n0.3;0\n", "zero or not finite")]
 )
 def test_bad_shapes_are_one_sentence(tmp_path, text, message):
     (tmp_path / "shapes.csv").write_text(text)
@@ -106,7 +106,7 @@ class TestMesh:
         assert [row["mode"] for row in table(result, "Shapes")] == list(range(1, 9))
         assert min(row["MAC"] for row in table(result, "Shapes")) > 0.99
         assert result.data["passed"]
-        assert table(result, "Models by the form of their shapes")[0]["model"] == "segments, raw joints"
+        assert table(result, "Models by shape error")[0]["model"] == "segments, raw joints"
 
     def test_exchanged_shapes_fail(self, tmp_path):
         result = compare_shapes(self.scene, read_mesh(solid(tmp_path / "modes.vtu", 1.0, [0, 2, 1, 3]), 0.3))

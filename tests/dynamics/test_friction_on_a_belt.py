@@ -18,7 +18,7 @@ def test_free_decay_follows_its_closed_form(mu, slope, speed, time):
 
 @pytest.mark.parametrize("part", [-0.99999, -0.31, 1e-6, 0.87])
 @pytest.mark.parametrize("slope", [3.0, 4e5])
-def test_a_pull_below_the_limit_creeps_at_its_artanh(slope, part):
+def test_a_force_below_the_limit_creeps_at_its_artanh(slope, part):
     assert creep_speed(0.17, slope, part * 0.17 * 9.81) == pytest.approx(atanh(part) / slope, rel=1e-9)
 
 
@@ -38,10 +38,10 @@ def test_a_coulomb_oscillator_loses_four_forces_over_stiffness_a_cycle(mass, sti
     assert coulomb_decrement(mass, stiffness, force) == pytest.approx(4 * force / stiffness, rel=1e-6)
 
 
-def test_belts_and_pulls_without_such_a_motion_are_refused():
-    for pull in (1.0, -1.2, 1 - 1e-8):
-        with pytest.raises(InputError, match="pull = "):
-            creep_speed(0.2, 900.0, pull * 0.2 * 9.81)
+def test_belts_and_forces_without_such_a_motion_are_refused():
+    for part in (1.0, -1.2, 1 - 1e-8):
+        with pytest.raises(InputError, match="acceleration = "):
+            creep_speed(0.2, 900.0, part * 0.2 * 9.81)
     with pytest.raises(InputError, match="kinetic"):
         stick_slip_times(0.7, 310.0, 1.7, 1.7, 0.11)
     with pytest.raises(InputError, match="lower the speed"):

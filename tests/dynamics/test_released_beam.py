@@ -94,7 +94,7 @@ def test_damping_ratio_follows_the_loss_factor_of_the_beam():
         (tip, {"amplitude": 1e-4}, "amplitude"),
         (tip, {"velocity": 2}, "velocity"),
         (lambda x: 1e-4 + x, {}, "clamped"),
-        (([0.0, 0.2], [0.0, 1e-4]), {}, "x ascend"),
+        (([0.0, 0.2], [0.0, 1e-4]), {}, "x that ascends"),
         (lambda x: np.nan * x, {}, "finite"),
     ],
 )

@@ -31,7 +31,7 @@ KINDS = {
     "one-way following": {"coupling": "one-way", "kinematics": "following", "speed": 1.3},
     "massless": {"normal": "massless"},
     "massless following": {"normal": "massless", "kinematics": "following"},
-    "held": {"preload": 2.31},
+    "bilateral": {"preload": 2.31},
     "held, fast": {"speed": 3.0},
     "held, following, fast": {"kinematics": "following", "speed": -2.1},
 }
@@ -82,7 +82,7 @@ def test_each_line_of_the_energy_balance_equals_its_integral(kind):
 
 
 @pytest.mark.parametrize("law", ["tanh", "coulomb"])
-@pytest.mark.parametrize("kind", ["one-way", "massless", "held"])
+@pytest.mark.parametrize("kind", ["one-way", "massless", "bilateral"])
 def test_energy_balance_closes_and_friction_dissipates(kind, law):
     slider = changed(replace(HEAVY, **KINDS[kind]), law=law, mu=0.05)
     energies = [run(slider, steps).energy for steps in (120, 240, 480)]
@@ -262,9 +262,9 @@ def test_default_steps_resolve_a_step_load_and_report_their_convergence():
     assert chosen.displacement == pytest.approx(fine.displacement, rel=2e-3)
     assert coarse.displacement == pytest.approx(fine.displacement, rel=0.01)
     assert any(note.startswith("step:") for note in coarse.notes)
-    refined = run(replace(HEAVY, **KINDS["held"]), step=None)
+    refined = run(replace(HEAVY, **KINDS["bilateral"]), step=None)
     assert refined.statistics.step_change < 0.01
-    assert refined.displacement == pytest.approx(reference("held").displacement, rel=0.01)
+    assert refined.displacement == pytest.approx(reference("bilateral").displacement, rel=0.01)
     assert len(refined.times) == 11
 
 

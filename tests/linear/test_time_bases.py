@@ -112,10 +112,10 @@ def test_raw_links_are_straight_and_turn_at_the_joints():
 @pytest.mark.parametrize("model", MODELS.built_in)
 def test_a_beam_that_can_drift_away_is_refused(model, supports):
     beam, model = replace(STRIP, supports=supports), MODELS[model]
-    with pytest.raises(InputError, match="rigid motion"):
+    with pytest.raises(InputError, match="rigid-body motion"):
         model.build(beam, 20 if model.sized else None).time_basis()
 
 
 def test_dashpots_of_the_joints_are_for_harmonic_motion():
-    with pytest.raises(InputError, match=r"joint_dashpot = 0\.3 is for harmonic motion"):
+    with pytest.raises(InputError, match=r"joint_dashpot = 0\.3 is for harmonic fields"):
         SegmentModel(STRIP, 20, joint_dashpot=0.3).time_basis()

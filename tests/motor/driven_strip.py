@@ -42,6 +42,6 @@ def on_strip(slider, amplitude=1e-6, backward=0.0, periods=5, steps=None, **aske
 def slider_of(point, **own):
     """The slider of a point of the reference, with further fields."""
     given = {"mass": point.mass, "mu": point.mu, "slope": point.slope, "gravity": 0.0, "coupling": "one-way"}
-    given |= {"preload": point.load, "preload_stiffness": point.load_stiffness, "pull": point.pull}
+    given |= {"preload": point.load, "preload_stiffness": point.load_stiffness, "external_force": point.pull}
     contact = Contact(stiffness=point.stiffness, damping=point.damping, tangential_stiffness=point.give)
     return Slider(**{"law": "tanh" if point.slope else "coulomb", "contact": contact, **given, **own})

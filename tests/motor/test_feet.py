@@ -186,7 +186,7 @@ def test_feet_of_a_clasp_that_are_not_above_each_other_bend_the_beam_by_their_co
     loads = [
         (x, 0.5 * sign * slider.normal_force / foot.points)
         for foot, sign in zip(feet, (-1.0, 1.0), strict=True)
-        for x in slider.start_on(STRIP) + foot.offset + by.cells(foot.length, foot.points)
+        for x in slider.initial_position(STRIP) + foot.offset + by.cells(foot.length, foot.points)
     ]
     expected = max(abs(sum(pinned_sag(x, *one) for one in loads)) for x, _ in loads)
     assert moved(slider, seconds=2e-4).margins.static_deflection == pytest.approx(expected, rel=1e-3)

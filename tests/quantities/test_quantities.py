@@ -96,14 +96,14 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "chain.cantilever_tip": ("bare", {"segments": 7, "load": 1.7}),
     "chain.rollup_gap": ("bare", {"segments": 7, "wall": "gregory"}),
     "chain.hanging_frequency": ("bare", {"segments": 7, "mode": 2}),
-    "chain.turning_frequency": ("bare", {"segments": 7, "mode": 2, "speed": 1.3}),
+    "chain.rotating_frequency": ("bare", {"segments": 7, "mode": 2, "speed": 1.3}),
     "chain.large_amplitude_frequency": ("bare", {"segments": 6, "amplitude": 0.9}),
     "chain.energy_drift": ("bare", {"segments": 5, "step": 2e-5}), "chain.imbalance": ("bare", {"segments": 4}),
     "chain.contact_line_error": ("clamped", {"segments": 9, "mode": 2, "x": 0.31}),
     "chain.transient_deflection": ("undamped", {"segments": 5, "time": 7e-4, "x": 0.31}),
     "chain.axial_departure": ("undamped", {"segments": 5, "force": 30.0, "time": 7e-4}),
     **{f"chain.slider_{n}": ("undamped", {"segments": 5, "coupling": "one-way"}) for n in ("displacement", "mean_speed", "imbalance")},
-    "friction.creep_speed": ("bare", {"mu": 0.23, "slope": 310.0, "pull": 1.1}),
+    "friction.creep_speed": ("bare", {"mu": 0.23, "slope": 310.0, "acceleration": 1.1}),
     "friction.belt_stick_time": ("bare", BELT), "friction.belt_slip_time": ("bare", BELT),
     "slider.winkler_speed_ratio": ("bare", {"contact_half_angle": 1.1}), "slider.layer_efficiency": ("bare", LAYER),
     "friction.coulomb_decrement": ("bare", {"mass": 0.31, "stiffness": 47.0, "force": 0.7}),
@@ -202,7 +202,7 @@ def test_words_are_read_by_type():
     assert needed["error"] == pytest.approx(0.007, rel=1e-15)
     with pytest.raises(InputError, match=r"did you mean 'mode\.frequency'"):
         parse_arguments("mode.freqency", [])
-    wrong = {"mode": "KEY=VALUE", "mod=3": "did you mean 'mode'", "mode=3 mode=4": "second", "counts=80-20": "upwards"}
+    wrong = {"mode": "KEY=VALUE", "mod=3": "did you mean 'mode'", "mode=3 mode=4": "repeats", "counts=80-20": "upwards"}
     for text, sentence in wrong.items():
         with pytest.raises(InputError, match=sentence):
             parse_arguments("mode.order", text.split())

@@ -87,7 +87,7 @@ def ridden(modes, forces, hertz, slider, duration, *, half, damping=0.0, soft=0.
     """
     own, shape = modes
     n, omega, start = len(own), 2 * np.pi * hertz, slider.position
-    held, follows = two_way and slider.normal == "held", slider.kinematics == "following"
+    held, follows = two_way and slider.normal == "bilateral", slider.kinematics == "following"
     load, slope_k = slider.mass * slider.gravity + slider.preload, slider.slope
     loads = [(f.amplitude, np.deg2rad(f.phase_deg), shape(f.position, 0)) for f in forces]
 

@@ -243,7 +243,9 @@ def test_schema_describes_every_key():
     for name, kind in sections().items():
         for key, own in scene_schema(name)["properties"].items():
             assert own.get("description") or "$ref" in own, (name, key, kind)
-    assert scene_schema("beam.mass")["properties"]["rotary_inertia"]["description"].startswith("About the fixing")
+    assert scene_schema("beam.mass")["properties"]["rotary_inertia"]["description"].startswith(
+        "Rotary inertia about the fixing"
+    )
     assert "mode.frequency" in schema["$defs"]["Gate"]["properties"]["quantity"]["enum"]
     with pytest.raises(InputError, match="did you mean 'beam'"):
         scene_schema("baem")

@@ -1,1 +1,1 @@
-"""Comparison of models: stored solutions, paired modes, errors, orders, bounds, sizes, grid convergence index."""
+"""Comparison of models: solution cache, paired modes, errors, orders, bounds, sizes, grid convergence index."""

@@ -14,23 +14,23 @@ from verify.linear.modes import Modes
 
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
-"""Relative frequency error that rounding may leave (measured: 1.1e-14 up to 10^4 segments or elements)."""
+"""Bound of rounding in a relative frequency error (measured: 1.1e-14 up to 10^4 segments or elements)."""
 ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
-"""Smallest error of which an order is observed; below it rounding changes the order."""
+"""Smallest error for an observed order; below it rounding affects the order."""
 ORDER_SPREAD = 1.0
 """Largest difference between the orders of neighbouring sizes in the asymptotic range."""
 AT_REST = 1e-11
-"""A shape of this fraction of its typical size is rounding, as mode 3 of a pinned beam at the nodes of three parts."""
+"""Fraction of the typical size below which a shape is zero, such as mode 3 of a pinned beam at the nodes of 3 parts."""
 LEAST_MAC = 0.5
-"""Lowest MAC of a pair of modes."""
+"""Smallest MAC of paired modes."""
 LOW_MAC = 0.8
-"""MAC below which supports differ: the first shapes of a clamped beam have 0.62 and 0.75 with a cantilever's, mode 6
-of a cantilever of twenty links has 0.996 with the exact one."""
+"""MAC below which supports are different: 0.62 and 0.75 between the first modes of a clamped beam and a cantilever;
+mode 6 of a cantilever of 20 links has 0.996 with the exact one."""
 
 SAFETY = 1.25
 """Factor of safety on the extrapolated error for three sizes (Roache)."""
 VALUE_ROUNDING = 1e-12
-"""Relative differences below this are rounding of the values."""
+"""Relative difference of values that is rounding."""
 _LOWEST, _HIGHEST = 1e-3, 40.0
 """Range of observed orders."""
 
@@ -39,8 +39,8 @@ def relative_error(value: T, exact: T) -> T:
     """(value - exact) / exact, signed or complex. Raises NoFigureError where the exact value is zero or infinite."""
     if not exact or not np.isfinite(exact):
         raise NoFigureError(
-            f"the exact value is {'infinite' if exact else 'zero'}, no error is relative to it: change the drive or "
-            "the position"
+            f"the exact value is {'infinite' if exact else 'zero'} and has no relative error: change the drive or the "
+            "position"
         )
     return (value - exact) / exact
 
@@ -77,7 +77,7 @@ def paired_index(modes: Modes, exact_shapes: Array, mode: int, stride: int) -> i
     index, macs = pair_modes(mac(exact_shapes, modes.sampled()[:, ::stride]))
     if macs[mode - 1] < LEAST_MAC:
         raise InputError(
-            f"mode = {mode}: no {modes.model} mode at count = {modes.count} has its shape "
+            f"mode = {mode}: no {modes.model} mode at count = {modes.count} has this shape "
             f"(best MAC {macs[mode - 1]:.2f}), raise count"
         )
     return int(index[mode - 1])
@@ -92,11 +92,11 @@ def node_weights(nodes: Array) -> Array:
 def shape_error(exact: Array, computed: Array, weights: Array, typical: float = 0.0) -> float:
     """Relative L2 distance of two mass-normalised shapes up to sign; all (n_nodes,).
 
-    Raises NoFigureError where the exact shape is below `AT_REST` of its `typical` size at every node.
+    Raises NoFigureError if the exact shape is below `AT_REST` times its `typical` size at every node.
     """
     size = float(weights @ exact**2)
     if size <= (AT_REST * typical) ** 2 * float(weights.sum()):
-        raise NoFigureError("count: the exact shape is zero at every node of so few parts, raise it")
+        raise NoFigureError("count: the exact shape is zero at every node, raise it")
     distances = [float(weights @ (computed * sign - exact) ** 2) for sign in (1.0, -1.0)]
     return float(np.sqrt(min(distances) / size))
 
@@ -108,7 +108,7 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
     """
     from scipy.optimize import brentq
 
-    margin = 1e-4 / mode  # the ends themselves are supports, not nodes
+    margin = 1e-4 / mode  # zeros at the ends are supports, not nodes
     x = np.linspace(margin * length, (1.0 - margin) * length, 40 * mode + 1)
     positive = shape(x) >= 0
     changes = np.flatnonzero(positive[:-1] != positive[1:])
@@ -119,44 +119,44 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
     return np.array([brentq(at, x[i], x[i + 1], xtol=1e-14 * length, rtol=1e-14) for i in changes])
 
 
-def observed_order(counts: Sequence[float], errors: Sequence[complex], given: str = "") -> float:
+def observed_order(counts: Sequence[float], errors: Sequence[complex], label: str = "") -> float:
     """Minus the least-squares slope of log |error| over log count; `errors` signed or complex.
 
-    `given` names sizes that are not counts: 'steps = [...]'. Raises InputError for fewer than three different sizes, an
+    `label` names sizes other than counts: 'steps = [...]'. Raises InputError for fewer than three different sizes, an
     error that changes sign (or phase by more than 90 degrees), and one below `ORDER_FLOOR`.
     """
-    given = given or f"counts = {list(counts)}"
+    label = label or f"counts = {list(counts)}"
     sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=complex)
     least, wrong = abs(values).min(initial=np.inf), ""
     if len(sizes) < 3 or len(set(counts)) != len(sizes):
         wrong = "an observed order needs three or more different sizes"
     elif not np.isfinite(values).all():
-        wrong = "an error is not finite, choose another mode or another quantity"
+        wrong = "an error is not finite, choose another mode or quantity"
     elif least < ORDER_FLOOR:
-        wrong = f"an error of {least:.1e} is rounding (floor {ORDER_FLOOR:.0e}), use coarser sizes or a higher mode"
+        wrong = f"an error of {least:.1e} is within rounding ({ORDER_FLOOR:.0e}), use coarser sizes or a higher mode"
     elif (np.outer(values, values.conj()).real < 0.0).any():
-        wrong = "the error changes sign between them, so it has no order there"
+        wrong = "the error changes sign between these sizes and has no order, choose others"
     if wrong:
-        raise InputError(f"{given}: {wrong}")
+        raise InputError(f"{label}: {wrong}")
     return float(-np.polyfit(np.log(sizes), np.log(abs(values)), 1)[0])
 
 
 def asymptotic_order(
-    counts: Sequence[float], errors: Sequence[complex], expected: int | None = None, given: str = ""
+    counts: Sequence[float], errors: Sequence[complex], expected: int | None = None, label: str = ""
 ) -> float:
-    """`observed_order` of errors in the asymptotic range: orders from size to size within `ORDER_SPREAD` of `expected`.
+    """`observed_order` in the asymptotic range: orders from size to size within `ORDER_SPREAD` of `expected`.
 
-    Without `expected` they are within it of each other. Raises InputError for errors outside the asymptotic range,
-    where sizes are too coarse or the error is about to change sign.
+    Without `expected`, within `ORDER_SPREAD` of each other. Raises InputError outside the asymptotic range: sizes are
+    too coarse, or the error is about to change sign.
     """
-    order = observed_order(counts, errors, given)
+    order = observed_order(counts, errors, label)
     by_size = sorted(zip(counts, np.abs(errors), strict=True))
     orders = [float(np.log(e / f) / np.log(m / n)) for (n, e), (m, f) in pairwise(by_size)]
     low, high = (min(orders), max(orders)) if expected is None else (expected, expected)
     if min(orders) <= 0.0 or max(orders) - low > ORDER_SPREAD or high - min(orders) > ORDER_SPREAD:
         listed = ", ".join(f"{one:.2f}" for one in orders)
         raise InputError(
-            f"{given or f'counts = {list(counts)}'}: outside the asymptotic range, orders from size to size are "
+            f"{label or f'counts = {list(counts)}'}: outside the asymptotic range, orders from size to size are "
             f"{listed}{'' if expected is None else f' and {expected} is expected'}: choose other sizes"
         )
     return order
@@ -166,11 +166,11 @@ class GridConvergence(msgspec.Struct, frozen=True, kw_only=True):
     """Estimate of the discretisation error at the finest of three sizes."""
 
     value: float
-    """At the finest size."""
+    """Value at the finest size."""
     order: float | None
     """Observed order; None where the values do not converge."""
     extrapolated: float
-    """Richardson's value at vanishing part length; `value` without an observed order."""
+    """Richardson extrapolation to vanishing part length; `value` without an observed order."""
     index: float
     """GCI: half width of the uncertainty band about `value`, relative to it; infinite without an order."""
 
@@ -181,10 +181,10 @@ def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: i
     Richardson extrapolation with Roache's uncertainty (J. Fluids Eng. 116 (1994) 405) by the procedure of Celik et al.
     (J. Fluids Eng. 130 (2008) 078001), with h = L/N.
 
-    `expected` is the theoretical order. An observed order above it is an accident of errors that are about to change
-    sign: the theoretical order replaces it, which raises the fraction of bands that contain the exact frequency
-    from 0.90 to 0.97 (tests/analysis). Raises InputError for other than three different sizes, for values that are
-    zero or not finite, and for differences within rounding.
+    `expected` is the theoretical order. It replaces a higher observed order, which is due to errors that are about to
+    change sign; this raises the fraction of bands that contain the exact frequency from 0.90 to 0.97 (tests/analysis).
+    Raises InputError unless there are three different sizes, for values that are zero or not finite, and for
+    differences within rounding.
     """
     from scipy.optimize import brentq
 
@@ -195,7 +195,7 @@ def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: i
     (n1, f1), (n2, f2), (n3, f3) = sorted(zip(counts, values, strict=True), reverse=True)  # the finest first
     r21, r32, e21, e32 = n1 / n2, n2 / n3, f2 - f1, f3 - f2
     if min(abs(e21), abs(e32)) <= VALUE_ROUNDING * abs(f1):
-        raise InputError(f"counts = {list(counts)}: the values differ by rounding alone, use coarser sizes")
+        raise InputError(f"counts = {list(counts)}: differences of the values are within rounding, use coarser sizes")
     sign = 1.0 if e32 / e21 > 0.0 else -1.0
 
     def excess(p: float) -> float:

@@ -1,4 +1,4 @@
-"""Smallest number of segments or elements from which on the frequency error stays within a limit."""
+"""Sufficient number of segments or elements: the frequency error is within a limit for this and all larger numbers."""
 
 from collections.abc import Callable
 from math import ceil
@@ -14,36 +14,36 @@ from verify.linear.registry import MODELS, discrete
 from verify.timing import interleaved_medians
 
 LARGEST, LARGEST_WITHOUT_LAW = 200_000, 2000
-"""Largest size of models with an error law, and of those of other packages."""
+"""Largest size of models with an error law, and of models of other packages."""
 LARGEST_ALTERNATIVE = 500
-"""Largest size of rules other than the defaults, or five times the size of the defaults."""
+"""Largest size with settings other than the defaults, or five times the size with the defaults."""
 LAW_FROM = 60
 """Size from which on the error law replaces the scan (measured: within a third of its terms from 20 parts on)."""
 EVERY, FINE, COARSE = 60, 1.05, 1.5
-"""A scan tries every size up to the first, then sizes 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %."""
+"""Size up to which a scan tries every size; larger ones are 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %."""
 LOWER_MODES = 100
 """Highest mode below which all lower modes are checked."""
 ROUNDING = 1e-12
-"""Smallest error that is not rounding."""
+"""Smallest error above rounding."""
 
-PROVEN = "every larger N meets it by the discrete dispersion"
-BY_LAW = "larger N meet it by the error law"
+PROVEN = "all larger N are within the limit by the discrete dispersion"
+BY_LAW = "larger N are within the limit by the error law"
 
 Modes: TypeAlias = int | range
-"""One mode, or all of several, numbered from 1."""
+"""One mode, or a range of modes, numbered from 1."""
 Within: TypeAlias = Callable[[int], bool]
 """Whether the errors at a size are within the limit."""
 
 
 class Sufficient(msgspec.Struct, frozen=True, kw_only=True):
-    """The size from which on the error stays within a limit."""
+    """The sufficient size for an error limit."""
 
     count: int
-    """From this size on the error is within the limit; `known_by` says why."""
+    """The error is within the limit for this and all larger sizes, by the argument `known_by`."""
     mode: int
     """The mode that requires it."""
     smaller: int | None = None
-    """The smallest size below it within the limit, though one between is not."""
+    """The smallest size within the limit, if a larger one is not."""
     known_by: str
 
 
@@ -58,7 +58,7 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     error: float
     """Signed relative frequency error of the mode that requires the size."""
     expected_error: float | None
-    """The same by the error law; None without one (steps, attachments, settings, modes beyond the lower branch)."""
+    """`error` by the error law; None without a law (steps, attachments, settings, modes beyond the lower branch)."""
     run_time_s: float
     """Median of warm solves, assembly included."""
 
@@ -66,24 +66,24 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
 def sufficient_size(
     cache: SolutionCache, model: str, mode: Modes, error: float, settings: Settings = (), largest: int = LARGEST
 ) -> Sufficient:
-    """The size from which on the solved frequency error is within `error`; at one part less it is not.
+    """The size from which on the computed frequency error of `mode`, or of all modes of a range, is within `error`.
 
-    `mode` may be a range: all its modes are within. By the error law of a uniform beam from `LAW_FROM` on, with the
-    neighbourhood of its size solved; between pinned and guided ends the discrete dispersion proves it. Else by a scan
-    to twice the last size beyond the limit, and bisection. Raises InputError where no size up to `largest` is within.
+    For a uniform beam from `LAW_FROM` on by the error law, with neighbouring sizes solved; for pinned and guided ends
+    the discrete dispersion proves it. In other cases by a scan up to twice the last size beyond the limit, and
+    bisection. Raises InputError if no size up to `largest` is within the limit.
     """
     if not error >= ROUNDING:
-        raise InputError(f"error = {error!r} is as small as rounding: give {ROUNDING:g} or more")
+        raise InputError(f"error = {error!r} is within rounding: give {ROUNDING:g} or more")
     beam, modes = cache.beam, mode if isinstance(mode, range) else range(mode, mode + 1)
     cls = MODELS.named(model)
-    cls.build(beam, LARGEST_WITHOUT_LAW, **dict(settings))  # refuses settings and beams at any size
+    cls.build(beam, LARGEST_WITHOUT_LAW, **dict(settings))  # raises for invalid settings and beams
     smallest = max(len(beam.pieces), cls.fewest)
     largest = largest if model in LAWS else min(largest, LARGEST_WITHOUT_LAW)
 
     def check_allowed(count: int) -> None:
         if count > largest:
             raise InputError(
-                f"error = {error!r}: the {model} model does not reach it up to count = {largest}, give a larger error"
+                f"error = {error!r}: the {model} model exceeds it up to count = {largest}, give a larger error"
             )
 
     def within(count: int) -> bool:
@@ -100,11 +100,11 @@ def sufficient_size(
     guess, dip = 0, None
     has_guess = model in LAWS and beam.uniform and not settings
     if has_guess:
-        # beyond 300 parts at each clamped end, and beyond the elements' hump at mu = 2.98, errors only fall
+        # errors fall monotonically beyond 300 parts per clamped end, and for elements below mu = 2.98
         first = smallest_count(beam, modes[-1])
         guess, dip, _ = _scan(lawful, first, max(4 * first, 300 * beam.supports.count("clamped")))
     if has_guess and (sine_fits(beam.supports) or guess >= LAW_FROM) and has_law(beam, modes[-1], guess):
-        # next to the guess: one that is right costs two solves
+        # start next to the estimate: a correct one costs two solutions
         low, high, step = guess - 1, guess, 1
         while not within(high):
             low, high, step = high, high + step, 2 * step
@@ -115,7 +115,7 @@ def sufficient_size(
         known_by = PROVEN if sine_fits(beam.supports) else BY_LAW
     else:
         count, dip, last = _scan(within, smallest, max(guess, smallest + 4))
-        known_by = f"sizes up to {last} were solved, from {EVERY} on 5 % apart"
+        known_by = f"sizes up to {last} were solved, beyond {EVERY} 5 % apart"
     errors = {one: cache.error_or_reason(model, count - 1, one, settings)[0] for one in modes} if count > 1 else {}
     worst = max(modes, key=lambda one: (abs(off) if (off := errors.get(one)) is not None else float("inf"), one))
     smaller = dip if dip is not None and dip < count - 1 and within(dip) else None
@@ -123,7 +123,7 @@ def sufficient_size(
 
 
 def _scan(within: Within, first: int, up_to: int) -> tuple[int, int | None, int]:
-    """(size from which on the error is within the limit, the smallest size within if smaller, the largest size tried).
+    """(sufficient size, smallest size within the limit if smaller, largest size tried).
 
     Sizes up to `up_to`, or twice the last size beyond the limit.
     """
@@ -140,7 +140,7 @@ def _scan(within: Within, first: int, up_to: int) -> tuple[int, int | None, int]
 
 
 def _between(within: Within, low: int, high: int) -> int:
-    """The first size within the limit between `low`, beyond it, and `high`, within."""
+    """The smallest size within the limit between `low` (beyond it) and `high` (within it)."""
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if within(middle) else (middle, high)
@@ -150,9 +150,9 @@ def _between(within: Within, low: int, high: int) -> int:
 def choose(
     cache: SolutionCache, mode: Modes, error: float, rules: Rules | None = None
 ) -> tuple[list[Choice], dict[str, str]]:
-    """(sufficient size and cost of every discrete model with these rules, reason by name for those left out).
+    """(sufficient size and cost of every discrete model with these rules, reason by name for skipped models).
 
-    Beside the rules those of the literature on this beam (`Rules.alternatives`). Raises InputError.
+    Includes the rules of the literature for this beam (`Rules.alternatives`). Raises InputError.
     """
     rules, beam, names = rules or Rules(), cache.beam, []
     left_out = rules.without_effect(beam)
@@ -163,13 +163,13 @@ def choose(
             names.append(model.name)
         except InputError as problem:
             left_out[model.name] = str(problem)
-    found = {one: sufficient_size(cache, one.model, mode, error, one.settings) for one in rules.variants(names)}
+    sizes = {one: sufficient_size(cache, one.model, mode, error, one.settings) for one in rules.variants(names)}
     for one in rules.alternatives(beam):
-        own = max((size.count for same, size in found.items() if same.model == one.model), default=0)
+        own = max((size.count for same, size in sizes.items() if same.model == one.model), default=0)
         try:
-            if one not in found:
+            if one not in sizes:
                 most = max(LARGEST_ALTERNATIVE, 5 * own)
-                found[one] = sufficient_size(cache, one.model, mode, error, one.settings, most)
+                sizes[one] = sufficient_size(cache, one.model, mode, error, one.settings, most)
         except InputError as problem:
             left_out[one.title] = str(problem)
     highest = mode[-1] if isinstance(mode, range) else mode
@@ -177,9 +177,9 @@ def choose(
     def solver(one: Variant, count: int) -> Callable[[], object]:
         return lambda: MODELS[one.model].build(beam, count, **dict(one.settings)).modes(highest)
 
-    times = interleaved_medians([solver(one, size.count) for one, size in found.items()])
+    times = interleaved_medians([solver(one, size.count) for one, size in sizes.items()])
     choices = []
-    for (one, size), seconds in zip(found.items(), times, strict=True):
+    for (one, size), seconds in zip(sizes.items(), times, strict=True):
         law = not one.settings and beam.uniform and one.model in LAWS and has_law(beam, size.mode, size.count)
         below = range(1, size.mode if not isinstance(mode, range) and size.mode <= LOWER_MODES else 1)
         errors = {n: cache.error_or_reason(one.model, size.count, n, one.settings)[0] for n in below}

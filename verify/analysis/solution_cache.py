@@ -1,4 +1,4 @@
-"""Solutions of one beam by every model, computed on first use and stored, and their errors against the exact beam."""
+"""Cache of the solutions of one beam by all models, and their errors against the exact beam."""
 
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -29,7 +29,7 @@ class Bracket(msgspec.Struct, frozen=True):
 
     @property
     def mean(self) -> float:
-        """The middle, where leading errors cancel: nearer than a bound unless an error is three times the other."""
+        """The middle, at which leading errors cancel: nearer than a bound unless one error is three times the other."""
         return 0.5 * (self.lower + self.upper)
 
     @property
@@ -44,14 +44,14 @@ def theory_of(settings: Settings) -> str:
 
 
 def unproven(beam: Beam, settings: Settings = ()) -> str:
-    """Why it is not proven that segments lie below and elements above the exact frequencies; empty where it is."""
-    if added := (*beam.added, *("section",) * bool(beam.section)):
-        return f"neither side is proven on a beam with beam.{added[0]}, leave it out"
+    """Reason why segments are not proven to lie below and elements above the exact frequencies; empty if proven."""
+    if added := (*beam.features, *("section",) * bool(beam.section)):
+        return f"no bound is proven for a beam with beam.{added[0]}, leave it out"
     chosen = {"theory": EULER, "grading": 1.0, "wall": "gregory"} | dict(settings)
     proven = {"theory": EULER, "grading": 1.0, "wall": "half" if "clamped" in beam.supports else chosen["wall"]}
     for name, value in chosen.items():
         if value != proven.get(name, value):
-            instead = "wall=half bounds it" if name == "wall" else f"leave {name} out"
+            instead = "wall=half is a bound" if name == "wall" else f"leave {name} out"
             return f"with {name} = {value!r} the chain may lie above the exact frequency, {instead}"
     return ""
 
@@ -59,7 +59,7 @@ def unproven(beam: Beam, settings: Settings = ()) -> str:
 def comparable(beam: Beam, counts: Iterable[int], n_modes: int) -> tuple[list[str], dict[str, str]]:
     """(discrete models that solve this beam at these sizes, reason by name for models of other packages that do not).
 
-    Raises InputError for a size that is impossible in a model of this package.
+    Raises InputError for an invalid size of a model of this package.
     """
     names, skipped, sizes = [], dict[str, str](), tuple(counts)
     for model in discrete():
@@ -76,9 +76,9 @@ def comparable(beam: Beam, counts: Iterable[int], n_modes: int) -> tuple[list[st
 
 
 class SolutionCache:
-    """The models of one beam. Each solution is computed on first use and stored.
+    """The models of one beam; each solution is computed on first use and stored.
 
-    A request for more modes than are stored solves again: request the highest mode first.
+    A request for more modes than stored solves again: request the highest mode first.
     """
 
     def __init__(self, beam: Beam) -> None:
@@ -88,9 +88,9 @@ class SolutionCache:
         self.fields: dict[Any, HarmonicField] = {}
         """Harmonic fields, at one frequency or many, by everything that determines them."""
         self.motions: dict[Any, Motion] = {}
-        """Time integrations of a beam, with or without a slider, likewise."""
+        """Time integrations of a beam, with or without a slider, by their arguments."""
         self.motors: dict[Any, Any] = {}
-        """Steady states and free runs of a motor, likewise."""
+        """Steady states and free runs of a motor, by their arguments."""
         self._modes: dict[tuple[str, int, Settings], Modes] = {}
         self._index: dict[tuple[str, int, Settings, int], int] = {}
 
@@ -122,7 +122,7 @@ class SolutionCache:
         return ExactModel(self.beam, theory)
 
     def frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
-        """The frequency of mode number `mode` by rank, Hz; model "mean" is the middle of the bracket."""
+        """The frequency of rank `mode`, Hz; model "mean" is the middle of the bracket."""
         if model == MEAN:
             return self.bracket(mode, count, settings).mean
         return float(self.modes(model, count, mode, settings).frequencies_hz[mode - 1])
@@ -137,7 +137,7 @@ class SolutionCache:
     def paired_index(self, model: str, count: int, mode: int, settings: Settings = ()) -> int:
         """Index of the computed mode that pairs by MAC with exact mode `mode`. Raises InputError.
 
-        By rank on beams that are not uniform and by other theories, where exact shapes are expensive.
+        By rank for non-uniform beams and other theories, whose exact shapes are expensive.
         """
         if not self.beam.uniform or theory_of(settings) != EULER:
             return mode - 1
@@ -159,7 +159,7 @@ class SolutionCache:
         return relative_error(self.paired_frequency_hz(model, count, mode, settings), exact)
 
     def error_or_reason(self, model: str, count: int, mode: int, settings: Settings = ()) -> tuple[float | None, str]:
-        """(signed frequency error, '') or (None, the reason why there is none)."""
+        """(signed frequency error, '') or (None, reason)."""
         try:
             return self.frequency_error(model, count, mode, settings), ""
         except InputError as error:
@@ -168,9 +168,9 @@ class SolutionCache:
     def bracket(self, mode: int, count: int, settings: Settings = ()) -> Bracket:
         """Segments below and Hermite elements above the exact frequency, Hz. Raises NoBracketError.
 
-        Holds for uniform beams of equal parts without a clamped end (checked on every mode and support for
-        N = 2..24), and loosely, with order 2, for clamped ends with the wall joint 2EI/l. The dispersion's error
-        decides whether the bound is wider than rounding.
+        Valid for uniform beams of equal parts without a clamped end (checked for all modes and supports, N = 2..24),
+        and with order 2 for clamped ends with the wall joint 2EI/l. The error of the dispersion decides whether the
+        bound is wider than rounding.
         """
         from verify.analysis.comparison import EIGENVALUE_FLOOR
         from verify.exact.error_laws import leading_error
@@ -195,7 +195,7 @@ class SolutionCache:
 
         modes = self.modes(model, count, mode, settings)
         if reading is not None and reading not in modes.readings:
-            raise InputError(f"reading = {reading!r} is none of the {model} model's: {', '.join(modes.readings)}")
+            raise InputError(f"reading = {reading!r} is not a reading of {model}: give {', '.join(modes.readings)}")
         read = modes.readings[reading or next(iter(modes.readings))]
         exact = self.exact_shape(mode, modes.nodes, theory=theory_of(settings))
         shape = read()[self.paired_index(model, count, mode, settings)]

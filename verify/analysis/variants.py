@@ -1,4 +1,4 @@
-"""A model together with its settings, and the settings that a study or a choice compares."""
+"""Variants, models with their settings, and the rules that a study or a choice compares."""
 
 from collections.abc import Iterable, Mapping
 from itertools import product
@@ -20,7 +20,7 @@ DEFAULTS: dict[str, str | float] = {
     "theory": "euler-bernoulli",
     "attachment": "reciprocal",
 }
-"""Settings that frequencies depend on, in the order of labels."""
+"""Settings on which frequencies depend, in the order of labels."""
 Grading: TypeAlias = Annotated[float, Meta(gt=0)]
 
 
@@ -32,48 +32,48 @@ class Variant(msgspec.Struct, frozen=True):
 
     @property
     def label(self) -> str:
-        """Its name in data: 'segment', 'segment wall=half'."""
+        """Name in data: 'segment', 'segment wall=half'."""
         return " ".join([self.model, *(f"{name}={value}" for name, value in self.settings)])
 
     @property
     def title(self) -> str:
-        """Its name in a table or a chart: 'segments', 'segments, wall half'."""
+        """Title in tables and charts: 'segments', 'segments, wall half'."""
         words = [str(value) if name == "theory" else f"{name} {value}" for name, value in self.settings]
         return ", ".join([MODELS[self.model].title, *words])
 
     def expected_order(self, beam: Beam) -> int | None:
-        """The theoretical order of its frequencies on a beam; None where it is not known."""
+        """Theoretical order of the frequencies for a beam; None if unknown."""
         model = MODELS[self.model]
         return model.build(beam, max(4 * len(beam.pieces), 16), **dict(self.settings)).expected_order()
 
 
 class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Settings of the models; several values of one are compared."""
+    """Settings of the models; several values of a setting are compared."""
 
     wall: Wall | tuple[Wall, ...] = "gregory"
     """Joints of segments at a clamped end."""
     joints: Joints | tuple[Joints, ...] = "series"
-    """The spring between two links."""
+    """Stiffness of the joints of segments."""
     grading: Grading | tuple[Grading, ...] = 1.0
     """Length of a section's last part over its first."""
     theory: Theory | tuple[Theory, ...] = "euler-bernoulli"
     """Beam theory of every model."""
     attachment: Attachment | tuple[Attachment, ...] = "reciprocal"
-    """Point masses and springs on segments."""
+    """Distribution of point masses and springs on segments."""
 
     def variants(self, models: Iterable[str]) -> tuple[Variant, ...]:
-        """Each model with each of the settings that it has. Raises InputError for one that no model has."""
+        """Each model with all combinations of its settings. Raises InputError for a setting that no model has."""
         names = tuple(models)
         for name, default in DEFAULTS.items():
             changed = [value for value in self._values(name) if value != default]
             if changed and not any(name in MODELS.named(model).settings() for model in names):
-                raise InputError(f"{name} = {changed[0]!r} is a setting of none of {', '.join(names)}: leave it out")
-        found = (
+                raise InputError(f"{name} = {changed[0]!r} is not a setting of {' or '.join(names)}: leave it out")
+        variants = (
             Variant(model, tuple(one for one in chosen if one[0] in MODELS.named(model).settings()))
             for model in names
             for chosen in self.combinations
         )
-        return tuple(dict.fromkeys(found))
+        return tuple(dict.fromkeys(variants))
 
     def _values(self, name: str) -> tuple[Any, ...]:
         value = getattr(self, name)
@@ -81,24 +81,24 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     @property
     def combinations(self) -> tuple[Settings, ...]:
-        """Every value of each setting with every value of the others, defaults left out."""
+        """All combinations of values, without those equal to their defaults."""
         every = product(*(self._values(name) for name in DEFAULTS))
         return tuple(dict.fromkeys(not_default(dict(zip(DEFAULTS, values, strict=True))) for values in every))
 
     def alternatives(self, beam: Beam) -> tuple[Variant, ...]:
-        """Rules of the literature for this beam, with each combination: the wall 2EI/l, tensioned joints, the lever."""
-        found = []
+        """All combinations of the rules of the literature for this beam: wall 2EI/l, tensioned joints, lever."""
+        variants = []
         for chosen in map(dict, self.combinations):
             # axial force and shear reduce the order of joints in series by two
             loses = bool(beam.tension) or chosen.get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
             rules = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
             rules += [("attachment", "lever")] * attached_within(beam)
             able = ((model.name, *rule) for rule in rules for model in discrete() if rule[0] in model.settings())
-            found += [Variant(model, not_default(chosen | {name: value})) for model, name, value in able]
-        return tuple(dict.fromkeys(found))
+            variants += [Variant(model, not_default(chosen | {name: value})) for model, name, value in able]
+        return tuple(dict.fromkeys(variants))
 
     def without_effect(self, beam: Beam) -> dict[str, str]:
-        """Settings that are not the default and change nothing on this beam, each with the reason."""
+        """Settings other than the default without effect on this beam, with the reason."""
         reasons = {"wall": not has_wall(beam) and "no end is clamped"}
         reasons["attachment"] = not (beam.mass or beam.spring) and "nothing is attached to the beam"
         changed = {name for chosen in self.combinations for name, _ in chosen}

@@ -1,4 +1,4 @@
-"""Work-precision benchmarks: run time over error of every method that answers the same question."""
+"""Work-precision benchmarks: run time over error of all methods for a quantity of interest."""
 
 from verify.bench.work_precision import Method, Question, Row, measure, result, time_at
 

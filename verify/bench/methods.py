@@ -1,4 +1,4 @@
-"""The sets: questions with their methods and references, on the paper's beam or that of a scene."""
+"""Benchmark sets: quantities of interest with methods and references, for the paper's beam or that of a scene."""
 
 import dataclasses
 from collections.abc import Callable, Iterator, Sequence
@@ -21,7 +21,7 @@ SIZES = (24, 49, 98, 196, 392)
 PARTS = {"segment": "segments", "fem": "elements"}
 LINKS = 49
 SOFT_START = 2.0
-"""Periods over which forces grow: under a step load errors fall at no integer order."""
+"""Periods over which forces grow: a step load has no integer order of convergence."""
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
 SLIDER = Slider(mass=1.0193679918450561e-3, mu=0.2, slope=1e4)
@@ -29,7 +29,7 @@ SLIDER = Slider(mass=1.0193679918450561e-3, mu=0.2, slope=1e4)
 
 @dataclass(frozen=True)
 class Problem:
-    """A driven beam with a slider, one mode of it, and how long it moves."""
+    """A driven beam with a slider, a mode number and a duration."""
 
     beam: Beam = BEAM
     forces: tuple[PointForce, ...] = FORCES
@@ -46,7 +46,7 @@ class Problem:
 
 
 def problem_of(scene: Any) -> Problem:
-    """The beam, drive and slider of a scene, the paper's slider where it has none; no forces without a drive."""
+    """Beam, drive and slider of a scene; default slider: the paper's; no forces without a drive."""
     if scene.drive is None:
         return Problem(beam=scene.beam, forces=())
     duration = scene.motion.duration if scene.motion else 4.0 / scene.drive.frequency_hz
@@ -54,12 +54,12 @@ def problem_of(scene: Any) -> Problem:
 
 
 def rms(values: Any, exact: Any) -> float:
-    """Rms of a difference over the rms of what is exact."""
+    """Rms of a difference over the rms of the exact values."""
     return float(np.sqrt(np.mean(abs(values - exact) ** 2) / np.mean(abs(exact) ** 2)))
 
 
 def modes(problem: Problem) -> Iterator[Question]:
-    """A natural frequency over the number of parts."""
+    """Natural frequency by number of parts."""
     from verify.elements.stock import stock_frequency_hz
 
     beam, mode = problem.beam, problem.mode
@@ -83,13 +83,13 @@ def modes(problem: Problem) -> Iterator[Question]:
 
 
 def by_model(problem: Problem, solver: Callable[[str], Callable[[int], Any]], exact: str) -> list[Method]:
-    """Segments and elements over their sizes (`solver(model)(N)`), and the exact beam under its name."""
+    """Segments and elements by size (`solver(model)(N)`), and the exact beam with method name `exact`."""
     methods = [Method(word, solver(model), problem.sizes, model=model) for model, word in PARTS.items()]
     return [*methods, Method(exact, solver("analytic"), (0,), "", "analytic")]
 
 
 def field(problem: Problem) -> Iterator[Question]:
-    """The steady field over the number of parts."""
+    """Steady field by number of parts."""
     x = np.linspace(0.0, problem.beam.length, 8 * max(problem.sizes) + 1)
 
     def solver(model: str, shift: float = 0.0) -> Callable[[int], Any]:
@@ -100,22 +100,22 @@ def field(problem: Problem) -> Iterator[Question]:
     rounding = rms(solver("analytic", 1e-7)(0), exact) * 1e7 * 8 * np.finfo(float).eps
     methods = by_model(problem, solver, "exact")
     title = f"deflection at {problem.frequency_hz:g} Hz, rms over the beam"
-    yield Question("field", title, "exact field", rounding, lambda found: rms(found, exact), methods)
+    yield Question("field", title, "exact field", rounding, lambda result: rms(result, exact), methods)
 
 
 def moved(problem: Problem, model: str, count: int | None, **more: Any) -> Any:
-    """A motion from rest."""
+    """Motion from rest."""
     from verify.dynamics.simulate import simulate
 
-    given = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
-    run = simulate(*given, model=model, count=count, soft_start_periods=SOFT_START, **more)
+    driven = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
+    run = simulate(*driven, model=model, count=count, soft_start_periods=SOFT_START, **more)
     if not run.statistics.finished:
         raise InputError(f"the run {run.statistics.stopped}: shorten motion.duration")
     return run
 
 
 def transient(problem: Problem) -> Iterator[Question]:
-    """The deflection of one place over time, over the number of parts."""
+    """Deflection of a point in time by number of parts."""
     more: dict[str, Any] = {"at": [0.37 * problem.beam.length], "samples": 201}
 
     def solver(model: str) -> Callable[[int], Any]:
@@ -125,11 +125,11 @@ def transient(problem: Problem) -> Iterator[Question]:
     uncertainty = max(rms(solver("analytic")(0), exact), 1e-13)
     methods = by_model(problem, solver, "exact, 400 modes")
     title = f"deflection at 0.37 L, rms over time, {problem.name}"
-    yield Question("transient", title, "exact beam, 800 modes", uncertainty, lambda found: rms(found, exact), methods)
+    yield Question("transient", title, "exact beam, 800 modes", uncertainty, lambda result: rms(result, exact), methods)
 
 
 def slider(problem: Problem) -> Iterator[Question]:
-    """The displacement of the slider over the number of parts, at equal time steps."""
+    """Displacement of the slider by number of parts, with equal time steps."""
     one = replace(problem.slider, coupling="one-way")
 
     def solver(model: str) -> Callable[[int], float]:
@@ -142,7 +142,7 @@ def slider(problem: Problem) -> Iterator[Question]:
 
 
 def ride(problem: Problem) -> Iterator[Question]:
-    """The displacement of the slider on 49 segments over the time step, each coupling against its own small step."""
+    """Displacement of the slider on 49 segments by time step, for both couplings; reference: a small step."""
 
     def method(coupling: str) -> tuple[Method, float]:
         one = replace(problem.slider, coupling=coupling)
@@ -153,7 +153,7 @@ def ride(problem: Problem) -> Iterator[Question]:
 
         fine, finer = run(1024), run(2048)
         steps = (16, 32, 64, 128, 256)
-        own = Method(coupling, run, steps, "steps / period", error=lambda found: found / finer - 1.0)
+        own = Method(coupling, run, steps, "steps / period", error=lambda result: result / finer - 1.0)
         return own, abs(fine / finer - 1.0)
 
     pairs = [method("one-way"), method("two-way")]
@@ -162,7 +162,7 @@ def ride(problem: Problem) -> Iterator[Question]:
 
 
 def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], float]:
-    """(settings -> times and mid-span deflections of the nonlinear chain from rest, the step limit of RK4)."""
+    """(settings -> times and mid-span deflections of the nonlinear chain from rest, step limit of RK4)."""
     from verify.chain.kinematics import at_rest
     from verify.chain.motion import simulate, step_limit
     from verify.chain.system import build_system
@@ -178,7 +178,7 @@ def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], 
 
 
 def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array, Array]], float], float]:
-    """(RK4 and adaptive steps, error against adaptive steps at 1e-10, what 1e-9 changes)."""
+    """(methods RK4 and adaptive, error against adaptive steps at 1e-10, uncertainty: change from 1e-9 to 1e-10)."""
     from scipy.interpolate import CubicSpline
 
     run, limit = chain_solver(problem)
@@ -189,11 +189,11 @@ def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array
     rk4 = Method("RK4", lambda n: run(method="rk4", step=problem.duration / n), steps, "steps", "segment")
     adaptive = Method("adaptive", lambda size: run(tolerance=size), (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), "tolerance")
     uncertainty = max(rms(run(4000, tolerance=1e-9)[1], exact), 1e-10)
-    return [rk4, adaptive], lambda found: rms(found[1], spline(found[0])), uncertainty
+    return [rk4, adaptive], lambda result: rms(result[1], spline(result[0])), uncertainty
 
 
 def chain(problem: Problem) -> Iterator[Question]:
-    """The nonlinear chain over the step or the tolerance, and the linear one, exact in time."""
+    """Nonlinear chain by step or tolerance, and the linear chain, exact in time."""
     from verify.chain.benchmarks import linear_deflection
     from verify.chain.system import build_system
 
@@ -210,7 +210,7 @@ def chain(problem: Problem) -> Iterator[Question]:
 
 
 def engines(problem: Problem) -> Iterator[Question]:
-    """Modes and the nonlinear chain in other engines beside segments."""
+    """Modes and the nonlinear chain in other engines and with segments."""
     from verify.engines import ENGINES, chain_of, missing
 
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
@@ -240,10 +240,10 @@ def engines(problem: Problem) -> Iterator[Question]:
 
     def motion(adapter: Any) -> Callable[[int], Any]:
         def run(count: int) -> Any:
-            found = adapter.run(links, count, end)
-            if found.failure:
-                raise InputError(f"engines: {found.failure}")
-            return found.times, found.deflection
+            result = adapter.run(links, count, end)
+            if result.failure:
+                raise InputError(f"engines: {result.failure}")
+            return result.times, result.deflection
 
         return run
 
@@ -266,7 +266,7 @@ SETS: dict[str, Callable[[Problem], Iterator[Question]]] = {
 
 
 def questions(names: Sequence[str], problem: Problem) -> Iterator[Question]:
-    """Of the sets, all if none is named. Raises InputError for an unknown set or one that the problem cannot have."""
+    """Questions of the named sets (default: all). Raises InputError for an unknown or impossible set."""
     for name in names:
         if name not in SETS:
             raise InputError(f"set = {name!r} is unknown: {near_name(name, tuple(SETS))}")

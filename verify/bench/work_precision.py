@@ -1,6 +1,6 @@
-"""Run time over error: methods at their sizes against one reference, timed in interleaved rounds.
+"""Run time over error: methods at several sizes against one reference, timed in interleaved rounds.
 
-Times are processor seconds of one thread, medians over the rounds, from the beam to the answer.
+Times are processor seconds of one thread, medians over the rounds, from the beam to the result.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -20,66 +20,66 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ROUNDS, TURN_S = 9, 2e-3
-"""Most rounds; seconds for which short runs are repeated within a round."""
+"""Largest number of rounds; time for which short runs are repeated within a round, s."""
 ERRORS = (1e-2, 1e-3, 1e-4, 1e-5)
-"""At which methods are compared."""
+"""Errors at which methods are compared."""
 ABOVE_REFERENCE = 3.0
-"""Errors below so many uncertainties of the reference have no order and take no part in comparisons."""
+"""Multiple of the reference's uncertainty below which errors have no order and are excluded from comparisons."""
 
 
 @dataclass(frozen=True)
 class Method:
-    """One way to an answer, refined over its sizes."""
+    """A method and its sizes."""
 
     name: str
     run: Callable[[Any], Any]
-    """Size -> answer."""
+    """Size -> result."""
     sizes: Sequence[Any]
     """From coarse to fine."""
     size_name: str = "N"
-    """What is refined: N, dt, tolerance; empty where nothing is."""
+    """Name of the size: N, dt, tolerance; empty without refinement."""
     model: str = ""
-    """Name of the model, for its colour."""
+    """Name of the model, which defines the colour."""
     error: Callable[[Any], float] | None = None
-    """Of an answer, where the question's own does not apply."""
+    """Relative error of a result; default: that of the question."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """What all methods compute, and the reference of their errors."""
+    """A quantity of interest, its methods and the reference of their errors."""
 
     id: str
     title: str
     """Quantity and conditions."""
     reference: str
     uncertainty: float
-    """Of the reference, relative."""
+    """Relative uncertainty of the reference."""
     error: Callable[[Any], float]
-    """Relative error of an answer."""
+    """Relative error of a result."""
     methods: Sequence[Method]
 
 
 @dataclass(frozen=True)
 class Row:
-    """One method at one size."""
+    """Error and time of one method at one size."""
 
     method: str
     size_name: str
     size: float
     error: float
     order: float | None
-    """Observed from the coarser size."""
+    """Observed order from the coarser size."""
     seconds: float
     spread: float
-    """Between the quartiles of the rounds, relative."""
+    """Relative interquartile range of the rounds."""
     model: str = ""
 
 
 def measure(question: Question, limit: float = 5.0) -> list[Row]:
     """Rows of all methods.
 
-    A method whose runs have taken `limit` seconds is not refined further; the rounds end after as long. Sizes that a
-    method refuses (InputError) have no row.
+    A method whose runs have taken `limit` seconds is not refined further; rounds end after the same time. Sizes at
+    which a method raises InputError have no row.
     """
     jobs: list[tuple[Method, Any, float, int]] = []
     for method in question.methods:
@@ -109,7 +109,7 @@ def measure(question: Question, limit: float = 5.0) -> list[Row]:
 
 
 def _timed(method: Method, size: Any, repeats: int) -> float:
-    """Mean processor seconds of a run for which nothing is cached."""
+    """Mean processor time of a run without cached results, s."""
     total = 0.0
     for _ in range(repeats):
         forget()
@@ -129,9 +129,9 @@ def _with_orders(rows: Sequence[Row], floor: float) -> Iterator[Row]:
 
 
 def time_at(rows: Sequence[Row], error: float) -> float | None:
-    """Seconds that a method takes for an error, by interpolation of log time over log error.
+    """Time of a method for an error, s, by interpolation of log time over log error.
 
-    From the size on from which all finer ones are within it; the coarsest where that is; None where none is.
+    Interpolates at the first size from which on all errors are within it; the coarsest size if all are; else None.
     """
     if not rows or not rows[-1].error <= error:
         return None
@@ -143,12 +143,12 @@ def time_at(rows: Sequence[Row], error: float) -> float | None:
 
 
 def by_method(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """Rows of each method, coarse to fine."""
+    """Rows by method, from coarse to fine."""
     return {name: [row for row in rows if row.method == name] for name in dict.fromkeys(row.method for row in rows)}
 
 
 def ratios(question: Question, rows: Sequence[Row]) -> dict[str, list[float | None]]:
-    """Time of each method over that of the first at each of `ERRORS`."""
+    """Time of each method over that of the first method at each of `ERRORS`."""
     lines = by_method(rows)
     first = next(iter(lines.values()), [])
     floor = ABOVE_REFERENCE * question.uncertainty
@@ -176,9 +176,9 @@ RATIO_NOTE = (
 
 
 def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
-    """Tables, one log-log chart for each question, and data."""
-    rows = [(q.id, *_cells(row)) for q, found in measured for row in found]
-    compared = {q.id: ratios(q, found) for q, found in measured}
+    """Tables, a log-log chart for each question, and data."""
+    rows = [(q.id, *_cells(row)) for q, rows_of in measured for row in rows_of]
+    compared = {q.id: ratios(q, rows_of) for q, rows_of in measured}
     tables = [
         Table("Time over error", COLUMNS, rows),
         Table(
@@ -194,11 +194,11 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
         "machine": {"processor": processor(), **environment()},
         "questions": [
             {"id": q.id, "title": q.title, "reference": q.reference, "uncertainty": q.uncertainty}
-            | {"rows": [asdict(row) for row in found], "ratios": compared[q.id]}
-            for q, found in measured
+            | {"rows": [asdict(row) for row in rows_of], "ratios": compared[q.id]}
+            for q, rows_of in measured
         ],
     }
-    figures = [_figure(q, found) for q, found in measured]
+    figures = [_figure(q, rows_of) for q, rows_of in measured]
     return Result(tables=[*tables, references], figures=figures, data=data)
 
 
@@ -225,7 +225,7 @@ def _figure(question: Question, rows: Sequence[Row]) -> Figure:
 
 
 def processor() -> str:
-    """Its name."""
+    """Name of the processor."""
     import platform
     from pathlib import Path
 

@@ -1,7 +1,7 @@
 """Benchmark problems of the nonlinear chain, and its departure from the linear chain by axial inertia.
 
-Rigid links cannot stretch, so that bending draws the tip in and accelerates the chain's mass along x: an inertia of
-relative size (kL)^2 <theta^2>, which grows with the square of the force. Links that stretch by EA/l have part of it.
+Rigid links do not stretch: bending shortens the chain and accelerates its mass along x, an inertia of relative size
+(kL)^2 <theta^2>, which grows with the square of the force. It is smaller for links that stretch with EA/l.
 """
 
 from collections.abc import Sequence
@@ -31,21 +31,21 @@ from verify.errors import InputError
 from verify.options import Inertia, Links, Tip, Wall
 from verify.problem.beam import Beam, PointForce
 from verify.segments.chain import link_inertia
-from verify.validation import check_number, check_whole
+from verify.validation import check_integer, check_number
 
 CANTILEVER = Beam(
     length=1.0, width=1.2, thickness=0.01, youngs_modulus=1e7, density=1000.0, supports=("clamped", "free")
 )
 EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CANTILEVER.mass_per_length)
-"""Bending stiffness of the cantilever, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
+"""EI of `CANTILEVER`, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
 NODE = 1e-9
-"""Displacement over that of the free beam, F / (m omega^2), below which a place is a node but for rounding."""
+"""Displacement over that of the free beam, F / (m omega^2), below which a position is a node within rounding."""
 START_PHASES = (0.0, 45.0, 90.0, 135.0)
 """Phases of the drive at the start, deg; 180 more mirrors the motion."""
 
 
 def silent(part: float) -> None:
-    """Show no progress."""
+    """Ignore progress."""
 
 
 def cantilever_tip(load: float, count: int, wall: Wall = "gregory") -> Bent:
@@ -57,20 +57,20 @@ def cantilever_tip(load: float, count: int, wall: Wall = "gregory") -> Bent:
 
 
 def rollup_gap(count: int, wall: Wall = "half", turns: float = 1.0) -> float:
-    """Distance of the ends over L of a cantilever under an end moment 2 pi EI / L times `turns`.
+    """Distance between the ends over L of a cantilever under an end moment 2 pi EI / L times `turns`.
 
-    Equal joints, the wall's 2EI/l among them, close the circle exactly; Gregory's weights leave a gap.
+    Equal joints, with 2EI/l at the wall, close the circle exactly; Gregory's weights leave a gap.
     """
     return float(np.hypot(*bend(CANTILEVER, count, moment=2.0 * pi * turns * EI, wall=wall).tip))
 
 
 def hanging_frequency(mode: int, count: int) -> float:
-    """Omega sqrt(L / g) of uniform links hanging from a pin, without springs.
+    """Natural frequency omega sqrt(L / g) of uniform links without springs that hang from a pin.
 
-    sqrt(3/2) for one link; its limit j_{0,n} / 2 (Daniel Bernoulli) is approached with order 2. Raises InputError for
-    more modes than links.
+    sqrt(3/2) for one link; it converges to j_{0,n} / 2 (Daniel Bernoulli) with order 2. Raises InputError for more
+    modes than links.
     """
-    check_whole("segments", count, mode)
+    check_integer("segments", count, mode)
     unit, zero = np.full(count, 1.0 / count), np.zeros(count)
     links = {"lengths": unit, "masses": unit, "inertias": link_inertia(unit, unit)}
     system = ChainSystem(**links, stiffness=zero, dashpots=zero, gravity=(1.0, 0.0))
@@ -78,12 +78,12 @@ def hanging_frequency(mode: int, count: int) -> float:
 
 
 def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregory") -> float:
-    """Omega sqrt(rho A L^4 / EI) of a cantilever in the plane of its hub's rotation, `speed` in the same unit.
+    """Lead-lag frequency omega sqrt(rho A L^4 / EI) of a rotating cantilever, hub speed `speed` in the same unit.
 
-    Lead-lag: its square is that of the flapping beam less the speed's (A. D. Wright et al., J. Appl. Mech. 49 (1982)
-    197). Order 2, by the centrifugal force. Raises InputError for more modes than links.
+    Its square is the square of the flapping frequency less that of the speed (A. D. Wright et al., J. Appl. Mech. 49
+    (1982) 197). Order 2, due to the centrifugal force. Raises InputError for more modes than links.
     """
-    check_whole("segments", count, mode)
+    check_integer("segments", count, mode)
     system = replace(build_system(CANTILEVER, count, wall=wall), rotation=Rotation(rate=speed * OMEGA))
     return float(linearise(system, at_rest(system)).frequencies()[mode - 1]) / OMEGA
 
@@ -91,10 +91,10 @@ def rotating_frequency(mode: int, count: int, speed: float, wall: Wall = "gregor
 def _sine_shape(
     beam: Beam, count: int, amplitude: float, axial_spring: float = 0.0
 ) -> tuple[ChainSystem, ChainState, float]:
-    """Chain between hinges, its state at rest on amplitude sin(pi x / L), and its first linear frequency, rad/s."""
+    """(chain between hinges, state at rest with w = amplitude sin(pi x / L), first linear frequency, rad/s)."""
     if beam.supports != ("pinned", "pinned"):
-        raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark is of a beam with pinned ends")
-    check_whole("segments", count, 2)
+        raise InputError(f"beam.supports = {list(beam.supports)!r}: this benchmark takes pinned ends, give those")
+    check_integer("segments", count, 2)
     check_number("amplitude", amplitude / beam.length, "of the length at mid-span", above=0, at_most=0.1)
     system = replace(build_system(beam, count), axial_spring=axial_spring)
     rise = np.diff(amplitude * np.sin(pi * np.arange(count + 1) / count)) / system.lengths
@@ -103,7 +103,7 @@ def _sine_shape(
 
 
 def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress: Progress = silent) -> float:
-    """First frequency between immovable hinges over the linear chain's, `amplitude` in radii of gyration sqrt(I/A).
+    """First frequency between immovable hinges over the linear one; `amplitude` in radii of gyration sqrt(I/A).
 
     The immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J. Appl. Mech. 17 (1950) 35): q'' +
     q + a^2/4 q^3 = 0, which a chain of equal links obeys but for the square of its slopes. Raises InputError for a
@@ -119,16 +119,16 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress
     motion = simulate(system, start, times, tolerance=1e-10, progress=progress)
     check_moved(motion)
     middle = motion.deflection([0.5 * beam.length])[:, 0]
-    k = int(np.argmax(middle <= 0.0))  # stiffer than linear: back within a quarter of the linear period
+    k = int(np.argmax(middle <= 0.0))  # stiffer than linear: zero within a quarter of the linear period
     return pi / 2.0 / float(np.interp(0.0, [middle[k], middle[k - 1]], [times[k], times[k - 1]])) / linear
 
 
 def energy_drift(
     beam: Beam, count: int, step: float | None = None, tolerance: float = 1e-8, progress: Progress = silent
 ) -> float:
-    """Largest change of energy over the energy of an undamped roller-ended chain released from L/20 sin(pi x/L).
+    """Largest relative change of energy of an undamped roller-ended chain released from L/20 sin(pi x/L).
 
-    Over a period of the linear first mode, by RK4 where a step (s) is given, else adaptive. Raises InputError.
+    Over a period of the linear first mode, by RK4 with `step` (s), adaptive for None. Raises InputError.
     """
     system, start, linear = _sine_shape(beam, count, 0.05 * beam.length)
     times = np.linspace(0.0, 2.0 * pi / linear, 65)
@@ -142,10 +142,10 @@ def energy_drift(
 def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progress = silent) -> float:
     """Largest residual of a chain's energy balance over its damping loss.
 
-    A hub that rotates and swings, an eccentric harmonic load with a moment and dashpots do work; the tip is free or a
-    roller on an axial spring.
+    Work is done by a hub that rotates and oscillates, an eccentric harmonic load with a moment, and dashpots; the tip
+    is free, or a roller with an axial spring.
     """
-    check_whole("segments", count, 3)
+    check_integer("segments", count, 3)
     force, moment, hertz = (0.2 * EI, -0.4 * EI), 0.13 * EI, 0.9 * OMEGA
     load = LinkLoad(link=count, at=0.3 / count, force=force, moment=moment, frequency_hz=hertz, phase_deg=40.0)
     system = replace(
@@ -163,15 +163,15 @@ def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progr
 
 
 def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
-    """Largest error of the surface slope of a chain in one of its modes on the piece at x, over the largest slope.
+    """Largest error of the contact line's slope in a mode on the piece at x, over the largest slope.
 
-    The exact mode is the reference. Order 3, at a clamped wall 1.
+    Reference: the exact mode. Order 3, at a clamped wall 1.
     """
     from verify.analytic_modes import ExactModel
     from verify.segment_model import SegmentModel
     from verify.segments.reading import contact_piece
 
-    check_whole("segments", count, 2)
+    check_integer("segments", count, 2)
     system, exact = build_system(beam, count), ExactModel(beam)
     joints = SegmentModel(beam, count).modes(mode).readings["raw"]()[mode - 1]
     link, _ = link_at(system, x)
@@ -183,9 +183,9 @@ def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
 
 
 def linear_deflection(system: ChainSystem, times: Array, x: float | Array) -> Array:
-    """Deflection at x of the linearised chain from rest, undamped, by its modes, (n,) or (n, len(x)), m.
+    """Deflection at x of the undamped linearised chain from rest by modal superposition, (n,) or (n, len(x)), m.
 
-    The system is straight and its loads are transverse and harmonic. Raises InputError for x off the chain.
+    For a straight system with transverse harmonic loads. Raises InputError for x off the chain.
     """
     from scipy.linalg import eigh
 
@@ -226,7 +226,7 @@ def transient(
     tolerance: float = 1e-9,
     progress: Progress = silent,
 ) -> ChainMotion:
-    """The chain from rest under harmonic forces; links without inertia along x ("transverse") or of axial stiffness EA.
+    """The chain from rest under harmonic forces; rigid links ("full", "transverse") or links that stretch ("elastic").
 
     Raises InputError for a run that diverges, and for large rotations that a second run does not confirm.
     """
@@ -236,10 +236,10 @@ def transient(
 
 
 class Departure(NamedTuple):
-    """Deflection of a nonlinear chain less the linear one's at one place, over the rms of the latter."""
+    """Deflection of the nonlinear less the linear chain at one position, over the rms of the latter."""
 
     end: float
-    """At the end of the run."""
+    """Value at the end of the run."""
     rms: float
     slope: float
     """Rms rotation of the links, rad."""
@@ -256,14 +256,14 @@ def departure(
     inertia: Inertia = "full",
     progress: Progress = silent,
 ) -> Departure:
-    """Effect of axial inertia on the deflection at x (mid-span unless given) from rest. Raises InputError at a node."""
+    """Effect of axial inertia on the deflection at x (default: mid-span) from rest. Raises InputError at a node."""
     x = 0.5 * beam.length if x is None else x
     times = np.linspace(0.0, duration, max(1001, ceil(40 * frequency_hz * duration) + 1))
     system = build_system(beam, count, forces, frequency_hz)
     linear = linear_deflection(system, times, x)
     largest = max(abs(load.force[1]) for load in system.loads)
     if not rms(linear) > NODE * largest / (system.masses.sum() * (2.0 * pi * frequency_hz) ** 2):
-        raise InputError(f"x = {x!r}: the beam does not move there under these forces, give another place")
+        raise InputError(f"x = {x!r}: these forces do not move the beam at this position, give another")
     motion = transient(beam, forces, frequency_hz, times, count, inertia=inertia, tolerance=1e-10, progress=progress)
     gap = motion.deflection([x])[:, 0] - linear
     return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear), rms(motion.directions()))

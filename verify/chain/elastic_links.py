@@ -1,8 +1,8 @@
-"""Acceleration of the chain whose links stretch (EA / l), under the march of `runge_kutta`: a beam's axial inertia.
+"""Acceleration of the chain of links that stretch (EA / l), for the march of `runge_kutta`: a beam's axial inertia.
 
-A link that stretches evenly moves linearly with its joints: the mass matrix is constant, tridiagonal and the same along
-x and y, and no joint force is unknown. Coordinates are the displacements of joints 0..N from the straight chain, x and
-y in turn, so that small stretches keep their digits.
+The motion of a uniformly stretching link is linear in its joints: the mass matrix is constant, tridiagonal and equal
+for x and y, without unknown joint forces. Coordinates are the displacements of joints 0..N from the straight chain,
+alternating x and y, so that small stretches have no cancellation.
 """
 
 import numpy as np
@@ -14,12 +14,12 @@ from verify.jit import inline, jit
 from verify.segments.chain import joint_masses
 
 LENGTH, MASS, AXIAL, SPRING, DASHPOT, FACTOR = range(6)
-"""Columns of `links`, (N + 1, 9): of link i; then of joint i the factor of L and the reciprocal pivot, for x and y."""
+"""Columns of `links`, (N + 1, 9): data of link i; factor of L and reciprocal pivot of joint i for x and y."""
 
 
 @inline(fastmath={"contract"})
 def strain(links: Array, i: int, u: Array) -> tuple[float, float, float, float]:
-    """Length, cosine, sine and stretch of a link."""
+    """(length, cosine, sine, stretch) of a link."""
     length, dx, dy = links[i, LENGTH], u[2 * i + 2] - u[2 * i], u[2 * i + 3] - u[2 * i + 1]
     now = np.sqrt((length + dx) ** 2 + dy * dy)
     return now, (length + dx) / now, dy / now, (dx * (2.0 * length + dx) + dy * dy) / (now + length)
@@ -27,7 +27,7 @@ def strain(links: Array, i: int, u: Array) -> tuple[float, float, float, float]:
 
 @inline(fastmath={"contract"})
 def twist(force: Array, i: int, now: float, c: float, s: float, moment: float) -> None:
-    """A moment on a link as forces across it at both of its joints."""
+    """Add a moment on a link as transverse forces at its joints."""
     x, y = moment / now * s, moment / now * c
     force[2 * i] += x
     force[2 * i + 1] -= y
@@ -85,7 +85,7 @@ def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
     links = np.zeros((n + 1, 9))
     springs = system.axial_stiffness / lengths
     links[:-1, :FACTOR] = np.stack([lengths, system.masses, springs, system.stiffness, system.dashpots], axis=1)
-    # L D L^T of the mass matrix: the pivot of a joint that is not free has the reciprocal 0
+    # L D L^T of the mass matrix, with reciprocal pivot 0 at a fixed joint
     diagonal, coupling = joint_masses(system.masses, system.inertias, lengths)
     for axis in range(2):
         reciprocal, fixed = 0.0, axis == 1 and system.tip == "roller"

@@ -1,4 +1,4 @@
-"""Positions, velocities and energies of a nonlinear chain at one time or many, and states that meet its roller."""
+"""Positions, velocities and energies of a nonlinear chain at one or many times, and projection onto its roller."""
 
 from typing import NamedTuple
 
@@ -11,12 +11,12 @@ from verify.validation import check_unmasked
 
 
 class Positions(NamedTuple):
-    """Links at one time, or at times that come first."""
+    """Kinematics of the links; leading dimensions are times."""
 
     directions: Array
     """(..., N), absolute angles, rad."""
     rates: Array
-    """(..., N), of those, rad/s."""
+    """(..., N), angular velocities, rad/s."""
     joints: Array
     """(..., N + 1, 2), m."""
     velocities: Array
@@ -24,7 +24,7 @@ class Positions(NamedTuple):
 
 
 def hub(rotation: Rotation, times: float | Array) -> tuple[Array, Array]:
-    """Angle and rate of the hub's prescribed rotation, rad and rad/s, in the shape of the times."""
+    """(angle, rad, rate, rad/s) of the hub's prescribed rotation, in the shape of the times."""
     time, omega = np.asarray(times, dtype=float), circular(rotation.frequency_hz)
     phase = omega * time + np.deg2rad(rotation.phase_deg)
     angle = rotation.offset + rotation.rate * time + rotation.amplitude * np.sin(phase)
@@ -32,7 +32,7 @@ def hub(rotation: Rotation, times: float | Array) -> tuple[Array, Array]:
 
 
 def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array) -> Positions:
-    """Links by relative angles and rates, (..., N), at times (...)."""
+    """Kinematics of the links from relative angles and rates, (..., N), at times (...)."""
     angle, rate = hub(system.rotation, times)
     directions = np.cumsum(angles, axis=-1) + angle[..., None]
     spins = np.cumsum(rates, axis=-1) + rate[..., None]
@@ -46,7 +46,7 @@ def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array
 
 
 def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
-    """The state with the tip on its roller, and the largest change of an angle or (times 1 s) of a rate.
+    """(state with the tip on its roller, largest change of an angle or (times 1 s) of a rate).
 
     One joint angle depends on the others, that with the longest lever arm: the links beyond it turn as one, and their
     rate cancels the tip's across. Raises InputError where they do not reach the roller, for a wrong shape and a value
@@ -75,7 +75,7 @@ def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
 
 
 def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
-    """A state without motion, straight unless angles are given, on its roller."""
+    """A state at rest with `angles` (default: straight), projected onto the roller."""
     still = np.zeros(system.n_links)
     return project(system, ChainState(still if angles is None else angles, still))[0]
 

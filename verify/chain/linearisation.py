@@ -11,9 +11,9 @@ from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
 
 FLUTTER = 1e-6
-"""Share of real and imaginary part above which a root of a rotating chain is flutter and not rounding."""
+"""Ratio of real and imaginary part above which a root of a rotating chain is flutter and not rounding."""
 ROUNDING = 1e-13
-"""Relative rounding of the roots of a dense eigenvalue problem."""
+"""Relative rounding error of the roots of a dense eigenvalue problem."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class Linearisation:
     """(n, N), m: derivatives of the roller's y; n = 0 for a free tip."""
 
     def independent(self) -> Array:
-        """Basis (N, N - n) of the admissible motions, by coordinate partitioning: the longest lever arm depends.
+        """Basis (N, N - n) of the admissible motions; the angle with the longest lever arm is dependent.
 
         R. A. Wehage and E. J. Haug, J. Mech. Design 104 (1982) 247.
         """
@@ -46,7 +46,7 @@ class Linearisation:
     def squares(self) -> Array:
         """Signed squares of the undamped circular frequencies, (N - n,), ascending, 1/s^2; negative where unstable.
 
-        Squares within rounding are 0. Raises InputError where a bent rotating chain flutters.
+        Squares within rounding are 0. Raises InputError for flutter of a bent rotating chain.
         """
         from scipy.linalg import LinAlgError, eigh
 
@@ -61,9 +61,9 @@ class Linearisation:
                 raise InputError("the equilibrium is unstable: flutter, give a smaller load or a slower rotation.rate")
             squares = np.sort(-(roots**2).real)[::2]  # roots come in pairs of both signs
             return np.where(abs(squares) <= ROUNDING * abs(squares).max(), 0.0, squares)
-        try:  # the inverse problem keeps the digits of low frequencies
+        try:  # low frequencies are accurate in the inverse problem
             return np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1])
-        except LinAlgError:  # unstable, or free to rotate as a whole
+        except LinAlgError:  # unstable, or with a rigid-body rotation
             squares = eigh(stiffness, mass, eigvals_only=True)
             return np.where(abs(squares) <= n * np.finfo(float).eps * abs(squares).max(), 0.0, squares)
 
@@ -80,17 +80,17 @@ class Linearisation:
 
 
 def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
-    """The chain's equations linearised about an equilibrium under its constant loads, in the frame of its hub.
+    """Equations of the chain linearised about an equilibrium under constant loads, in the frame of the hub.
 
-    About the straight chain the matrices are those of `SegmentModel`. Raises InputError for a moving state, and where
-    the chain is upright below its roller.
+    About the straight chain the matrices are those of `SegmentModel`. Raises InputError for a moving state, and for a
+    chain perpendicular to the path of its roller.
     """
     if np.any(state.rates):
-        raise InputError("state.rates: a chain is linearised about an equilibrium, give rates of zero")
+        raise InputError("state.rates: the linearisation is about an equilibrium, give zero rates")
     angles = np.asarray(state.angles, dtype=float)
     at, products = potential(system, angles), inertia_products(system)
     if system.tip == "roller" and abs(at.closure).max() <= 1e-9 * system.length:
-        raise InputError("state.angles: the chain stands upright below its roller, give others")
+        raise InputError("state.angles: the chain is perpendicular to the path of its roller, give others")
     theta = np.cumsum(angles) + system.rotation.constant
     difference = np.subtract.outer(theta, theta)
     transverse = products * np.outer(np.cos(theta), np.cos(theta))

@@ -1,7 +1,7 @@
 """The nonlinear chain in time: `simulate` with rigid links, `simulate_elastic` with stretching ones, `from_rest`.
 
-Links that turn far soon move chaotically: step errors grow by a factor in each of their swings, and a result with all
-digits may have none right. `from_rest` confirms such a motion by a second run, at ten times the tolerance.
+Large rotations are soon chaotic: step errors grow by a factor per swing until no digit is correct. `from_rest`
+confirms such a motion by a second run with ten times the tolerance.
 """
 
 from abc import ABC, abstractmethod
@@ -19,7 +19,7 @@ from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
 from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
-from verify.validation import check_number, check_unmasked, check_word
+from verify.validation import check_choice, check_number, check_unmasked
 
 if TYPE_CHECKING:
     from verify.chain.runge_kutta import Marched
@@ -30,7 +30,7 @@ Progress = Callable[[float], None]
 FAR = 0.3
 """Rotation of links, rad, above which a motion from rest is confirmed by a second run."""
 AGREED = 0.01
-"""Distance of two runs over the largest deflection up to which the second confirms the first."""
+"""Largest distance of two runs, over the largest deflection, at which the second confirms the first."""
 
 
 class ChainStatistics(Statistics, frozen=True, kw_only=True):
@@ -38,9 +38,9 @@ class ChainStatistics(Statistics, frozen=True, kw_only=True):
 
     method: Method
     rejected: int = 0
-    """Steps that the error estimate rejected."""
+    """Number of steps that the error estimate rejected."""
     correction: float = 0.0
-    """Largest change of an angle or (times 1 s) rate that brought the start onto the roller."""
+    """Largest change of an angle or (times 1 s) of a rate by the projection of the start onto the roller."""
     furthest: float
     """Largest rotation of a link from the straight chain, rad, at the ends of steps; of stretching links at samples."""
 
@@ -84,12 +84,12 @@ class RigidMotion(ChainMotion):
 
     @property
     def angles(self) -> Array:
-        """Relative, (n, N), rad."""
+        """Relative angles, (n, N), rad."""
         return np.diff(self.directions(), prepend=hub(self.system.rotation, self.times)[0][:, None])
 
     @property
     def rates(self) -> Array:
-        """Of the relative angles, (n, N), rad/s."""
+        """Rates of the relative angles, (n, N), rad/s."""
         n = self.system.n_links
         return np.diff(self.states[:, n : 2 * n], prepend=hub(self.system.rotation, self.times)[1][:, None])
 
@@ -184,7 +184,7 @@ def step_limit(system: ChainSystem) -> float:
 def _stable_step(omega: float, damping: float) -> float:
     """The stable step of RK4 for roots of lambda^2 + damping lambda + omega^2 = 0, s.
 
-    2 sqrt(2) on the imaginary axis; the least radius of the stability region over the left half plane is 2.6156, at
+    2 sqrt(2) on the imaginary axis; the least radius of the stability region in the left half plane is 2.6156, at
     122.6 degrees.
     """
     fastest = max(omega, 0.5 * damping + np.sqrt(max(0.25 * damping**2 - omega**2, 0.0)))
@@ -212,14 +212,14 @@ def simulate(
     tolerance: float = 1e-8,
     progress: Progress = lambda part: None,
 ) -> RigidMotion:
-    """The motion from `start`, at `times` (ascending, from start.time on), of which the last is a step's exact end.
+    """The motion from `start` at ascending `times`, from start.time on; the last one is the exact end of a step.
 
     "rk4" takes a fixed `step`, at most `step_limit`; "adaptive" is Dormand and Prince's pair of orders 5 and 4, its
     error per step at most `tolerance` of the largest motion so far. A start off the roller is projected. Raises
     InputError.
     """
     began = perf_counter()
-    check_word("method", method, get_args(Method))
+    check_choice("method", method, get_args(Method))
     if (method == "rk4") != (step is not None):
         raise InputError(f"step = {step!r}: give a step in seconds with method = 'rk4', and none with 'adaptive'")
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
@@ -338,6 +338,6 @@ def from_rest(
 
 
 def check_moved(motion: ChainMotion) -> None:
-    """Raise InputError for a motion that did not reach its end."""
+    """Raise InputError for a run that did not reach its end."""
     if not motion.statistics.finished:
         raise InputError(f"the chain's motion {motion.statistics.stopped}: give smaller forces or a smaller step")

@@ -18,24 +18,24 @@ from verify.chain.system import ChainState, ChainSystem, circular
 from verify.jit import FAST, inline, jit
 
 HALF, MASS_X, MASS_Y, INERTIA, SKEW, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y = range(9)
-"""Columns of `links`, (N, 9): half length, mass that resists along x and y, inertia J + h^2 m_y about an end, (m_x -
-m_y)/4, joint, weight."""
+"""Columns of `links`, (N, 9): half length, mass for x and y, inertia J + h^2 m_y about an end, (m_x - m_y)/4, joint,
+weight."""
 ARM, FX, FY, MOMENT, OMEGA, PHASE, LINK = range(7)
-"""Columns of `loads`, (n_loads, 7): a load on link 0..N-1, its arm from the middle; times cos(omega t + phase)."""
+"""Columns of `loads`, (n_loads, 7): link 0..N-1, arm from its middle, load, which is times cos(omega t + phase)."""
 OFFSET, RATE, SWING, SWING_OMEGA, SWING_PHASE, ROLLER, TIP_SPRING, PIVOT, LENGTH = range(9)
-"""Entries of `numbers`: rotation of the hub, roller, axial spring there, dependent joint; length."""
+"""Entries of `numbers`: rotation of the hub, roller, its axial spring, dependent joint, length."""
 COS, SIN, TORQUE, FORCE_X, FORCE_Y, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(11)
 """Columns of `scratch`, (N + 1, 11); `UNIT` ends as accelerations per force of the roller, the last the tip's."""
 TINY = 1e-250
 """Forces below this are zero: they fall by 0.27 a link, and subnormal numbers take a hundred times as long."""
 SHORT_ARM = 0.1
-"""A dependent joint is exchanged, for the next stage, where its lever arm falls below this part of the chain."""
+"""Lever arm of the dependent joint over the chain's length below which another joint becomes dependent."""
 Tip = tuple[float, float, float, float, float, float]
 
 
 @inline(fastmath=FAST)
 def directions(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -> Tip:
-    """Cosines and sines of links; the tip's y and its rate due to links before `pivot`, x, y, their rates beyond."""
+    """Write cosines and sines of links; return the tip's y and its rate due to links before and after `pivot`."""
     n, largest = theta.size, 0.0
     for i in range(n):
         largest = max(largest, abs(theta[i]))
@@ -69,7 +69,7 @@ def close(tip: Tip, links: Array, numbers: Array, w: Array) -> tuple[float, floa
             arm += 2.0 * links[i, HALF] * w[i, COS]
             if abs(arm) > longest:
                 longest, numbers[PIVOT] = abs(arm), i
-    # the links beyond end at -rise from the dependent joint, on the side where they are
+    # the links after the dependent joint end at -rise from it, on their present side
     square, along = x * x + y * y, np.copysign(np.sqrt(x * x + y * y - rise * rise), x)
     c, s = (along * x - rise * y) / square, -(rise * x + along * y) / square
     turn = s * (1.0 + s * s / 6.0) if abs(s) < 1e-3 else np.arctan2(s, c)
@@ -78,12 +78,12 @@ def close(tip: Tip, links: Array, numbers: Array, w: Array) -> tuple[float, floa
 
 @inline(fastmath={"contract"})
 def from_tip(links: Array, pull: float, w: Array, out: Array) -> None:
-    """Gains, free and unit terms of the links from directions, torques and forces in `w`, and a force at the tip."""
+    """Backward recursion: gains, free and unit terms of the links, from torques and forces in `w` and a tip force."""
     b11, b12, b22, f1, f2, r1, r2 = 0.0, 0.0, 0.0, -pull, 0.0, 0.0, -1.0
     for i in range(links.shape[0] - 1, -1, -1):
         hs, hc = 2.0 * links[i, HALF] * w[i, SIN], 2.0 * links[i, HALF] * w[i, COS]
         mx, my, p1, p2, ss = links[i, MASS_X], links[i, MASS_Y], w[i, FORCE_X], w[i, FORCE_Y], hs * hs
-        # the recursion is as long as its latency: three fused products, a division, another product
+        # the latency of the recursion limits speed: three fused products, a division, another product
         own = links[i, INERTIA] + links[i, SKEW] * ss
         g = 1.0 / ((own + b11 * ss) + (b22 * (hc * hc) - b12 * (2.0 * hs * hc)))
         u1, u2 = b12 * hc - (b11 + 0.5 * mx) * hs, (b22 + 0.5 * my) * hc - b12 * hs
@@ -99,9 +99,9 @@ def from_tip(links: Array, pull: float, w: Array, out: Array) -> None:
 
 @inline(fastmath={"contract"})
 def from_base(links: Array, roller: bool, drift: float, w: Array, out: Array) -> None:
-    """Angular accelerations, (N,), from the terms of `from_tip`; those per unit force at the tip remain in `w`.
+    """Forward recursion: angular accelerations, (N,), from the terms of `from_tip`; those per unit tip force in `w`.
 
-    `drift` is the tip's acceleration across by the present rates.
+    `drift` is the tip's transverse acceleration due to the present rates.
     """
     a1, a2, r1, r2 = 0.0, 0.0, 0.0, 0.0
     n = out.size
@@ -119,7 +119,7 @@ def from_base(links: Array, roller: bool, drift: float, w: Array, out: Array) ->
 
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath=FAST)
 def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbers: Array, w: Array) -> None:
-    """Derivatives of rates, dissipation and work into out[N:], after the closure of a rolling tip."""
+    """Write derivatives of rates, dissipation and work to out[N:], after the closure of a tip on a roller."""
     n = links.shape[0]
     theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, int(numbers[PIVOT])
     turn, change, cos_turn, sin_turn = close(directions(theta, omega, links, pivot, w), links, numbers, w)
@@ -191,7 +191,7 @@ def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
 
 
 def begin(system: ChainSystem, state: ChainState, numbers: Array) -> Array:
-    """The march's state, (2 N + 2,), of relative angles and rates; the joint of the longest lever arm depends."""
+    """Initial state of the march, (2 N + 2,); the joint with the longest lever arm is dependent."""
     placed = place(system, state.time, state.angles, state.rates)
     numbers[PIVOT] = np.argmax(abs(placed.joints[-1, 0] - placed.joints[:-1, 0]))
     return np.concatenate([placed.directions, placed.rates, [0.0, 0.0]])

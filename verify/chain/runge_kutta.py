@@ -1,8 +1,8 @@
 """Explicit Runge-Kutta march of q'' = a(t, q, q') by tableau; the acceleration is an argument of the compiled march.
 
-The state y is (coordinates, their rates, quadratures), (2 n + m,): an acceleration writes the derivatives of the rates
-and of the quadratures into out[n:], and may bring y onto its constraints beforehand. Dependent coordinates are then
-functions of the independent ones in every stage (coordinate partitioning), and only the latter are integrated.
+The state y is (coordinates, their rates, quadratures), (2 n + m,). The acceleration writes the derivatives of rates and
+quadratures to out[n:], and may first project y onto its constraints: dependent coordinates are then functions of the
+independent ones in every stage (coordinate partitioning), and only the latter are integrated.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from verify.jit import FAST, inline, jit
 _vector, _table = types.Array(types.float64, 1, "C"), types.Array(types.float64, 2, "C")
 MODEL = (_table, _table, _vector, _table)
 ACCELERATION = types.void(types.float64, _vector, _vector, *MODEL)
-"""accelerate(t, y, out, links, loads, numbers, scratch): the last four are the acceleration's own data."""
+"""accelerate(t, y, out, links, loads, numbers, scratch), the last four being data of the acceleration."""
 MARCH = types.int64(
     types.FunctionType(ACCELERATION), *MODEL, _table, _vector, _vector, types.int64, _vector, _table, _vector, _vector,
     _table, _vector, types.Array(types.int64, 1, "C"), types.int64,
@@ -26,7 +26,7 @@ RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
 TIME, STEP = 0, 1
 """Entries of `clock`."""
 RELATIVE, ABSOLUTE, ABSOLUTE_RATE, TURN, LARGEST, LARGEST_RATE, FURTHEST = range(7)
-"""Entries of `control`: tolerances, largest mean change of a coordinate in a step; largest rms, coordinate so far."""
+"""Entries of `control`: tolerances, largest mean change of a coordinate per step, largest rms and coordinate so far."""
 STEPS, REJECTED, EVALUATIONS, KEPT = range(4)
 """Entries of `counts`."""
 
@@ -39,7 +39,7 @@ class Tableau(NamedTuple):
     c: Array
     """(s,)."""
     weights: Array
-    """(s + 1,) of the error estimate of an order 4, the last for the derivative at the result; empty without one."""
+    """(s + 1,), error estimate of order 4, the last for the derivative at the result; empty for fixed steps."""
 
 
 def _tableau(rows: list[list[float]], c: list[float], weights: list[float]) -> Tableau:
@@ -67,7 +67,7 @@ DORMAND_PRINCE = _tableau(
 
 @inline(fastmath={"contract"})
 def interpolate(n: int, s: float, h: float, y: Array, new: Array, k0: Array, k1: Array, out: Array) -> None:
-    """The state at a part s of a step: quintic Hermite in the coordinates, its derivative in the rates."""
+    """The state at fraction s of a step: quintic Hermite interpolation of the coordinates and its derivative."""
     r = 1.0 - s
     a0, a1 = r * r * r * (1 + 3 * s + 6 * s * s), s * s * s * (1 + 3 * r + 6 * r * r)
     b0, b1 = h * r * r * r * s * (1 + 3 * s), -h * s * s * s * r * (1 + 3 * r)
@@ -88,9 +88,9 @@ def interpolate(n: int, s: float, h: float, y: Array, new: Array, k0: Array, k1:
 def control_step(
     n: int, h: float, weights: Array, y: Array, k: Array, trial: Array, control: Array
 ) -> tuple[bool, float]:
-    """Whether a step's estimated error lies within its tolerance, and the next step.
+    """(whether the estimated error of a step is within tolerance, next step).
 
-    The error of coordinates, and that of rates, is the root mean square over that of the largest state so far.
+    The errors of coordinates and of rates are rms values relative to those of the largest state so far.
     """
     worst = 0.0
     for i in range(2 * n):
@@ -115,7 +115,7 @@ def step_stages(
     accelerate: Callable[..., None], links: Array, loads: Array, numbers: Array, scratch: Array,
     a: Array, c: Array, n: int, t: float, h: float, y: Array, k: Array, new: Array,
 ) -> None:  # fmt: skip
-    """The result of a step into `new`, derivatives of stages 1 to s and at the result into k[1:]."""
+    """Write the result of a step to `new`, the derivatives of stages 1 to s and at the result to k[1:]."""
     for s in range(1, c.size + 1):
         first = h * a[s, 0]
         for i in range(y.size):
@@ -132,7 +132,7 @@ def step_stages(
 
 @inline(fastmath=FAST)
 def take(n: int, new: Array, rates: Array, y: Array, k0: Array, control: Array) -> float:
-    """Make the result of a step the state; the mean modulus of its rates."""
+    """Accept the result of a step as state; returns the mean modulus of its rates."""
     furthest, total = control[FURTHEST], 0.0
     for i in range(y.size):
         y[i], k0[i] = new[i], rates[i]
@@ -165,7 +165,7 @@ def march(
         if counts[KEPT] >= samples.size:
             return DONE
         t, h = clock[TIME], clock[STEP]
-        closing = t + h * (1.0 + 1e-9) >= end  # a rest below rounding is part of the last step
+        closing = t + h * (1.0 + 1e-9) >= end  # a remainder below rounding is part of the last step
         if closing:
             h = end - t
         if t + h == t:
@@ -194,11 +194,11 @@ class Marched(NamedTuple):
     """Outcome of `integrate`."""
 
     kept: Array
-    """(samples reached, y.size), states."""
+    """(completed samples, y.size), states."""
     status: int
     """DONE, DIVERGED or TOO_SMALL."""
     time: float
-    """Where the march ended, s."""
+    """End time of the march, s."""
     step: float
     """The last step, s."""
     counts: Indices

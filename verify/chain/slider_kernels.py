@@ -1,9 +1,9 @@
 """The compiled loop of sliders on the nonlinear chain, by the contact functions of `dynamics`.
 
-Columns of the surface are the components of the N links across, then their changes along x. One-way they follow from
-states at half steps; two-way the chain marches every step with the contact forces as dead loads on its joints, of the
-same virtual power as at the surface, until forces and motion agree. The response is the exact difference of two
-marches.
+Columns of the surface are the transverse components of the N links, then their changes along x. With one-way coupling
+they follow from states at half steps. With two-way coupling every step of the chain is repeated with the contact forces
+as dead loads on its joints, of equal virtual power, until forces and motion agree; the response is the exact difference
+of two marches.
 """
 
 import numpy as np
@@ -19,13 +19,13 @@ from verify.dynamics.kinematics import END, HALF, MIDDLE, RATE, START, VALUE, fi
 from verify.jit import inline, jit
 
 CORRECTIONS = 20
-"""Marches of a step before it counts as not converged."""
+"""Largest number of marches of a step before it is not converged."""
 AGREED = 1e-9
-"""Change of a force between two marches, over the load, at which they agree."""
+"""Tolerance of the change of a force between two marches, over the load."""
 STALE = 3
-"""Marches of a step after which the response is computed anew."""
+"""Number of marches of a step after which the response is recomputed."""
 BUDGET = 1_000_000_000
-"""Steps of one march."""
+"""Largest number of steps of one march."""
 
 
 @inline
@@ -57,7 +57,7 @@ def see(
     when: int, mark: int, dt: float, gravity: float, codes: Indices, table: Array, edges: Array, factors: Array,
     local: Array, stamp: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
 ) -> None:  # fmt: skip
-    """`look` at the surface under every point, and add the speed of its material along x."""
+    """Evaluate the surface under every point (`look`), with the speed of its material along x."""
     for j in range(stamp.size):
         stamp[j] = -1
     look(when, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
@@ -81,7 +81,7 @@ def see(
 
 @inline
 def set_shapes(table: Array, edges: Array, points: Array, contacts: Array, indices: Indices, shapes: Array) -> None:
-    """Tangential and normal speed of the surface at every point by unit rates of all columns, in mid-step."""
+    """Tangential and normal speed of the surface at every point per unit rate of each column, in mid-step."""
     m = table.shape[2]
     for i in range(points.shape[0]):
         piece, at, above, slope = (
@@ -102,7 +102,7 @@ def set_shapes(table: Array, edges: Array, points: Array, contacts: Array, indic
 
 @inline
 def load_joints(forces: Array, points: Array, shapes: Array, loads: Array) -> None:
-    """Dead loads at the far joints of all links, the last rows, of the power of minus `forces` (points, 2)."""
+    """Write dead loads at the far joints of all links (last rows) with the power of minus `forces` (points, 2)."""
     m = shapes.shape[2] // 2
     first = loads.shape[0] - m
     for axis in range(2):
@@ -127,7 +127,7 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
     samples: Array, heights: Array, pressures: Array, deflections: Array, events: Array, tally: Indices, sums: Array,
     before: Array, balance: Array,
 ) -> int:  # fmt: skip
-    """Advance by up to n_steps from step tally[STEP]; why it returns.
+    """Advance by up to n_steps from step tally[STEP]; returns the reason of the end.
 
     `states` are those of half steps, (2 steps + 1, y.size), or two-way of this step alone, (3, y.size). `unit` is the
     load, N, `limits` the ends of the surface; `forces` (points, 2) act on sliders and feet, tangential and normal.

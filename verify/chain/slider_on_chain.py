@@ -1,7 +1,7 @@
-"""Sliders and feet on the nonlinear chain: the contact of `dynamics`, one-way or acting on the chain.
+"""Sliders and feet on the nonlinear chain with the contact of `dynamics`, coupled one-way or two-way.
 
-The joints define the paper's C2 contact line over the material coordinate; the links shorten the chain, and the surface
-moves along with every point of them. Steps, margins, coupling and result are those of a run on the linear chain.
+The joints define the paper's C2 contact line over the material coordinate; the motion of the surface includes the
+shortening of the chain. Steps, margins, coupling and result are those of a run on the linear chain.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,10 +31,10 @@ from verify.options import Links, Load
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 from verify.segments.reading import contact_line
-from verify.validation import check_number, check_whole
+from verify.validation import check_integer, check_number
 
 RADIANS = 0.5
-"""Phase of the highest mode in a step of the two-way march."""
+"""Phase of the highest mode per step of the two-way march, rad."""
 CHUNK, MARCHED = 20_000, 200
 """Steps between two interrupts, one-way and two-way."""
 
@@ -59,19 +59,18 @@ def slide_on_chain(
     tolerance: float = 1e-9,
     progress: Callable[[float], None] = lambda part: None,
 ) -> Motion:
-    """Sliders, with or without feet, on a chain of `count` links from rest under forces that act at once.
+    """Sliders, with or without feet, on a chain of `count` links from rest under suddenly applied forces.
 
     Arguments are those of `simulate`, and `links`, rigid or stretching by the beam's own EA / l; `load`, the joints
     that take a force; `joint_dashpot`, N m s, of every joint with a spring. One-way the chain moves by adaptive steps
     of `tolerance`; two-way by steps that resolve its highest mode, from its equilibrium under feet. `coupling` and
     `margins` are those of the linear chain; energies of stretching links are not in the balance.
 
-    Raises InputError as `simulate` does; for a hard contact and the straight edges of links; two-way for normal =
-    "held", for feet on stretching links or with a preload that depends on the deflection; for a motion of the chain
-    that is not resolved.
+    Raises InputError as `simulate` does; for hard contact, a raw contact line and an unresolved motion of the chain;
+    with two-way coupling for normal = "bilateral", feet on stretching links, and a preload that depends on deflection.
     """
     began = perf_counter()
-    check_whole("count", count, 2)
+    check_integer("count", count, 2)
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
     request = request_of(
         beam, forces, frequency_hz, duration, model="segment", count=count, modes=None, start="rest",
@@ -86,8 +85,8 @@ def slide_on_chain(
             raise InputError("slider.contact is hard: on a nonlinear chain feet have springs, give contact.stiffness")
         if one.line != "spline":
             raise InputError(f"slider.line = {one.line!r}: contact with a nonlinear chain is along its spline")
-        if request.two_way and one.contact is None and one.normal == "held":
-            raise InputError("slider.normal = 'held': a nonlinear chain responds to friction alone, give 'massless'")
+        if request.two_way and one.contact is None and one.normal == "bilateral":
+            raise InputError("slider.normal = 'bilateral': a nonlinear chain takes friction alone, give 'massless'")
         if request.two_way and one.contact is not None and links == "stretching":
             raise InputError("slider.coupling = 'two-way': stretching links carry feet one-way, give links = 'rigid'")
         if request.two_way and (one.preload_stiffness or any(foot.mirrored for foot in one.feet)):
@@ -100,9 +99,9 @@ def slide_on_chain(
     )
     basis = basis_of(beam, "segment", count, None, "spline")
     stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
-    notes = (f"the nonlinear chain of {links} links from rest; coupling and margins are those of the linear one",)
+    notes = (f"nonlinear chain of {links} links from rest; coupling and margins are those of the linear chain",)
     run = ChainRun.of(request, basis, stages, notes, sequence=not isinstance(slider, Slider))
-    up = np.triu(np.ones((count, count + 1)), 1)  # joints beyond a unit step across rise with it
+    up = np.triu(np.ones((count, count + 1)), 1)  # a unit step of one link displaces all joints after it
     line = contact_line(straight_chain(system), up)
     motion = replace(run, system=system, line=line, tolerance=tolerance).converged(progress)
     statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
@@ -115,7 +114,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     system: Any = None
     """ChainSystem."""
     line: Any = None
-    """Contact line by unit steps across from joint to joint, (x, derivative) -> (N, len(x))."""
+    """Contact line per unit transverse step of each link, (x, derivative) -> (N, len(x))."""
     tolerance: float = 1e-9
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
@@ -130,11 +129,11 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         return z
 
     def _rises(self, contacts: Contacts) -> Array:
-        """Steps across from joint to joint of the equilibrium, (N,), m."""
+        """Transverse steps of the links in equilibrium, (N,), m."""
         return np.asarray(self.system.lengths * np.sin(np.cumsum(self._static(contacts).angles)))
 
     def _static(self, contacts: Contacts) -> ChainState:
-        """Equilibrium of the chain under the load of feet, shared equally among the points on either face."""
+        """Equilibrium of the chain under the load of feet, which the points on each face share equally."""
         system, p, state = self.system, contacts.points, at_rest(self.system)
         if not contacts.presses:
             return state
@@ -153,7 +152,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         return state
 
     def _states(self, steps: Steps, contacts: Contacts, numbers: Array, progress: Progress) -> tuple[Array, float]:
-        """States of the chain at half steps, two-way of the first alone, and the step of the march, s."""
+        """(states of the chain at half steps, with two-way coupling of the first step alone; step of the march, s)."""
         from verify.chain.rigid_links import begin
 
         system = self.system

@@ -1,8 +1,8 @@
 """Static equilibria of the nonlinear chain under dead loads, by Newton's method and continuation in the load.
 
 The potential energy in the absolute angles theta is that of joints, constant loads, gravity, an axial spring at the
-roller and, under a steadily rotating hub, centrifugal forces. Beyond its buckling load a cantilever has several
-equilibria, any of which Newton's method may reach; `bend` follows the path of stable ones from zero load.
+roller and, for a steadily rotating hub, centrifugal forces. Beyond its buckling load a cantilever has several
+equilibria, any of which Newton's method may reach; `bend` follows the path of stable equilibria from zero load.
 """
 
 from dataclasses import replace
@@ -18,16 +18,16 @@ from verify.errors import InputError, shown
 from verify.linear.positions import Numbers, as_vector
 from verify.options import Joints, Wall
 from verify.problem.beam import Beam
-from verify.validation import check_number, check_whole
+from verify.validation import check_integer, check_number
 
 RESIDUAL = 1e-9
 """Tolerance of the residual moment, relative to the largest moment in the chain."""
 LAST_STEP = 1e-7
-"""Radians: Newton's method converges quadratically, so that the step after one this small is rounding."""
+"""Size of a Newton step, rad, after which the next one is rounding (quadratic convergence)."""
 LARGEST_STEP = 0.8
-"""Radians that one Newton step may rotate a link by."""
+"""Largest rotation of a link in one Newton step, rad."""
 CORRECTION = 0.5
-"""Largest correction of a step along the stable path, relative to its predictor; beyond it lies another path."""
+"""Largest correction of a step along the stable path, relative to its predictor; a larger one leads to another path."""
 
 
 class Potential(NamedTuple):
@@ -61,7 +61,7 @@ def inertia_products(system: ChainSystem) -> Array:
 def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potential:
     """The derivatives at relative angles, (N,), under `factor` times the constant loads and gravity.
 
-    Under a steadily rotating hub the frame rotates with it. Raises InputError for what does not rotate with it.
+    The frame rotates with a steadily rotating hub. Raises InputError for loads and supports that do not.
     """
     lengths, n_closures = system.lengths, int(system.tip == "roller")
     theta = system.rotation.constant + np.cumsum(angles)
@@ -103,17 +103,17 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
 
 
 def solve_static(system: ChainSystem, start: ChainState | None = None) -> ChainState:
-    """Equilibrium under the constant loads and gravity, from `start`, by default the straight chain.
+    """Equilibrium under the constant loads and gravity from `start` (default: the straight chain).
 
-    Newton's method on angles and reaction, in O(N) without axial spring and rotation; where it fails the load is
-    raised in smaller parts. Raises InputError where no part converges: an instability, or a mechanism.
+    Newton's method for angles and reaction, O(N) without axial spring and rotation; where it fails, continuation in
+    the load. Raises InputError where that fails: an instability, or a mechanism.
     """
     angles = np.zeros(system.n_links) if start is None else np.array(start.angles, dtype=float)
     angles, share = _raise_load(system, angles, 1.0, 1e-3)
     if share < 1.0:
         raise InputError(
-            f"chain.loads: no equilibrium beyond {share:.3g} of the load; reduce it, or add a support where the chain "
-            "is a mechanism (in Python, give a nearer start)"
+            f"chain.loads: no equilibrium beyond {share:.3g} of the load; reduce it, or add a support if the chain is "
+            "a mechanism (in Python, give a nearer start)"
         )
     return ChainState(angles, np.zeros(system.n_links))
 
@@ -121,7 +121,7 @@ def solve_static(system: ChainSystem, start: ChainState | None = None) -> ChainS
 def _raise_load(
     system: ChainSystem, angles: Array, part: float, least: float, stable: bool = False
 ) -> tuple[Array, float]:
-    """Equilibrium by continuation in the load, and its share: below 1 where parts of relative size `least` fail."""
+    """(equilibrium by continuation in the load, fraction of the load); below 1 where steps of size `least` fail."""
     first, done = part, 0.0
     while done < 1.0:
         share = min(done + part, 1.0)
@@ -136,7 +136,7 @@ def _raise_load(
 
 
 def _newton(system: ChainSystem, start: Array, share: float, stable: bool) -> Array | None:
-    """Relative angles in equilibrium under a share of the load; None where 60 steps do not converge.
+    """Relative angles in equilibrium under a fraction of the load; None if 60 steps do not converge.
 
     With `stable` every iterate must be stable, and corrections small against the first step: beyond a fold Newton's
     method leads to another path.
@@ -164,7 +164,7 @@ def _newton(system: ChainSystem, start: Array, share: float, stable: bool) -> Ar
 
 
 def _stable_step(system: ChainSystem, state: Potential) -> Array | None:
-    """Newton's step (N,) of a chain with a free tip by Cholesky's factors; None unless its stiffness is positive."""
+    """Newton step (N,) of a chain with a free tip by Cholesky factors; None unless its stiffness is positive."""
     from scipy.linalg import LinAlgError, solveh_banded
 
     k = system.stiffness
@@ -176,7 +176,7 @@ def _stable_step(system: ChainSystem, state: Potential) -> Array | None:
 
 
 def _bordered_step(system: ChainSystem, state: Potential, reaction: Array, residual: Array) -> Array:
-    """Newton's step of angles and reaction, (N + n,): tridiagonal but for closure, axial spring and rotation."""
+    """Newton step of angles and reaction, (N + n,): tridiagonal except closure, axial spring and rotation."""
     import warnings
 
     from scipy.sparse import block_array, csc_array, diags_array
@@ -196,7 +196,7 @@ def _bordered_step(system: ChainSystem, state: Potential, reaction: Array, resid
 
 
 class Bent(Struct, frozen=True, eq=False, kw_only=True):
-    """A cantilever of rigid links in equilibrium, clamped at x = 0; x along the straight beam, y across it."""
+    """Equilibrium of a cantilever of rigid links, clamped at x = 0; x along the straight beam, y transverse."""
 
     beam: Beam
     count: int
@@ -204,13 +204,13 @@ class Bent(Struct, frozen=True, eq=False, kw_only=True):
     joints: Array
     """(N + 1, 2), m: (x, y) from the clamp to the tip."""
     angles: Array
-    """(N,), rad: rotation of every link, that of the beam at the link's middle."""
+    """(N,), rad: rotation of each link, equal to that of the beam at the link's middle."""
     turn: float
-    """Rotation of the tip, rad; half a link beyond the last link's middle, bent by the applied moment."""
+    """Rotation of the tip, rad, including the bending of the last half link by the applied moment."""
     moments: Array
-    """(N + 1,), N m: bending moment at every joint, the applied one at the tip."""
+    """(N + 1,), N m: bending moment at each joint; the applied moment at the tip."""
     curvature: Array
-    """(N + 1,), 1/m: moment over EI, of the section on the right where two meet."""
+    """(N + 1,), 1/m: moment over EI, at a step of the right section."""
     energy: float
     """Elastic energy, J: of the joints, and of the last half link under the applied moment."""
 
@@ -241,17 +241,17 @@ def bend(
 ) -> Bent:
     """Large bending of a cantilever of `count` links under a dead `load` (N) and a `moment` (N m) at its tip.
 
-    `load` is one number across the straight beam, or a pair (along, across); its direction is constant. The limit is
-    the elastica (K. E. Bisshopp and D. C. Drucker, Quart. Appl. Math. 3 (1945) 272), approached with order 2 in
-    `count` by tip, turn and energy. A joint represents the half links on either side; the half link at the tip has
-    none and bends under `moment` alone: its part of turn and energy is added. Under a moment alone both are exact, and
-    with wall = "half" the circle closes. Beyond the buckling load the result is the stable equilibrium to which the
-    load leads as it grows in proportion from zero. Raises InputError for supports other than clamped and free, bodies
-    on the beam, axial compression alone beyond the buckling load, and where the stable path ends.
+    `load` is a transverse force, or a pair (axial, transverse), of constant direction. Tip position, rotation and
+    energy converge to the elastica (K. E. Bisshopp and D. C. Drucker, Quart. Appl. Math. 3 (1945) 272) with order 2 in
+    `count`. A joint represents the half links on either side; the last half link has no joint, and its bending under
+    `moment` is added to rotation and energy. Under a moment alone both are exact, and with wall = "half" the circle
+    closes. Beyond the buckling load the result is the stable equilibrium on the path of proportional loading from
+    zero. Raises InputError for supports other than clamped and free, bodies on the beam, pure axial compression beyond
+    the buckling load, and where the stable path ends.
     """
     if beam.supports != ("clamped", "free"):
         raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
-    check_whole("count", count, 2)
+    check_integer("count", count, 2)
     force = as_vector("load", load, "newton")
     if force.shape not in ((1,), (2,)):
         raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")
@@ -288,7 +288,7 @@ def _stable_equilibrium(system: ChainSystem, along: float, across: float, moment
     if along < 0.0 and not across and not moment and -along >= critical:
         raise InputError(
             f"load = {shown((along, across))} N exceeds the buckling load of {critical:.6g} N of the straight "
-            "cantilever, which may buckle to either side: add a small force across, or reduce it"
+            "cantilever, which may buckle to either side: add a small transverse force, or reduce it"
         )
     if size < critical or (along >= 0.0 and not moment):
         angles = solve_static(system).angles
@@ -299,6 +299,6 @@ def _stable_equilibrium(system: ChainSystem, along: float, across: float, moment
         applied = f"load = {shown((along, across))} N" + (f" with moment = {shown(moment)} N m" if moment else "")
         raise InputError(
             f"{applied} buckles the cantilever (buckling load {critical:.6g} N): the path of stable equilibria ends at "
-            f"{share:.6g} of it, give {'another moment' if moment else 'a larger force across'}, or less load"
+            f"{share:.6g} of it, give {'another moment' if moment else 'a larger transverse force'}, or less load"
         )
     return angles

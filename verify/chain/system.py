@@ -18,7 +18,7 @@ from verify.problem.beam import Beam, PointForce
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
-from verify.validation import check_number, check_unmasked, check_word
+from verify.validation import check_choice, check_number, check_unmasked
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +51,7 @@ class LinkLoad:
     at: float
     """Metres from the link's near joint."""
     force: tuple[float, float] = (0.0, 0.0)
-    """(F_x, F_y), newton; it keeps its direction."""
+    """(F_x, F_y), N, of constant direction."""
     moment: float = 0.0
     """N m."""
     frequency_hz: float = 0.0
@@ -77,22 +77,22 @@ class ChainSystem:
     masses: Array
     """(N,)."""
     inertias: Array
-    """(N,), about the middles."""
+    """(N,), kg m^2, about the middles."""
     stiffness: Array
-    """(N,), N m/rad; the first joins the hub, 0 for a pin."""
+    """(N,), N m/rad; the first at the hub; 0 for a pin."""
     dashpots: Array
     """(N,), N m s/rad."""
     tip: Tip = "free"
     axial_spring: float = 0.0
-    """N/m between the roller and the end of the straight chain; EA/L makes an end immovable."""
+    """Spring against axial motion of the roller, N/m; EA/L models an immovable end."""
     axial_stiffness: Array = field(default_factory=lambda: np.zeros(0))
     """(N,), EA of links that stretch, N; (0,) of rigid ones."""
     axial_inertia: bool = True
-    """Whether links resist acceleration along x. Rigid links transmit it entirely, a real beam does not."""
+    """Whether links have inertia along x, which rigid links overestimate."""
     gravity: tuple[float, float] = (0.0, 0.0)
     """m/s^2."""
     rotation: Rotation = Rotation()
-    """Of the hub."""
+    """Rotation of the hub."""
     loads: tuple[LinkLoad, ...] = ()
 
     def __post_init__(self) -> None:
@@ -177,7 +177,7 @@ def build_system(
     ("lever") or to the four joints around it ("reciprocal"); `links` that are "stretching" have the EA of their
     section. Raises InputError for other supports, a loss factor, and forces off the beam.
     """
-    check_word("links", links, LINKS)
+    check_choice("links", links, LINKS)
     left, right = beam.supports
     if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
         raise InputError(
@@ -190,7 +190,7 @@ def build_system(
         raise InputError(
             f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain has no complex modulus in time, give 0"
         )
-    beam.check_added("the nonlinear chain", ("section",))
+    beam.check_features("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = SegmentModel(beam, n_segments, wall=wall, joints=joints).chain
     unit, mass = chain.unit, beam.mass_per_length
@@ -228,7 +228,7 @@ def build_system(
 
 
 def straight_chain(system: ChainSystem) -> Chain:
-    """The linear chain of a system at rest, in SI; its base is a wall if it has a spring."""
+    """The linear chain of a straight system, in SI; its base is a wall if it has a spring."""
     springs = np.append(system.stiffness, 0.0)
     return Chain(
         supports=("clamped" if springs[0] else "pinned", "pinned" if system.tip == "roller" else "free"),

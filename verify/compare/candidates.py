@@ -1,4 +1,4 @@
-"""The candidate discretisations of a beam: wall rule, mass model, theory, and their frequencies at N parts."""
+"""Candidate discretisations of a beam: wall rule, mass model, theory; their frequencies with N parts."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -17,7 +17,7 @@ from verify.problem.beam import Beam
 EXACT, CHAIN, ELEMENTS = "analytic", "segment", "fem"
 EULER = "euler-bernoulli"
 FINE = 60
-"""Segments with which orders are looked up."""
+"""Number of segments for which orders are determined."""
 LABELS = {
     EXACT: "exact beam",
     "links": "rigid links",
@@ -44,13 +44,13 @@ LABELS = {
     "rayleigh": "Rayleigh",
     "timoshenko": "Timoshenko",
 }
-"""Of models, mass, walls, joints, attachments and theories."""
+"""Labels of models, mass, walls, joints, attachments and theories."""
 ORDERS = {"half": 2, "welded": 2, "third-order": 3, "full": 1, "rigid": 1, "stiff": 1}
-"""Highest order of convergence by wall rule; 4 of others."""
+"""Highest order of convergence by wall rule; others 4."""
 
 
 class Candidate(msgspec.Struct, frozen=True, kw_only=True):
-    """One discretisation, N apart: model analytic, segment or fem.
+    """A discretisation without its N: model analytic, segment or fem.
 
     `mass` of a chain: links, points, joints, rod; of elements: consistent, lumped, lumped-rotary, hrz, linear(-lumped).
     `wall`: rule of a chain at a clamped end; None without one.
@@ -65,34 +65,34 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def sized(self) -> bool:
-        """Whether it has N parts."""
+        """Whether the candidate is discrete."""
         return self.model != EXACT
 
     @property
     def label(self) -> str:
-        """Its name in tables."""
+        """Name in tables."""
         words = [self.mass or self.model, self.wall, self.joints, self.attachment]
         return ", ".join(LABELS[w] for w in [*words, self.theory] if w in LABELS)
 
     @property
     def packaged(self) -> bool:
-        """Whether it is a model of `verify`."""
+        """Whether the candidate is a model of `verify`."""
         return not self.sized or self.mass == "consistent" or (self.mass == "links" and self.wall in (None, *WALLS))
 
     @property
     def springs(self) -> bool:
-        """Whether it may stand on a rotational spring in place of a wall."""
+        """Whether a rotational spring may replace the wall."""
         return self.packaged and self.attachment == "reciprocal" and self.wall != "welded"
 
     @property
     def settings(self) -> dict[str, str]:
         """Keywords of the `verify` model."""
-        given = {"wall": self.wall, "joints": self.joints, "attachment": self.attachment, "theory": self.theory}
+        settings = {"wall": self.wall, "joints": self.joints, "attachment": self.attachment, "theory": self.theory}
         usual = ("series", "reciprocal", EULER)
-        return {name: value for name, value in given.items() if value is not None and value not in usual}
+        return {name: value for name, value in settings.items() if value is not None and value not in usual}
 
     def order(self, beam: Beam) -> int | None:
-        """Order of convergence of its frequencies on a beam; None where it is not known."""
+        """Order of convergence of the frequencies for a beam; None if unknown."""
         if not self.sized:
             return None
         if self.model == ELEMENTS:
@@ -105,7 +105,7 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
-    """All candidates for a beam, or the exact beam and those of a kind: 'segments' or 'elements'."""
+    """All candidates for a beam, or the exact beam and those of a kind, 'segments' or 'elements'."""
     chains = _chains(beam) if kind != "elements" else ()
     masses = ("consistent", "lumped", "lumped-rotary", "hrz") if kind != "segments" else ()
     linear = ("linear", "linear-lumped") if masses else ()
@@ -118,7 +118,7 @@ def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
 
 
 def _chains(beam: Beam) -> Iterator[Candidate]:
-    """Rigid links by all rules; other mass models by the common wall rules."""
+    """Rigid links with all rules; other mass models with the usual wall rules."""
     clamped = "clamped" in beam.supports
     others = ("full", "rigid", "stiff") if clamped else ()
     walls = ("half", *(w for w in WALLS if w != "half"), *others) if clamped or has_wall(beam) else (None,)
@@ -140,7 +140,7 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
 
 @lru_cache(maxsize=20_000)
 def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes: int) -> Array:
-    """Its first elastic frequencies, (n_modes or fewer,), Hz; cached, not to be written to. Raises InputError."""
+    """First elastic frequencies of a candidate, (n_modes or fewer,), Hz; cached, read-only. Raises InputError."""
     settings = candidate.settings
     if candidate.packaged:
         model = MODELS[candidate.model]

@@ -12,11 +12,11 @@ from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointSpring
 
 STIFFNESSES = np.geomspace(0.3, 1e4, 400)
-"""k_r L/EI: softer is a hinge, stiffer changes nothing that a list shows."""
+"""Range of k_r L/EI: softer equals a hinge, stiffer a clamp, within the digits of a list."""
 
 
 def clamped_ends(beam: Beam) -> tuple[tuple[str, ...], ...]:
-    """Which clamped ends may be compliant: each alone and both; of a symmetric beam the left one and both."""
+    """Sets of compliant clamped ends: each end and both; for a symmetric beam the left one and both."""
     ends = tuple(name for name, held in zip(("left", "right"), beam.supports, strict=True) if held == "clamped")
     if len(ends) < 2:
         return (ends,) if ends else ()
@@ -24,7 +24,7 @@ def clamped_ends(beam: Beam) -> tuple[tuple[str, ...], ...]:
 
 
 def softened(beam: Beam, ends: tuple[str, ...], stiffness: float) -> Beam:
-    """The beam on hinges with springs of k_r = `stiffness` EI/L at these ends."""
+    """The beam with hinges and springs k_r = `stiffness` EI/L at the ends `ends`."""
     rotational = stiffness * beam.bending_stiffness / beam.length
     places = {"left": 0.0, "right": beam.length}
     left, right = ("pinned" if name in ends else held for name, held in zip(places, beam.supports, strict=True))
@@ -34,7 +34,7 @@ def softened(beam: Beam, ends: tuple[str, ...], stiffness: float) -> Beam:
 
 @lru_cache(maxsize=16)
 def clamp_effect(beam: Beam, ends: tuple[str, ...], n_modes: int) -> tuple[Array, Array]:
-    """(k_r L/EI (k,), log of the exact softened over the exact clamped frequencies (k, n_modes)). Raises InputError."""
+    """(k_r L/EI (k,), log of exact softened over exact clamped frequencies (k, n_modes)). Raises InputError."""
     from scipy.interpolate import CubicSpline
 
     exact, solved = Candidate(model=EXACT), np.geomspace(STIFFNESSES[0], STIFFNESSES[-1], 28)
@@ -52,9 +52,9 @@ def fit_clamp(
     logs: Array,
     modes: Indices,
 ) -> tuple[float, Array]:
-    """(k_r L/EI of least squares, log of a list over the softened candidate, (k,)). Raises InputError.
+    """(least-squares k_r L/EI, log of the list over the softened candidate, (k,)). Raises InputError.
 
-    `logs` (k,) are of the list, `modes` (k,) its modes from 0, `start` a stiffness near the optimum.
+    `logs` (k,) are those of the list, `modes` (k,) its modes from 0, `start` a stiffness near the optimum.
     """
     from scipy.optimize import least_squares
 
@@ -62,8 +62,8 @@ def fit_clamp(
         stiffness = float(np.exp(np.clip(log_stiffness, -9.0, 18.0)[0]))
         hertz = frequencies_hz(candidate, softened(beam, ends, stiffness), count, int(modes.max()) + 1)
         if len(hertz) <= modes.max():
-            raise InputError(f"count = {count}: so few parts have {len(hertz)} modes, raise count")
+            raise InputError(f"count = {count}: the model has {len(hertz)} modes, raise count")
         return np.asarray(logs - np.log(hertz[modes]))
 
-    found = least_squares(left, [np.log(start)], diff_step=1e-4, xtol=1e-9)
-    return float(np.exp(found.x[0])), np.asarray(found.fun)
+    solution = least_squares(left, [np.log(start)], diff_step=1e-4, xtol=1e-9)
+    return float(np.exp(solution.x[0])), np.asarray(solution.fun)

@@ -1,4 +1,4 @@
-"""Discrete beams of other codes that `verify` itself does not model, as factored eigenvalue problems.
+"""Discrete beams of other codes that are not models of `verify`, as factored eigenvalue problems.
 
 Chains with lumped mass or other wall joints, Cosserat rods, Hermite elements with lumped mass, linear Timoshenko
 elements. Unknowns: deflections of joints 0..N in mean part lengths, for some also rotations.
@@ -17,9 +17,9 @@ from verify.options import WALLS
 from verify.problem.beam import Beam
 
 WALL_COMPLIANCE = {"full": 1.0, "rigid": 0.0, "stiff": 0.25}
-"""Of the joint at a clamped end, l/EI: EI/l, first link fixed to the wall, 4EI/l."""
+"""Compliance of the joint at a clamped end, in l/EI: EI/l, first link fixed to the wall, 4EI/l."""
 MASSLESS = 1e-12
-"""Rotary inertia over m l^2 where there is none: of no effect, and the mass matrix stays regular."""
+"""Rotary inertia over m l^2 in place of zero: negligible, keeps the mass matrix regular."""
 NODE_INERTIA = {"lumped": MASSLESS, "lumped-rotary": 1 / 24, "hrz": 1 / 78}
 """Rotary inertia of half an element at its node over m l^2: none, a rigid half element, HRZ (Hinton, Rock and
 Zienkiewicz, Earthquake Eng. Struct. Dyn. 4, 1976)."""
@@ -29,7 +29,7 @@ class DiscreteBeam:
     """A beam in N equal parts per section, relative to its own EI and rho A. Raises InputError for attachments."""
 
     def __init__(self, beam: Beam, count: int, theory: str) -> None:
-        beam.check_added("this candidate", ("section",))
+        beam.check_features("this candidate", ("section",))
         parts = divide(beam, count)
         self.beam, self.n, self.unit, self.lengths = beam, count, parts.unit, parts.lengths
         self.stiffnesses, self.masses = parts.stiffnesses, parts.lengths * parts.masses_per_length
@@ -58,7 +58,7 @@ class DiscreteBeam:
         if mass == "joints":
             own, coupled = 0.5 * self.masses + turn, -turn
         else:
-            points = 1e-6 if free.all() else 0.0  # between free ends one motion would have no mass
+            points = 1e-6 if free.all() else 0.0  # between free ends one motion is massless
             spin = {"links": 1.0 / 12.0, "points": points}[mass] * self.masses
             own, coupled = 0.25 * self.masses + spin + turn, 0.25 * self.masses - spin - turn
         jointed = np.isfinite(compliances) & (compliances > 0.0)
@@ -100,7 +100,7 @@ class DiscreteBeam:
             matrix = block_diag([_assembled(values / 3.0, values / 6.0, which) for values, which in pairs]).tocsr()
         else:
             inertias = NODE_INERTIA.get(mass, 0.0) * self.masses * self.lengths**2 + 0.5 * self.rotary
-            if mass == "lumped" and not self.rotary.any():  # rotations are no modes
+            if mass == "lumped" and not self.rotary.any():  # rotations have no modes
                 n_modes = min(n_modes, int(free.sum()) - self.beam.rigid_motions)
             matrix = diags_array(np.append(_at_ends(0.5 * self.masses)[free], _at_ends(inertias)[turning]))
         return self._lowest_hz(n_modes, strain, stiffness, matrix, free)
@@ -111,7 +111,7 @@ class DiscreteBeam:
 
         whole = _at_ends(0.5 * self.lengths / self.stiffnesses)
         whole[[0, -1]] *= 2.0
-        rule = wall if wall in WALLS else "welded"  # a whole joint
+        rule = wall if wall in WALLS else "welded"  # one joint EI/l
         whole *= wall_factors(self.beam.supports, self.n, rule)
         clamped = [support == "clamped" for support in self.beam.supports]
         whole[[0, -1]] *= np.where(clamped, WALL_COMPLIANCE.get(wall, 1.0), 1.0)
@@ -130,7 +130,7 @@ class DiscreteBeam:
 
 
 def _at_ends(values: Array) -> Array:
-    """Sums at joints 0..N of what each part adds to both its ends, (N + 1,)."""
+    """Sums at joints 0..N of values (N,) that each part adds at both ends, (N + 1,)."""
     return np.asarray(np.append(values, 0.0) + np.append(0.0, values))
 
 
@@ -141,8 +141,8 @@ def _bands(left: Array, right: Array) -> Any:
     return diags_array([left, right], offsets=[0, 1], shape=(len(left), len(left) + 1)).tocsr()
 
 
-def _assembled(own: Array, coupled: Array, kept: Any) -> Any:
-    """Matrices [[own, coupled], [coupled, own]] of the parts assembled, sparse, at the joints that are `kept`."""
+def _assembled(own: Array, coupled: Array, free: Any) -> Any:
+    """Sparse assembly of part matrices [[own, coupled], [coupled, own]] at the joints `free`."""
     from scipy.sparse import diags_array
 
-    return diags_array([coupled, _at_ends(own), coupled], offsets=[-1, 0, 1]).tocsr()[kept][:, kept]
+    return diags_array([coupled, _at_ends(own), coupled], offsets=[-1, 0, 1]).tocsr()[free][:, free]

@@ -1,4 +1,4 @@
-"""Candidates ranked by the rms difference of log frequencies, and faults of the list tested by the same rms."""
+"""Ranking of candidates by the rms difference of log frequencies, and tests of faults of the list by this rms."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
@@ -15,13 +15,13 @@ from verify.errors import InputError
 from verify.problem.beam import Beam
 
 FLOOR, TOLERANCE, AMBIGUOUS = 1e-9, 1e-3, 2.0
-"""Relative differences that solvers leave, and those up to which a candidate agrees; factor of rms of alternatives."""
+"""Relative error of solvers; tolerance of agreement; factor of the rms within which candidates are alternatives."""
 EFFECT = 0.02
-"""Largest rms over the effect of a fitted fault."""
+"""Largest rms over the effect of an accepted fault."""
 SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
-"""N where the user does not give it; the last of the interpolated spectra."""
+"""Largest N if it is unknown; largest N of the interpolated spectra."""
 FEWEST, REFINED = 3, 5
-"""Entries for which a fault is fitted; candidates solved around their interpolated N."""
+"""Least number of entries for a fault; number of candidates solved around their interpolated N."""
 UNITS = {"rad/s": 2 * pi, "mHz": 1e3, "1/min": 60.0, "divided by 2 pi": 0.5 / pi, "kHz": 1e-3, "1/60 Hz": 1 / 60}
 FAULTS = {
     "none": ("none", 0.0, 0),
@@ -32,14 +32,14 @@ FAULTS = {
     "factor": ("common factor", 9.0, 1),
     "clamp": ("compliant clamp, k_r L/EI", 9.0, 1),
 }
-"""Title, cost in natural logarithms of likelihood, fitted parameters; an extra entry is one less to fit as well."""
+"""Title, cost in log likelihood, number of fitted parameters; an extra entry also removes one value."""
 
 
 class Fault(msgspec.Struct, frozen=True, eq=False):
-    """A possible fault of a list, or none: a key of FAULTS.
+    """A possible fault of a list, or none; `kind` is a key of FAULTS.
 
-    `entries` of the list, (k,) from 0, are `modes`, (k,) from 0. `label`: unit, mode, entry or ends. `factor` is of all
-    frequencies, None if fitted. `ends` are compliant clamps.
+    `entries` of the list, (k,) from 0, are `modes`, (k,) from 0. `label`: unit, mode, entry or ends. `factor` of all
+    frequencies, None if fitted. `ends`: compliant clamps.
     """
 
     kind: str
@@ -51,11 +51,11 @@ class Fault(msgspec.Struct, frozen=True, eq=False):
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A candidate beside a list read with a fault.
+    """A candidate and a fault fitted to a list.
 
-    `parameter`: the factor, or the clamp's k_r L/EI. `differences` (k,), relative, of the list without its fault from
-    the candidate. `effect`: rms of the log frequency that the fault changes. `rms` and `largest` are of the log
-    differences beyond the rounding of the list.
+    `parameter`: the factor, or the clamp's k_r L/EI. `differences` (k,): relative differences of the corrected list
+    from the candidate. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
+    the rounding of the list.
     """
 
     candidate: Candidate
@@ -69,7 +69,7 @@ class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A list and what it is compared with.
+    """A list of frequencies and the candidates.
 
     `logs` (n,) of frequencies in Hz, `rounding` (n,) relative; `entries` (k,) from 0 are those of known `modes` (k,),
     `ordered` if by the order alone. `count` None: any N.
@@ -86,12 +86,12 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def n_modes(self) -> int:
-        """Modes, and one more that may be missing."""
+        """Number of modes, with one more for a missing mode."""
         return int(self.modes.max()) + 2
 
     @property
     def floor(self) -> float:
-        """Rms that the digits of the list do not resolve."""
+        """Rms within the digits of the list."""
         return max(FLOOR, float(np.median(self.rounding)))
 
     def fitted(self, fit: Fit) -> int:
@@ -103,7 +103,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return len(self.logs) * log(hypot(fit.rms, self.floor)) + FAULTS[fit.fault.kind][1]
 
     def accepts(self, fit: Fit) -> bool:
-        """Whether a fit is evidence: small differences, more entries than parameters, a fault that explains."""
+        """Whether a fit is evidence: small differences, more entries than parameters, and an effective fault."""
         sharp = self.floor <= 1e-8 and fit.rms <= FLOOR
         enough = len(fit.differences) - self.fitted(fit) >= (1 if sharp else 2)
         explains = fit.fault.kind not in ("factor", "clamp") or fit.rms <= EFFECT * fit.effect
@@ -115,11 +115,11 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """What a list is: identified, ambiguous, exact (no division visible), few (frequencies) or unknown.
+    """Result of an identification; `status`: identified, ambiguous, exact (no discretisation), few or unknown.
 
-    `ranking`: candidates with the likeliest fault, the best first; those `equivalent` to the best have its frequencies,
-    `alternatives`, of other faults as well, are within a factor of two of its rms. `tested`: the best fit of every kind
-    of fault, the likeliest first.
+    `ranking`: candidates with the likeliest fault, best first. `equivalent` fits have the frequencies of the best,
+    `alternatives` (with any fault) are within a factor of two of its rms. `tested`: the best fit of every kind of
+    fault, likeliest first.
     """
 
     status: str
@@ -130,12 +130,12 @@ class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def best(self) -> Fit:
-        """The best."""
+        """The best fit."""
         return self.ranking[0]
 
 
 def identify(data: Data) -> Identification:
-    """Rank all candidates by the likeliest fault of the list. Raises InputError where none has so many modes."""
+    """Rank all candidates with the likeliest fault of the list. Raises InputError if none has enough modes."""
     tested = {"none": _best(data, [Fault("none", data.entries, data.modes)])}
     if tested["none"][0].rms > data.floor:
         faults = list(_faults(data))
@@ -145,7 +145,7 @@ def identify(data: Data) -> Identification:
     likeliest = min(accepted or [plain], key=data.score)
     best, *ranking = _best(data, [likeliest.fault], every=True)
     if data.count is not None and not any(one.candidate.sized for one in (best, *ranking)):
-        raise InputError(f"count = {data.count}: no model of so few parts has {data.n_modes - 1} modes, raise count")
+        raise InputError(f"count = {data.count}: no model has {data.n_modes - 1} modes, raise count")
     equal = [one for one in ranking if _same(one, best)]
     close = [one for one in ranking if one not in equal and data.near(one, best)]
     rivals = []
@@ -168,7 +168,7 @@ def identify(data: Data) -> Identification:
 
 
 def _faults(data: Data) -> Iterator[Fault]:
-    """All that are tested."""
+    """All faults that are tested."""
     entries, modes, n = data.entries, data.modes, len(data.logs)
     yield from (Fault("unit", entries, modes, label, factor) for label, factor in UNITS.items())
     if data.count is not None:
@@ -184,7 +184,7 @@ def _faults(data: Data) -> Iterator[Fault]:
 
 
 def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[Fit]:
-    """The best fits of all candidates and faults, the best first: those refined, or `every` candidate's."""
+    """Fits of all candidates and faults, best first: the refined ones, or with `every` those of all candidates."""
     order = {candidate: i for i, candidate in enumerate(data.members)}
 
     def rank(fits: Iterable[Fit | None]) -> list[Fit]:
@@ -193,7 +193,7 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
 
     scanned = rank(_scanned(data, one, fault) for one in data.members for fault in faults)
     near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
-    if faults[0].ends:  # scanned with the effect on the exact beam, which is not that on the candidate
+    if faults[0].ends:  # the scan uses the effect on the exact beam, which differs from that on the candidate
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER]
     refined = rank(_refined(data, one) for one in near)
     if faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
@@ -209,12 +209,12 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
 
 
 def _same(one: Fit, other: Fit) -> bool:
-    """Whether two candidates have the same frequencies, to rounding."""
+    """Whether two candidates have equal frequencies, to rounding."""
     return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
 
 
 def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[int | None] = ()) -> Fit | None:
-    """The fit at the best of these N, by default of the interpolated ones; None where the fault does not apply."""
+    """The fit at the best of `counts` (default: interpolated N); None if the fault does not apply."""
     if fault.ends and not candidate.springs:
         return None
     if not candidate.sized:
@@ -248,7 +248,7 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[in
 
 
 def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: float, left: Array, removed: Array) -> Fit:
-    """A fit by the log differences `left` (k,) beside `removed` (k,) by the fault."""
+    """A fit from the remaining log differences `left` (k,) and those `removed` (k,) by the fault."""
     beyond = np.maximum(abs(left) - data.rounding[fault.entries], 0.0)
     effect, rms = (float(np.sqrt(np.mean(values**2))) for values in (removed, beyond))
     sizes = {"effect": effect, "rms": rms, "largest": float(beyond.max())}
@@ -256,9 +256,9 @@ def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: flo
 
 
 def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
-    """The fit at the best N near the interpolated one: within 30 % where errors do not fall smoothly with N.
+    """The fit at the best N near the interpolated one, within 30 % if errors oscillate with N.
 
-    `around`: least distance to search.
+    `around`: least search distance.
     """
     best = _solved(data, fit, fit.count)
     if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
@@ -275,32 +275,32 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
 
 
 def _solved(data: Data, fit: Fit, count: int | None) -> Fit | None:
-    """A fit with the candidate's own frequencies at N; None where there is no such model."""
+    """A fit with the computed frequencies of a candidate at N; None if the model does not exist."""
     fault, candidate = fit.fault, fit.candidate
     if not fault.ends:
         return fit if data.count is not None else _scanned(data, candidate, fault, (count,))
     try:
         logs = data.logs[fault.entries]
-        found, left = fit_clamp(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
+        parameter, left = fit_clamp(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
     except InputError:
         return None
-    return _fit(data, candidate, count, fault, found, left, np.full(len(logs), fit.effect))
+    return _fit(data, candidate, count, fault, parameter, left, np.full(len(logs), fit.effect))
 
 
 def _logs(beam: Beam, candidate: Candidate, count: int | None, n_modes: int) -> Array:
-    """Log of the candidate's frequencies, (n_modes,), NaN for modes that it has not."""
+    """Log of a candidate's frequencies, (n_modes,), NaN for missing modes."""
     try:
-        found = frequencies_hz(candidate, beam, count, n_modes)
+        hertz = frequencies_hz(candidate, beam, count, n_modes)
     except InputError:
-        found = np.empty(0)
-    return np.append(np.log(found), np.full(n_modes - len(found), np.nan))
+        hertz = np.empty(0)
+    return np.append(np.log(hertz), np.full(n_modes - len(hertz), np.nan))
 
 
 @lru_cache(maxsize=500)
 def spectrum(beam: Beam, candidate: Candidate, n_modes: int) -> tuple[Indices, Array]:
-    """(N (r,), log of the frequencies (r, n_modes), NaN for modes that it has not) of all N of a candidate with parts.
+    """(N (r,), log of frequencies (r, n_modes), NaN for missing modes) of a discrete candidate for all N.
 
-    Interpolated in 1/N between some N that are solved and the exact beam of the same theory.
+    Interpolated in 1/N between computed N and the exact beam of the same theory.
     """
     from scipy.interpolate import CubicSpline
 

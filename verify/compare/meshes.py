@@ -1,4 +1,4 @@
-"""Mode shapes of a beam on a solid, shell or line mesh in any format of meshio: averaged over the cross-sections."""
+"""Mode shapes of a beam on a solid, shell or line mesh (any format of meshio), averaged over the cross-sections."""
 
 import io
 import re
@@ -15,17 +15,17 @@ from verify.errors import InputError, one_line
 from verify.files import exists
 
 UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}
-"""Of length, in a metre."""
+"""Number of length units per metre."""
 SAME = 1e-6
-"""Of the length: points nearer along the beam are of one cross-section."""
+"""Distance along the beam, relative to its length, of points in one cross-section."""
 SLENDER, ACROSS, LENGTH = 0.5, 0.5, 1e-3
-"""Thickness over length at most; share of a shape's squares across the thickness; error of the length."""
+"""Largest thickness over length; least fraction of a shape's squares across the thickness; error of the length."""
 _RADIANS = re.compile(r"rad|omega", re.IGNORECASE)
 _FREQUENCY = re.compile(r"hz|hertz|freq|rad|omega", re.IGNORECASE)
 
 
 class MeshShapes(msgspec.Struct, frozen=True, eq=False):
-    """Shapes along a beam from a mesh, a frequency for each if it has them, and notes on arrays left out."""
+    """Shapes along a beam from a mesh, their frequencies if any, and notes on ignored arrays."""
 
     source: str
     shapes: ModeShapes
@@ -45,7 +45,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
         raise InputError(f"{source} does not exist: give a mesh, for instance a .vtu")
     points, arrays, field = _series(path) or _mesh(path, source)
     if len(points) < 3 or not np.isfinite(points).all():
-        raise InputError(f"{source} has {len(points)} points, or infinite ones: give three or more along the beam")
+        raise InputError(f"{source} has {len(points)} points, or infinite ones: give three or more finite points")
     real = {name: v.astype(float) for name, v in arrays.items() if v.dtype.kind == "f" and len(v) == len(points)}
     vectors = {name: v[:, :3] for name, v in real.items() if v.ndim == 2 and v.shape[1] > 1}
     vectors = vectors or {name: v.reshape(len(v), -1) for name, v in real.items() if v[0].size == 1}
@@ -76,7 +76,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
         if squares[column] > ACROSS * (vector**2).sum():
             bent[name] = means[column]
         else:
-            notes.append(f"{name} does not bend the beam across its thickness: left out.")
+            notes.append(f"{name} does not bend the beam across its thickness: ignored.")
     if not bent:
         raise InputError(f"{source} has no shape that bends the beam across its thickness: write bending modes")
     shapes = ModeShapes(x=places * (length / places[-1]), values=np.array(list(bent.values())))
@@ -86,7 +86,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
 
 
 def _thickness(sizes: Array, along: int, vectors: list[Array]) -> tuple[int, int]:
-    """(axis of the thickness, of the width): the thinner first; of equal ones that in which more moves."""
+    """(axis of the thickness, of the width): the thinner first, for equal sizes the one with more motion."""
     others = sorted((axis for axis in range(len(sizes)) if axis != along), key=lambda axis: sizes[axis])
     if len(others) == 2 and sizes[others[1]] <= 1.01 * sizes[others[0]] and vectors[0].shape[1] == 3:
         moved = sum((v**2).sum(axis=0) / (v**2).sum() for v in vectors if v.any())
@@ -98,19 +98,19 @@ def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, A
     """(points, arrays at them, field data) by meshio, which prints and exits on failure. Raises InputError."""
     import meshio
 
-    said = io.StringIO()
+    output = io.StringIO()
     try:
-        with redirect_stdout(said), redirect_stderr(said):
+        with redirect_stdout(output), redirect_stderr(output):
             mesh = meshio.read(path)
-    except (Exception, SystemExit) as error:  # forty readers fail in as many ways
-        why = one_line(str(error) or said.getvalue())[:200]
+    except (Exception, SystemExit) as error:  # readers of many formats raise many types
+        why = one_line(str(error) or output.getvalue())[:200]
         raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
     arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
     return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
 
 
 def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:
-    """The same of an xdmf series with a mode in each step and its frequency in Hz as time; None of other files."""
+    """`_mesh` of an xdmf series with one mode per step and frequencies in Hz as times; None for other files."""
     import meshio
 
     if path.suffix.lower() != ".xdmf":
@@ -127,7 +127,7 @@ def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None
 
 
 def _frequencies(field: dict[str, Any], n: int, chosen: list[int], source: str) -> FrequencyList | None:
-    """Frequencies of the chosen shapes from field data; None without any. Raises InputError for another number."""
+    """Frequencies of the chosen shapes from field data, or None. Raises InputError for another number."""
     name = next((name for name in field if _FREQUENCY.search(name)), None)
     if name is None:
         return None

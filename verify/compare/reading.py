@@ -1,4 +1,4 @@
-"""Natural frequencies and mode shapes from text files of other programs, or frequencies from a model in Python."""
+"""Natural frequencies and mode shapes from text files, or frequencies from a model in Python."""
 
 import re
 import sys
@@ -19,16 +19,16 @@ from verify.linear.base import BeamModel
 from verify.problem.beam import Beam
 
 HERTZ = {"Hz": 1.0, "kHz": 1e3, "rad/s": 0.5 / pi}
-"""In one of a unit."""
+"""Frequency units in Hz."""
 MOST, MODEL_MODES = 2000, 10
-"""Frequencies of a list; modes of a Python model unless one is asked for."""
+"""Largest number of frequencies of a list; default number of modes of a Python model."""
 _UNITS = {"rad/s": r"rad|omega|ω|puls", "kHz": r"khz", "Hz": r"hz|hertz|freq|^f(_?\w{0,2})?$|cycles"}
 _MODE = re.compile(r"#|n|no\.?|nr\.?|modes?([ _]?(number|no\.?|nr\.?))?|number|index|i|k", re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][+-]?\d+)?|[+-]?(nan|inf)", re.IGNORECASE)
 
 
 class FrequencyList(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Natural frequencies as given, (n,), with half a unit of the last digit, relative, and mode numbers from 1."""
+    """Natural frequencies, (n,), relative rounding (half a unit of the last digit), and mode numbers from 1."""
 
     source: str
     hertz: Array
@@ -38,14 +38,14 @@ class FrequencyList(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 class ModeShapes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Mode shapes as given, (n_modes, n_points), at x (n_points,), metres, ascending."""
+    """Mode shapes, (n_modes, n_points), at ascending x (n_points,), m."""
 
     x: Array
     values: Array
 
 
 def listed(source: str, values: Sequence[float], cells: Sequence[str] = (), **more: Any) -> FrequencyList:
-    """A list of values in `unit`, written as `cells`. Raises InputError for negative, infinite and too many values."""
+    """A list of values in `unit`, with text `cells`. Raises InputError for negative, infinite and too many values."""
     if not 0 < len(values) <= MOST:
         raise InputError(f"{source} has {len(values)} frequencies: give 1 to {MOST}")
     for i, value in enumerate(values, start=1):
@@ -57,10 +57,10 @@ def listed(source: str, values: Sequence[float], cells: Sequence[str] = (), **mo
 
 
 def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
-    """Frequencies in a text file or, as '-', on standard input, in a unit that else the header says. Raises InputError.
+    """Frequencies from a text file, or '-' for standard input; unit None: that of the header. Raises InputError.
 
-    One column, or two with mode numbers first, or several with a header that names one of frequencies. Comma,
-    semicolon, tab or spaces between them; decimal commas where there is no point.
+    One column, two columns with mode numbers first, or several with a header that names the frequencies, separated by
+    comma, semicolon, tab or spaces; decimal commas in files without points.
     """
     source = f"frequencies file {str(path)!r}"
     head, rows = _rows(path, source)
@@ -70,15 +70,15 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
         numbered = 0
     units = {k: next((u for u, pattern in _UNITS.items() if re.search(pattern, name, re.IGNORECASE)), None)
              for k, name in enumerate(head) if k != numbered}  # fmt: skip
-    columns = [k for k, found in units.items() if found] or [k for k in range(table.shape[1]) if k != numbered]
+    columns = [k for k, matches in units.items() if matches] or [k for k in range(table.shape[1]) if k != numbered]
     if len(columns) != 1:
         raise InputError(f"{source} has {len(columns)} columns that may be frequencies: name one of them 'hz'")
     column, numbers = columns[0], None
     if numbered is not None:
-        given = table[:, numbered]
-        if (given % 1.0).any() or not (np.diff(given) > 0.0).all() or not 0 <= given[0] <= given[-1] <= MOST:
-            raise InputError(f"{source}: mode numbers {given[:5].tolist()} do not count upwards: number them from 1")
-        numbers = tuple(int(number) + (given[0] == 0) for number in given)
+        order = table[:, numbered]
+        if (order % 1.0).any() or not (np.diff(order) > 0.0).all() or not 0 <= order[0] <= order[-1] <= MOST:
+            raise InputError(f"{source}: mode numbers {order[:5].tolist()} do not count upwards: number them from 1")
+        numbers = tuple(int(number) + (order[0] == 0) for number in order)
     cells = [row[column] for row in rows]
     return listed(source, table[:, column].tolist(), cells, unit=unit or units.get(column) or "Hz", numbers=numbers)
 
@@ -92,12 +92,12 @@ def read_shapes(path: Path, length: float) -> ModeShapes:
 
 
 def checked_shapes(shapes: ModeShapes, length: float, source: str) -> ModeShapes:
-    """The shapes. Raises InputError for places off the beam, out of order or too few, and for shapes of zeros."""
+    """The shapes. Raises InputError for positions off the beam, out of order or too few, and for zero shapes."""
     x, off = shapes.x, 1e-9 * length
     if len(x) < 3 or not len(shapes.values):
-        raise InputError(f"{source} has {len(x)} places and {len(shapes.values)} shapes: give three places or more")
+        raise InputError(f"{source} has {len(x)} positions, {len(shapes.values)} shapes: give three positions or more")
     if not (np.diff(x) > 0.0).all() or x[0] < -off or x[-1] > length + off:
-        raise InputError(f"{source}: x from {x[0]:g} to {x[-1]:g} m: give rising places between 0 and {length!r} m")
+        raise InputError(f"{source}: x from {x[0]:g} to {x[-1]:g} m: give ascending x from 0 to {length!r} m")
     if not np.isfinite(shapes.values).all() or not shapes.values.any(axis=1).all():
         raise InputError(f"{source} has shapes that are zero or not finite: leave these modes out")
     return shapes
@@ -106,7 +106,7 @@ def checked_shapes(shapes: ModeShapes, length: float, source: str) -> ModeShapes
 def solve_model(name: str, beam: Beam, count: int | None, n_modes: int | None) -> FrequencyList:
     """Frequencies of a Python model 'package.module:function' of (beam, n_modes, count). Raises InputError.
 
-    It returns them in Hz, or an object with `frequencies_hz`; a subclass of `BeamModel` is built first.
+    The function returns Hz, or an object with `frequencies_hz`; a subclass of `BeamModel` is built first.
     """
     module, _, attribute = name.partition(":")
     sys.path.insert(0, str(Path.cwd()))
@@ -120,7 +120,7 @@ def solve_model(name: str, beam: Beam, count: int | None, n_modes: int | None) -
             values = np.asarray(getattr(solved, "frequencies_hz", solved), dtype=float)
     except InputError:
         raise
-    except (Exception, SystemExit) as error:  # a stranger's code fails in any way
+    except (Exception, SystemExit) as error:  # user code may raise any error
         why = f"{type(error).__name__}: {error}"
         raise InputError(f"model = {name!r} fails with {why}: correct model or name") from None
     finally:
@@ -129,7 +129,7 @@ def solve_model(name: str, beam: Beam, count: int | None, n_modes: int | None) -
 
 
 def _rows(path: Path, source: str) -> tuple[list[str], list[list[str]]]:
-    """(header or nothing, rows of cells). Raises InputError for no file, no text, and rows of unequal length."""
+    """(header or empty, rows of cells). Raises InputError for a missing file, no text, and unequal rows."""
     try:
         if str(path) != "-" and not exists(path, "file"):
             raise InputError(f"{source} does not exist: give a text file")
@@ -168,7 +168,7 @@ def _float(cell: str, source: str, row: int) -> float:
 
 
 def _rounding(cell: str, value: float) -> float:
-    """Half a unit of the last digit as written, relative."""
+    """Half a unit of the last digit, relative."""
     mantissa, _, exponent = re.sub("[dDE]", "e", cell).partition("e")
     digits = len(mantissa.partition(".")[2])
     return max(0.5 * 10.0 ** (int(exponent or 0) - digits) / value, 1e-16) if value else 0.0

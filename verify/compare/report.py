@@ -16,77 +16,75 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SHOWN = 10
-"""Candidates in the table; all are in the data."""
+"""Largest number of candidates in the table; all are in the data."""
 STATUS = {
     "identified": "Identified",
     "ambiguous": "Ambiguous: other candidates or faults agree within a factor of two of the rms difference. Best",
-    "exact": "No discretisation visible: the exact beam agrees within a factor of two of the rms difference. Best",
+    "exact": "No discretisation detected: the exact beam agrees within a factor of two of the rms difference. Best",
     "few": "Too few frequencies to identify a model. Nearest",
     "unknown": "No known candidate agrees within 0.1 %. Nearest",
 }
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
-"""What alone changes all frequencies by a factor, and in which power of it."""
-TIP_MASS = "A clamp of k_r = c EI/L on a cantilever has the frequencies of a mass rho A L / c at the other end."
-TIP_LINK = "EI/l at the wall, or a fixed first link, equals 2EI/l with twice the mass, or none, at the free end."
-UNEVEN = "With steps or attachments inside a part, a larger N may exceed the tolerance again."
-ENTRY = (Column("entry"), Column("mode"), Column("given", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
+"""Parameters that change all frequencies by a common factor, with the power of the factor."""
+TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
+TIP_LINK = "EI/l at the wall (a fixed first link) is equivalent to 2EI/l with twice the mass (no mass) at the free end."
+UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
+ENTRY = (Column("entry"), Column("mode"), Column("listed", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
 RMS = (Column("rms", format=".3g", percent=True), Column("largest", format=".3g", percent=True))
 
 
 class Entry(msgspec.Struct, frozen=True):
-    """A frequency of the list: its entry from 1, its mode from 1 by place, number or shape."""
+    """A frequency of the list: entry from 1, and mode from 1 by position, number or shape."""
 
     entry: int
     mode: int
-    given_hz: float
+    listed_hz: float
     exact_hz: float
     mac: float | None
 
     @property
     def error(self) -> float:
-        """Relative to exact."""
-        return self.given_hz / self.exact_hz - 1.0
+        """Error relative to the exact frequency."""
+        return self.listed_hz / self.exact_hz - 1.0
 
 
 def result_of(
     scene: str,
-    given: FrequencyList,
+    source: FrequencyList,
     data: Data,
-    found: Identification,
+    fits: Identification,
     rows: list[Entry],
     required: list[tuple[Candidate | int | None, ...]],
     warnings: list[str],
     within: float | None,
 ) -> Result:
-    """The result of a comparison, `data["passed"]` its acceptance. A warning is a fault of the list.
+    """The result of a comparison with acceptance `data["passed"]`; `warnings` are faults of the list.
 
-    `required` are candidates, modes, and N for 1 % and 0.1 %.
+    `required`: candidates, modes, and N for 1 % and 0.1 %.
     """
-    best, beam = found.best, data.beam
+    best, beam = fits.best, data.beam
     faults = (best.fault.kind != "none") + len(warnings)
     checks = [("faults of the list", float(faults), 0.0, not faults)]
     checks.append(
-        ("largest difference from the best candidate", best.largest, TOLERANCE, found.status not in ("few", "unknown"))
+        ("largest difference from the best candidate", best.largest, TOLERANCE, fits.status not in ("few", "unknown"))
     )
     if within is not None:
         worst = max(abs(row.error) for row in rows)
         checks.append(("largest error against the exact beam", worst, within, worst <= within))
-    words = {id(one): "equivalent" for one in found.equivalent} | {id(one): "alternative" for one in found.alternatives}
+    words = {id(one): "equivalent" for one in fits.equivalent} | {id(one): "alternative" for one in fits.alternatives}
     words[id(best)] = "best"
     lines: list[Any] = [
         (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
-        for one in found.ranking[:SHOWN]
+        for one in fits.ranking[:SHOWN]
     ]
     notes = [
-        "rms: of the log frequency differences. Equivalent: same frequencies. Alternative: rms below twice the best."
+        "rms: log frequency differences. Equivalent: equal frequencies. Alternative: rms below twice that of the best."
     ]
     columns = [Column("candidate"), Column("N"), Column("order"), *RMS, Column("status")]
     tables = [_modes(best, rows), Table("Candidates", columns, lines, notes)]
-    if len(found.tested) > 1:
+    if len(fits.tested) > 1:
         columns = [Column("fault"), Column("value"), Column("candidate"), Column("N"), *RMS]
-        lines = [
-            (FAULTS[f.fault.kind][0], value(f), f.candidate.label, f.count, f.rms, f.largest) for f in found.tested
-        ]
+        lines = [(FAULTS[f.fault.kind][0], value(f), f.candidate.label, f.count, f.rms, f.largest) for f in fits.tested]
         tables.append(Table("Faults tested, the likeliest first", columns, lines))
     if best.fault.kind == "factor":
         held, bare = bool(beam.spring or beam.foundation or beam.tension), best.candidate.theory == EULER
@@ -102,25 +100,25 @@ def result_of(
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables.append(Table("Acceptance", columns, [(*check[:3], "yes" if check[3] else "no") for check in checks]))
     size = f", N = {best.count}" if best.count else ""
-    summary = f"{STATUS[found.status]}: {best.candidate.label}{size}, rms difference {best.rms:.2g}."
+    summary = f"{STATUS[fits.status]}: {best.candidate.label}{size}, rms difference {best.rms:.2g}."
     if best.fault.kind != "none":
         summary += f" Fault of the list: {FAULTS[best.fault.kind][0]} {value(best)}."
     if set(beam.supports) == {"clamped", "free"} and beam.uniform:
-        clamp = any(one.fault.kind == "clamp" for one in (best, *found.alternatives))
+        clamp = any(one.fault.kind == "clamp" for one in (best, *fits.alternatives))
         lumped = best.candidate.mass == "joints" and best.candidate.wall in ("full", "rigid")
         warnings = [*warnings, *[TIP_MASS] * clamp, *[TIP_LINK] * lumped]
-    about: dict[str, Any] = {"scene": scene, "source": given.source, "unit": given.unit}
-    about |= {"passed": all(check[3] for check in checks), "status": found.status, "best": _plain(best, beam)}
-    groups = {"equivalent": found.equivalent, "alternatives": found.alternatives, "candidates": found.ranking}
-    about |= {name: [_plain(one, beam) for one in fits] for name, fits in groups.items()}
-    figure = _figure(beam, found, rows)
+    about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit}
+    about |= {"passed": all(check[3] for check in checks), "status": fits.status, "best": _plain(best, beam)}
+    groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
+    about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
+    figure = _figure(beam, fits, rows)
     return Result(summary, tables, [figure], warnings=warnings, data=about)
 
 
-def _figure(beam: Beam, found: Identification, rows: list[Entry]) -> Figure:
-    """Errors of the list, of the best candidate and of the next."""
-    best = found.best
-    following = next((one for one in found.ranking[1:] if one not in found.equivalent), None)
+def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
+    """Errors of the list, the best and the next candidate."""
+    best = fits.best
+    following = next((one for one in fits.ranking[1:] if one not in fits.equivalent), None)
     n = max(row.mode for row in rows)
 
     def draw(ax: "Axes") -> None:
@@ -134,12 +132,12 @@ def _figure(beam: Beam, found: Identification, rows: list[Entry]) -> Figure:
         ax.set(xlabel="mode", ylabel="frequency error, %")
         ax.legend()
 
-    caption = "Points: the list as given, against the exact beam (Euler-Bernoulli). Lines: the best and next candidate."
-    return Figure("compare", "Frequencies beside the best candidates", caption, draw)
+    caption = "Errors against the exact Euler-Bernoulli beam. Points: the list. Lines: the best and the next candidate."
+    return Figure("compare", "Frequencies and best candidates", caption, draw)
 
 
 def _modes(best: Fit, rows: list[Entry]) -> Table:
-    """Every frequency beside the exact one and that of the best candidate, with the fault and without."""
+    """Table of frequencies of the list, the exact beam and the best candidate, with and without the fault."""
     fault, shaped = best.fault, any(row.mac is not None for row in rows)
     faulty, factor = fault.kind != "none", best.parameter if fault.kind in ("unit", "factor") else 1.0
     columns = [*ENTRY, Column("error", format=".4g", percent=True)]
@@ -148,9 +146,9 @@ def _modes(best: Fit, rows: list[Entry]) -> Table:
     columns += [Column("MAC", format=".4f")] * shaped
     place, lines = {int(entry): i for i, entry in enumerate(fault.entries)}, []
     for i, row in enumerate(rows):
-        at, corrected = place.get(i), row.given_hz / factor
+        at, corrected = place.get(i), row.listed_hz / factor
         off = None if at is None else float(best.differences[at])
-        line: list[Any] = [row.entry, row.mode, row.given_hz, row.exact_hz, row.error]
+        line: list[Any] = [row.entry, row.mode, row.listed_hz, row.exact_hz, row.error]
         line += [None if at is None else int(fault.modes[at]) + 1, corrected] * faulty
         lines.append([*line, None if off is None else corrected / (1.0 + off), off, *[row.mac] * shaped])
     return Table("Modes", columns, sorted(lines, key=lambda line: line[1]))

@@ -1,7 +1,7 @@
-"""Mode shapes on a mesh compared with the exact ones and with those of the models.
+"""Comparison of mode shapes on a mesh with the exact shapes and with those of the models.
 
 MAC: Allemang, "The modal assurance criterion - twenty years of use and abuse", Sound and Vibration 37 (2003). The error
-of a shape is free of its scale: the least of |a s - e| / |e| over a.
+of a shape is independent of its scale: the minimum of |a s - e| / |e| over a.
 """
 
 from dataclasses import replace
@@ -22,14 +22,14 @@ from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 
 STRAIGHT, TURNED = 1e-6, 0.1
-"""Share of a rigid motion that is no straight line; gain in mean MAC of a beam that is the other way round."""
-UNLIKE = f"A shape is hardly one of the beam's modes (MAC below {LOW_MAC}): check beam.supports."
+"""Largest nonlinear fraction of a rigid-body motion; gain in mean MAC that identifies a reversed beam."""
+UNLIKE = f"A shape has a MAC below {LOW_MAC} with all modes of the beam: check beam.supports."
 DISORDER = "The shapes are not in the order of the modes."
-COARSE = "The mesh has fewer than two cross-sections a half wave: higher modes look like lower ones."
+COARSE = "The mesh has fewer than two cross-sections per half wave: higher modes are aliased."
 
 
 def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None) -> Result:
-    """Mode, MAC and error of shapes on a mesh of the scene's beam, the nearest model; frequencies as by `compare`.
+    """Mode, MAC and error of shapes on a mesh of the scene's beam, nearest model; frequencies as in `compare`.
 
     Raises InputError. `data["passed"]` says whether every shape is a mode's, in order, and the frequencies pass.
     """
@@ -38,9 +38,9 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     rest = values - np.linalg.lstsq(line.T, values.T, rcond=None)[0].T @ line
     bent = np.flatnonzero(np.linalg.norm(rest, axis=1) > STRAIGHT * np.linalg.norm(values, axis=1))
     if not len(bent):
-        raise InputError(f"{mesh.source} has rigid motions alone: write elastic modes")
+        raise InputError(f"{mesh.source} has rigid-body motions only: write elastic modes")
     values, names = values[bent], [mesh.names[i] for i in bent]
-    notes = [*mesh.notes, *[f"{name} is a rigid motion: left out." for name in mesh.names if name not in names]]
+    notes = [*mesh.notes, *[f"{name} is a rigid-body motion: ignored." for name in mesh.names if name not in names]]
     modes, mac = pair_shapes(beam, x, values)
     other = pair_shapes(beam, beam.length - x[::-1], values[:, ::-1])
     if other[1].mean() > mac.mean() + TURNED:
@@ -51,20 +51,20 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     errors = [scale_free_error(s * weights, exact[mode] * weights) for s, mode in zip(values, modes, strict=True)]
     order = np.argsort(modes, kind="stable")
     rows = [(names[i], int(modes[i]) + 1, float(mac[i]), errors[i]) for i in order]
-    error = Column("error of form", format=".3g", percent=True)
+    error = Column("shape error", format=".3g", percent=True)
     tables = [Table("Shapes", [Column("shape"), Column("mode"), Column("MAC", format=".6f"), error], rows, notes)]
-    found = {UNLIKE: (mac < LOW_MAC).any(), DISORDER: (np.diff(modes) < 0).any(), COARSE: len(x) - 1 < 2 * n}
-    warnings = [words for words, holds in found.items() if holds]
+    faults = {UNLIKE: (mac < LOW_MAC).any(), DISORDER: (np.diff(modes) < 0).any(), COARSE: len(x) - 1 < 2 * n}
+    warnings = [words for words, holds in faults.items() if holds]
     listed = None
     if mesh.frequencies is not None:
         hertz, rounding = mesh.frequencies.hertz[bent], mesh.frequencies.rounding[bent]
-        given = msgspec.structs.replace(mesh.frequencies, hertz=hertz, rounding=rounding)
-        listed = compare(scene, given, ModeShapes(x=x, values=values), options)
+        frequencies = msgspec.structs.replace(mesh.frequencies, hertz=hertz, rounding=rounding)
+        listed = compare(scene, frequencies, ModeShapes(x=x, values=values), options)
     known = None if listed is None else listed.data["best"]["count"]
     near = _nearest(beam, x, values, modes, options.count or known or len(x) - 1)
-    tables.append(Table("Models by the form of their shapes", [Column("model"), Column("N"), error], near))
-    passed = not (found[UNLIKE] or found[DISORDER])
-    summary = f"{len(rows)} shapes, lowest MAC {mac.min():.4f}; nearest by form: {near[0][0]}."
+    tables.append(Table("Models by shape error", [Column("model"), Column("N"), error], near))
+    passed = not (faults[UNLIKE] or faults[DISORDER])
+    summary = f"{len(rows)} shapes, lowest MAC {mac.min():.4f}; nearest model by shape: {near[0][0]}."
     data = {"scene": scene.name, "source": mesh.source, "passed": passed}
     if listed is None:
         return Result(summary, tables, warnings=warnings, data=data)
@@ -74,18 +74,18 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
 
 
 def scale_free_error(shape: Array, exact: Array) -> float:
-    """The least of |a s - e| / |e| over a; both (n,), weighted."""
+    """Minimum of |a s - e| / |e| over a for weighted shapes (n,)."""
     return float(np.linalg.norm(exact - shape * (shape @ exact) / (shape @ shape)) / np.linalg.norm(exact))
 
 
 def _nearest(beam: Beam, x: Array, values: Array, modes: Indices, count: int) -> list[tuple[str, int | None, float]]:
-    """(model, N, rms error of the form over the modes), the nearest first."""
+    """(model, N, rms shape error over the modes), nearest first."""
     n, weights = int(modes.max()) + 1, np.sqrt(node_weights(x))
     models: dict[str, tuple[Array, int | None]] = {"exact beam": (exact_shapes(beam, n, x), None)}
     for name, model in (("elements", ELEMENTS), ("segments, joints corrected", CHAIN)):
         try:
             solved = MODELS[model].build(beam, count).modes(n)
-        except InputError:  # so few parts have fewer modes
+        except InputError:  # too few parts for these modes
             continue
         models[name] = (np.asarray(solved.deflection(x)), count)
         if model == CHAIN:

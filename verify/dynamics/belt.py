@@ -1,6 +1,6 @@
-"""Friction benchmarks on a rigid surface of constant speed, by the contact engine: decay, creep, stick-slip, decrement.
+"""Friction benchmarks of the contact engine on a rigid surface of constant speed: decay, creep, stick-slip, decrement.
 
-A mass on a spring is one modal row whose rotation moves the surface, the belt a slider of prescribed speed on it.
+The mass on a spring is a modal row whose rotation moves the surface; the belt is a slider with prescribed speed.
 """
 
 from math import inf, pi, sqrt
@@ -20,17 +20,17 @@ from verify.validation import check_number
 STEPS = 4096
 STEPS_PER_PERIOD = 8000
 BELOW = 1.0 - 1e-6
-"""Share of mu g up to which a pull is balanced: beyond it the creep depends on digits that mu g does not have."""
+"""Largest acceleration over mu g with a creep speed: beyond it the speed depends on digits that mu g does not have."""
 LARGE = 1e100
-"""Largest mass, stiffness, force; the least is one over it."""
+"""Largest mass, stiffness, force; the smallest is its reciprocal."""
 LEVER = 1e6
-"""h/2 of the surface in units of its motion: rotations are a millionth, and their squares rounding."""
+"""h/2 of the surface in units of its motion: rotations are 1e-6, their squares rounding."""
 
 
 def _contact(
-    speed: float, mu: float, static: float, slope: float = 0.0, load: float = 1.0, pull: float = 0.0, mass: float = inf
+    speed: float, mu: float, static: float, slope: float = 0.0, load: float = 1.0, force: float = 0.0, mass: float = inf
 ) -> Contacts:
-    """One point at x = 0 on the surface; an infinite mass has a prescribed speed and moves the surface."""
+    """One contact point at x = 0; an infinite mass is a slider of prescribed speed that moves the surface."""
     contact = Contacts(
         start=0.0,
         sliders=np.zeros((1, lay.SLIDER)),
@@ -43,13 +43,13 @@ def _contact(
         presses=False,
     )
     columns = [lay.V, lay.INVERSE_MASS, lay.MU, lay.MU_STATIC, lay.STEEPNESS, lay.PULL]
-    contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, pull
+    contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, force
     contact.points[0, [lay.FACE, lay.IMAGE, lay.WEIGHT, lay.LOAD, lay.LEVER]] = 1.0, 1.0, 1.0, load, LEVER
     return contact
 
 
 def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None) -> Run:
-    """Steps on a surface at rest, or on a unit mass on a unit spring in the state z = position - i speed."""
+    """March on a surface at rest, or on a unit mass on a unit spring with the state z = position - i speed."""
 
     def shapes(x: Array, derivative: int) -> Array:
         slope = -1.0 / LEVER  # the surface moves by -(h/2) w'
@@ -69,17 +69,17 @@ def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None
 
 
 def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
-    """Speed that tanh friction leaves of `speed` after `time` on a surface at rest, m/s."""
+    """Speed, m/s, of a slider with tanh friction after `time` on a surface at rest, from `speed`."""
     contact = _contact(speed, mu, mu, slope, gravity, mass=1.0)
     _run(contact, STEPS, time / STEPS)
     return float(contact.sliders[0, lay.V])
 
 
-def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) -> float:
-    """Final creep speed of a slider under the constant acceleration `pull`, m/s. Raises InputError."""
-    if not abs(pull) <= BELOW * mu * gravity:
-        raise InputError(f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull")
-    contact, step = _contact(0.0, mu, mu, slope, gravity, pull, mass=1.0), 1.0 / (mu * gravity * slope)
+def creep_speed(mu: float, slope: float, acceleration: float, gravity: float = GRAVITY) -> float:
+    """Final creep speed, m/s, under a constant force per mass `acceleration`, m/s^2. Raises InputError."""
+    if not abs(acceleration) <= BELOW * mu * gravity:
+        raise InputError(f"acceleration = {acceleration!r} is not below mu g = {mu * gravity:.6g} m/s^2: lower it")
+    contact, step = _contact(0.0, mu, mu, slope, gravity, acceleration, mass=1.0), 1.0 / (mu * gravity * slope)
     for _ in range(60):
         before = float(contact.sliders[0, lay.V])
         contact.sliders[0, lay.X] = 0.0
@@ -91,12 +91,12 @@ def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) 
 
 
 def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: float, speed: float) -> tuple[float, float]:
-    """(stick, slip) seconds of the periodic motion of a mass on a spring on a belt; static and kinetic are forces, N.
+    """(stick, slip) times, s, of the stick-slip cycle of a mass on a spring on a belt; `static`, `kinetic`: forces, N.
 
-    Raises InputError where it does not stick and slip.
+    Raises InputError without a stick-slip cycle.
     """
     if kinetic >= static:
-        raise InputError(f"kinetic = {kinetic!r} is not below static = {static!r}: nothing slips, lower it")
+        raise InputError(f"kinetic = {kinetic!r} is not below static = {static!r}: no stick-slip, lower it")
     for name, value in (("mass", mass), ("stiffness", stiffness), ("static", static), ("speed", speed)):
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     second, metre = sqrt(mass / stiffness), static / stiffness  # units in which mass, spring and static force are 1
@@ -113,14 +113,14 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
         sticks = recorded.events[recorded.events[:, 1] == lay.STICKS, 0]
         if len(sticks):
             slip += float(sticks[0])
-            position = float(z[0].real) - belt * (elapsed - slip)  # where it sticks: it moves with the belt since
+            position = float(z[0].real) - belt * (elapsed - slip)  # at the start of sticking
             return (1.0 - position) / belt * second, slip * second
         slip = elapsed
     raise InputError(f"speed = {speed!r} m/s: the mass does not stick and slip, lower the speed of the belt")
 
 
 def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
-    """Amplitude that a spring-mass oscillator on a floor with Coulomb friction `force` loses in a cycle, m."""
+    """Amplitude loss per cycle, m, of a spring-mass oscillator with Coulomb friction `force`, N."""
     for name, value in (("mass", mass), ("stiffness", stiffness), ("force", force)):
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     contact, start = _contact(0.0, 1.0, 1.0), 12.5

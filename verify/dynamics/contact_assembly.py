@@ -22,10 +22,10 @@ def assemble(
     prescribed_speeds: Sequence[float | None],
     fixed: Sequence[bool],
 ) -> Contacts:
-    """Sliders at rest across the beam, feet at height 0.
+    """Sliders without transverse motion, feet at height 0.
 
-    A slider without contact is one bilateral point: its normal force is prescribed, or includes the reaction of its
-    mass where the beam carries it (two-way coupling with normal inertia).
+    A slider without `contact` is one bilateral point; its normal force is prescribed, or includes the reaction of its
+    mass (two-way coupling with normal = "bilateral").
     """
     two_way, first = sliders[0].coupling == "two-way", sliders[0]
     half = section_at(beam, starts[0]).surface_distance
@@ -36,7 +36,7 @@ def assemble(
         row[lay.INVERSE_MASS] = 1.0 / slider.mass if speed is None else 0.0
         row[lay.MU] = slider.mu
         row[lay.MU_STATIC] = slider.mu if slider.mu_static is None else slider.mu_static
-        row[lay.STEEPNESS], row[lay.PULL] = slider.steepness or 0.0, slider.pull
+        row[lay.STEEPNESS], row[lay.PULL] = slider.steepness or 0.0, slider.external_force
         row[lay.FREE] = 0.0 if stays else 1.0
         rows.append(row)
         for foot in slider.feet if slider.contact else (None,):
@@ -51,7 +51,7 @@ def assemble(
             sheets.append(sheet)
             indices += [(number, len(feet), 0)] * len(sheet)
             feet += [] if foot is None else [_foot(slider, foot)]
-    held = first.contact is None and first.normal == "held" and two_way
+    held = first.contact is None and first.normal == "bilateral" and two_way
     points = np.concatenate(sheets)
     return Contacts(
         start=starts[0],
@@ -71,7 +71,7 @@ def assemble(
 
 
 def _foot_points(slider: Slider, foot: Foot) -> Array:
-    """(points, POINT); of a foot between two beams the points below, then those above."""
+    """Rows of contact points, (points, POINT); of a foot between two beams those below, then those above."""
     contact = slider.contact
     assert contact is not None
     normal, sheet = contact.across(foot.length), np.zeros((foot.points, lay.POINT))
@@ -93,7 +93,7 @@ def _foot_points(slider: Slider, foot: Foot) -> Array:
 
 def _foot(slider: Slider, foot: Foot) -> list[float]:
     """One row of `Contacts.feet`, at height 0 and at rest."""
-    mass, row = slider.moved_by(foot), [0.0] * lay.FOOT
+    mass, row = slider.moving_mass(foot), [0.0] * lay.FOOT
     inertia = mass * foot.length**2 / 12.0 if foot.inertia is None else foot.inertia
     preload = slider.preload / len(slider.feet)
     force = 0.0 if foot.mirrored else preload if foot.face == "lower" else -preload
@@ -105,10 +105,10 @@ def _foot(slider: Slider, foot: Foot) -> list[float]:
 
 
 def contact_rate(contacts: Contacts, sliders: Sequence[Slider], basis: TimeBasis | None) -> float:
-    """Bound of the natural frequency of the spring contact, rad/s, with every point in contact; 0 of other contacts.
+    """Upper bound of the natural frequency of spring contact with all points in contact, rad/s; else 0.
 
-    With the compliance of the beam's modes where the coupling is two-way. A dashpot counts with half its rate: a step
-    of it is stable for as long.
+    With two-way coupling it includes the compliance of the beam's modes. A dashpot contributes half its rate, which
+    has the same stable step.
     """
     if contacts.law != lay.SPRING or contacts.restitution is not None:
         return 0.0
@@ -126,7 +126,7 @@ def contact_rate(contacts: Contacts, sliders: Sequence[Slider], basis: TimeBasis
 
 
 def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]) -> None:
-    """Raise InputError for sliders off the beam, over a step of its surface, or that do not run together."""
+    """Raise InputError for sliders off the beam, across a step of its surface, or of different kinds."""
     feet = [foot for slider in sliders for foot in slider.feet]
     for slider, start in zip(sliders, starts, strict=True):
         span, near = contact_range(beam, start), SLACK * beam.length
@@ -134,10 +134,10 @@ def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]
             first, last = (start + foot.offset + side * foot.length for side in (-0.5, 0.5))
             if first < 0.0 or last > beam.length or first < span.start - near or last > span.end + near:
                 step = span.start if first < span.start else span.end
-                over = "" if step in (0.0, beam.length) else f", over the step of beam.section at {written(step)} m"
+                over = "" if step in (0.0, beam.length) else f" or across the step of beam.section at {written(step)} m"
                 raise InputError(
-                    f"slider.position = {start!r} m and slider.foot.length = {foot.length!r} m put a foot from "
-                    f"{first:.6g} to {last:.6g} m, off the beam{over}: move the slider or shorten the foot"
+                    f"slider.position = {start!r} m and slider.foot.length = {foot.length!r} m: the foot from "
+                    f"{first:.6g} to {last:.6g} m is off the beam{over}, move the slider or shorten the foot"
                 )
     check_one_range(beam, starts)
     for name in ("coupling",) if sliders[0].contact else ("coupling", "normal", "kinematics", "line", "gravity"):
@@ -149,7 +149,7 @@ def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]
     if any(foot.mirrored for foot in feet) and sliders[0].coupling == "two-way":
         for name in ("gravity", "preload_stiffness"):
             if value := max(getattr(slider, name) for slider in sliders):
-                raise InputError(f"slider.{name} = {value!r} moves mirrored beams apart: give 0, or 'one-way'")
+                raise InputError(f"slider.{name} = {value!r} breaks the mirror symmetry: give 0, or 'one-way'")
         if not all(foot.mirrored for foot in feet):
             raise InputError("slider.foot: some are mirrored and some are not, give all the same, or 'one-way'")
     if any(slider.contact and slider.contact.hard for slider in sliders):
@@ -157,12 +157,12 @@ def check_sliders(beam: Beam, sliders: Sequence[Slider], starts: Sequence[float]
 
 
 def _check_hard(sliders: Sequence[Slider]) -> None:
-    """Raise InputError for what impacts of a hard contact do not support."""
+    """Raise InputError for options that hard contact does not model."""
     if len(sliders) > 1:
-        raise InputError("slider: a hard contact is of one slider, give slider.contact.stiffness")
+        raise InputError("slider: hard contact takes one slider, give slider.contact.stiffness for several")
     slider, foot = sliders[0], sliders[0].feet[0]
     own = [(name, getattr(slider, name)) for name in ("coupling", "preload_stiffness")]
     own += [(f"foot.{name}", getattr(foot, name)) for name in ("face", "length", "offset", "mirrored")]
     for (name, value), right in zip(own, ("one-way", 0.0, "upper", 0.0, 0.0, False), strict=True):
         if value != right:
-            raise InputError(f"slider.{name} = {value!r} with a hard contact: give {right!r} or contact.stiffness")
+            raise InputError(f"slider.{name} = {value!r} with hard contact: give {right!r} or contact.stiffness")

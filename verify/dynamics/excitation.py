@@ -1,4 +1,4 @@
-"""Harmonic forces with a polynomial envelope, and the exact response of complex modal rows to them."""
+"""Harmonic forces with a polynomial envelope, and the exact response of complex modal rows."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,14 +14,14 @@ from verify.problem.beam import Beam, PointForce
 from verify.validation import check_number
 
 RESONANCE = 1e-9
-"""Relative distance to an undamped resonance within which a drive is refused."""
+"""Relative distance to an undamped resonance within which a drive is an error."""
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
 """3 p^2 - 2 p^3: from 0 to 1 with zero slope at both ends."""
 SLOW = 0.5
-"""|i omega - lambda| T below which a row's forced part is a power series from rest: the closed form cancels there."""
+"""|i omega - lambda| T below which the forced part is a power series: the closed form has cancellation."""
 SERIES = 12
-"""Further powers of that series: SLOW^12 / 12! is rounding."""
+"""Additional powers of that series: SLOW^12 / 12! is rounding."""
 
 
 class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -39,11 +39,11 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return z.real, (self.rates * z).real
 
     def of_state(self, q: Array, rates: Array) -> ComplexArray:
-        """The z of modes with this state, (n,): Re z = q, Re(lambda z) = dq/dt."""
+        """State z of modes with amplitudes q and rates dq/dt, (n,): Re z = q, Re(lambda z) = dq/dt."""
         return np.asarray(q + 1j * (self.rates.real * q - rates) / self.rates.imag)
 
     def after(self, z: ComplexArray, t: Any) -> ComplexArray:
-        """Free rows at the times t after z, (*shape of t, n)."""
+        """Free rows at times t after the state z, (*shape of t, n)."""
         return np.asarray(np.exp(np.multiply.outer(t, self.rates)) * z)
 
 
@@ -72,7 +72,7 @@ class Forced(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def modal_rows(basis: TimeBasis, forces: Sequence[PointForce], damping: Ratio) -> Rows:
-    """The modes of a basis with the ratio `damping`, one or (n,), under the forces."""
+    """The modes of a basis under forces, with damping ratio `damping`, a number or (n,)."""
     loads = sum((phasor(f) * basis.loads(f.position) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
     damped = basis.omegas * np.sqrt(1.0 - np.square(damping))
     return Rows(
@@ -88,7 +88,7 @@ NO_ROWS = Rows(
 
 
 def forced_response(rows: Rows, omega: float, envelope: Array, unit_s: float, origin: float = 0.0) -> Forced:
-    """The forced part under Re(F sum_d envelope_d (t/T)^d e^{i omega (t + origin)}), 0 <= t <= T where it grows.
+    """The forced part under Re(F sum_d envelope_d (t/T)^d e^{i omega (t + origin)}), 0 <= t <= T.
 
     Half of the force drives e^{i omega t}, half e^{-i omega t}; each amplitude follows from the highest power down,
     (i omega - lambda) A_d + (d + 1)/T A_{d+1} = c F envelope_d / 2, exact for any polynomial.
@@ -102,10 +102,10 @@ def forced_response(rows: Rows, omega: float, envelope: Array, unit_s: float, or
 
 
 def _amplitudes(stiff: ComplexArray, load: ComplexArray, unit_s: float) -> ComplexArray:
-    """Powers of t/T of a in a' + stiff a = load, (n, powers).
+    """Coefficients of powers of t/T of the solution a of a' + stiff a = load, (n, powers).
 
-    The particular polynomial, or, where an envelope grows and `stiff` is small, the series of the solution from rest:
-    near a resonance the polynomial is large and would cancel against the free part, to no digit at all on it.
+    The particular polynomial, or for small `stiff` and a growing envelope the series of the solution from rest: near a
+    resonance the polynomial is large and cancels against the free part.
     """
     slow = (abs(stiff) * unit_s < SLOW) & (load.shape[1] > 1)
     a, safe = np.zeros_like(load), np.where(slow, 1.0, stiff)
@@ -121,7 +121,7 @@ def _amplitudes(stiff: ComplexArray, load: ComplexArray, unit_s: float) -> Compl
 
 
 def check_damping(beam: Beam, modal_damping: float | None) -> None:
-    """Raise InputError for a damping ratio, prescribed or that of the beam's loss factor, outside 0 to 1."""
+    """Raise InputError for a damping ratio, `modal_damping` or by the beam's loss factor, outside 0 to 1."""
     if modal_damping is None:
         check_number("half of beam.loss_factor", 0.5 * beam.loss_factor, "ratio of every mode", at_least=0, below=1)
     else:
@@ -129,7 +129,7 @@ def check_damping(beam: Beam, modal_damping: float | None) -> None:
 
 
 def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) -> None:
-    """Raise InputError where an undamped mode is driven at its own frequency."""
+    """Raise InputError for an undamped mode that is driven at its natural frequency."""
     ratio = np.abs(2.0 * np.pi * frequency_hz / basis.omegas - 1.0)
     nearest = int(ratio.argmin())
     if ratio[nearest] < RESONANCE and not np.broadcast_to(damping, ratio.shape)[nearest]:

@@ -1,4 +1,4 @@
-"""Free vibration of a beam from an initial shape and velocity, exact in the modes of its model."""
+"""Free vibration of a beam from an initial shape and velocity, exact in the modes of the model."""
 
 from collections.abc import Callable, Sequence
 from math import sqrt
@@ -16,34 +16,34 @@ from verify.linear.numerics import extremes
 from verify.linear.positions import Numbers, real_array, vector_on
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam
-from verify.validation import check_number, check_whole
+from verify.validation import check_integer, check_number
 
 Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
-"""A mode's number, a function of x (m), or places and values with straight lines between them."""
+"""A mode number, a function of x (m), or positions and values with linear interpolation."""
 GAUSS = 6
-"""Points in each piece of the shapes' polynomials: squares of cubics are integrated exactly."""
+"""Gauss points per piece of the shapes: squares of cubics are integrated exactly."""
 MOST_SAMPLES = 1_000_000
 NEAR = 1e-6
-"""Relative to the length, half the interval over which a body turns with a function of x, away from corners; relative
-to the largest value, what a shape may have at a supported end."""
+"""Half interval of the difference quotient for the rotation of a body, relative to the length; largest deflection of
+an initial shape at a supported end, relative to its maximum."""
 CORNERED = 0.05
-"""Share of the upper half of the modes in the elastic energy above which the shape has corners."""
-CORNERS = "energies: the initial shape has corners, its elastic energy grows with the number of modes"
+"""Fraction of the elastic energy in the upper half of the modes above which the shape has corners."""
+CORNERS = "energies: the initial shape has corners, so that its elastic energy grows with the number of modes"
 
 
 class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     """A beam that vibrates freely from an initial shape and velocity."""
 
     model: str
-    """Its name."""
+    """Name of the model."""
     count: int | None
     """Elements or segments; None for the exact beam."""
     damping: Ratio
-    """Ratio zeta of every mode, or (m,), of each where springs, ground or an axial force have no loss."""
+    """Damping ratio zeta of all modes, or (m,) of each mode where part of the stiffness is lossless."""
     times: Array
     """(n,), seconds from the release."""
     points: Array
-    """(p,), m: places of the deflection."""
+    """(p,), m: positions of deflection and velocity."""
     deflection: Array
     """(n, p), m."""
     velocity: Array
@@ -51,13 +51,13 @@ class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     kinetic: Array
     """(n,), J."""
     elastic: Array
-    """(n,), J. It grows with the number of modes where the shape has corners (`notes`)."""
+    """(n,), J. For shapes with corners it grows with the number of modes (`notes`)."""
     frequencies_hz: Array
-    """(m,), of the model's modes, undamped, ascending."""
+    """(m,), undamped natural frequencies of the model, ascending."""
     amplitudes: Array
-    """(m,), sqrt(kg) m: share q of every mode in the initial shape, w = sum q phi, phi as in `Modes`."""
+    """(m,), sqrt(kg) m: modal amplitudes q of the initial shape, w = sum q phi, phi as in `Modes`."""
     truncation: float
-    """What the modes leave of the initial shape, rms over rms (weighted by mass and rotary inertia); 0 without one."""
+    """Truncation error of the initial shape, rms over rms (weighted by mass and rotary inertia); 0 without a shape."""
     end: EndState
     """State from which `simulate` continues (`continue_from`)."""
     notes: tuple[str, ...]
@@ -80,38 +80,38 @@ def free_vibration(
 ) -> FreeVibration:
     """A beam released at t = 0 from a shape (m) with a velocity (m/s), without forces.
 
-    The shape's share in each mode is phi^T M w, least squares weighted by mass and rotary inertia; then every mode is
-    q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
-    Vibrations, 1967, ch. 5). Bodies turn as the shape does at their place, at a corner by the mean of both sides.
+    The modal amplitudes of the shape are phi^T M w, a least-squares fit weighted by mass and rotary inertia. Each mode
+    is q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
+    Vibrations, 1967, ch. 5). Bodies rotate with the slope of the shape, at a corner with the mean of both sides.
 
     Parameters
     ----------
     beam : Beam
-        Without rigid-body motions.
+        Supported against rigid-body motions.
     shape, velocity : callable, pair, int or None
-        Each a function of x, a pair (x, values) with straight lines between the places from 0 to L, or None for zero.
-        `shape` may be a mode number with `amplitude`; it is 0 at pinned and clamped ends.
+        A function of x, a pair (x, values) with linear interpolation from 0 to L, or None for zero. `shape` may be a
+        mode number with `amplitude`. Values are zero at pinned and clamped ends.
     duration : float
         Seconds.
     amplitude : float, optional
-        Largest deflection of that mode, m, positive where it first moves off its left end.
+        Largest deflection of the mode of `shape`, m, positive next to the left end.
     model, count, modes : str, int, int
-        Model, its number of segments or elements, and the modes of the exact beam (400 unless given).
+        Model, number of segments or elements, number of modes of the exact beam (default: 400).
     modal_damping : float, optional
-        Damping ratio of every mode; unless given that of the beam's loss factor at each mode.
+        Damping ratio of every mode; default: by the beam's loss factor.
     at : float or sequence
-        Places of deflection and velocity, (p,), m.
+        Positions of deflection and velocity, (p,), m.
     samples : int
         Number of times from 0 to `duration`.
 
     Raises
     ------
     InputError
-        For bad arguments, and for a beam with rigid-body motions.
+        For invalid arguments, and for a beam with rigid-body motions.
     """
     check_number("duration", duration, "seconds", above=0)
     check_damping(beam, modal_damping)
-    check_whole("samples", samples, 2, MOST_SAMPLES)
+    check_integer("samples", samples, 2, MOST_SAMPLES)
     points = vector_on("at", at, beam.length)
     basis = basis_of(beam, model, count, modes)
     damping = damping_in(basis, modal_damping)
@@ -147,21 +147,21 @@ def free_vibration(
 def _start(
     basis: TimeBasis, shape: Shape | None, amplitude: float | None, velocity: Shape | None
 ) -> tuple[Array, Array, float]:
-    """(q, dq/dt) of every mode at the start, and what they leave of the shape. Raises InputError."""
+    """(q, dq/dt, truncation error of the shape) at the start, q and dq/dt (m,). Raises InputError."""
     if shape is None and velocity is None:
-        raise InputError("shape is None and so is velocity: give one of them, or both, else nothing moves")
+        raise InputError("shape and velocity are None: give at least one of them")
     rest = np.zeros(len(basis.omegas)), 0.0
     rates = rest[0] if velocity is None else _projected(basis, "velocity", velocity)[0]
     if not isinstance(shape, int) or isinstance(shape, bool):
         if amplitude is not None:
             raise InputError(
-                f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out"
+                f"amplitude = {amplitude!r} belongs to a mode: give a mode number as shape, or leave it out"
             )
         q, truncation = rest if shape is None else _projected(basis, "shape", shape)
         return q, rates, truncation
-    check_whole("shape", shape, 1, len(basis.omegas))
+    check_integer("shape", shape, 1, len(basis.omegas))
     if amplitude is None:
-        raise InputError(f"amplitude is missing: give mode {shape} its largest deflection in metres")
+        raise InputError(f"amplitude is missing: give the largest deflection of mode {shape} in metres")
     length, own = basis.beam.length, slice(shape - 1, shape)
     check_number("amplitude", amplitude, "metres", at_least=-1e100 * length, at_most=1e100 * length)
     x = np.linspace(0.0, length, 20 * shape + 41)
@@ -172,17 +172,17 @@ def _start(
     return q, rates, 0.0
 
 
-def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]:
-    """Share of every mode in a shape, (m,), and what they leave of it. Raises InputError."""
+def _projected(basis: TimeBasis, name: str, shape: Shape) -> tuple[Array, float]:
+    """(modal amplitudes of a shape, (m,), truncation error, rms over rms). Raises InputError."""
     beam = basis.beam
-    function, breaks = _function(name, given, beam.length)
+    function, breaks = _function(name, shape, beam.length)
     if name == "shape":
         ends = np.array([0.0, beam.length])
         largest = abs(function(np.linspace(0.0, beam.length, 33))).max()
         for support, place, value in zip(beam.supports, ends.tolist(), function(ends).tolist(), strict=True):
             if support in ("pinned", "clamped") and abs(value) > NEAR * largest:
-                raise InputError(f"shape = {value!r} m at x = {place!r} m, where the beam is {support}: let it be 0")
-    # Gauss points between the edges of the shapes, the steps of the beam and the corners of the given shape
+                raise InputError(f"shape = {value!r} m at x = {place!r} m, where the beam is {support}: give 0")
+    # Gauss points between the edges of the pieces, the steps of the beam and the corners of the initial shape
     steps = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
     pieces = basis.edges if basis.count is not None else np.append(basis.edges[:-1:3], beam.length)
     edges = np.union1d(np.union1d(pieces, steps), breaks)
@@ -195,7 +195,7 @@ def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]
     shapes, values = basis.shapes(x, 0), function(x)
     if beam.mass:
         places, inertias = np.array([m.position for m in beam.mass]), np.array([m.rotary_inertia for m in beam.mass])
-        # a chord over a body: at a corner the mean of both sides
+        # difference quotient across the body: at a corner the mean of both sides
         left, right = np.maximum(places - NEAR * beam.length, 0.0), np.minimum(places + NEAR * beam.length, beam.length)
         turns = (function(right) - function(left)) / (right - left)
         shapes = np.hstack([shapes, basis.shapes(places, 0), basis.body_turns()])
@@ -207,26 +207,26 @@ def _projected(basis: TimeBasis, name: str, given: Shape) -> tuple[Array, float]
     return q, sqrt(float(weight @ (values - q @ shapes) ** 2) / size) if size > 0.0 else 0.0
 
 
-def _function(name: str, given: Shape, length: float) -> tuple[Callable[[Array], Array], Array]:
-    """The shape as a function of places (n,) and the places of its corners, m. Raises InputError."""
-    if callable(given):
+def _function(name: str, shape: Shape, length: float) -> tuple[Callable[[Array], Array], Array]:
+    """(the shape as a function of positions (n,), positions of its corners, m). Raises InputError."""
+    if callable(shape):
 
         def values(x: Array) -> Array:
             try:
-                result: object = given(x)
+                result: object = shape(x)
             except (TypeError, ValueError):  # a function of one number
-                result = [given(float(one)) for one in x]
-            found = real_array(f"{name}(x)", result, "SI")
-            if found.shape not in ((), x.shape) or not np.isfinite(found).all():
-                raise InputError(f"{name}(x) = {shown(result)} for {len(x)} places: return as many finite numbers")
-            return np.broadcast_to(found, x.shape)
+                result = [shape(float(one)) for one in x]
+            array = real_array(f"{name}(x)", result, "SI")
+            if array.shape not in ((), x.shape) or not np.isfinite(array).all():
+                raise InputError(f"{name}(x) = {shown(result)} for {len(x)} positions: return as many finite numbers")
+            return np.broadcast_to(array, x.shape)
 
         return values, np.empty(0)
-    if not isinstance(given, list | tuple | np.ndarray) or len(given) != 2:
-        raise InputError(f"{name} = {shown(given)}: give a function of x, a pair (x, values), or of shape a mode")
-    x, y = real_array(f"{name}[0]", given[0], "metres"), real_array(f"{name}[1]", given[1], "SI")
+    if not isinstance(shape, list | tuple | np.ndarray) or len(shape) != 2:
+        raise InputError(f"{name} = {shown(shape)}: give a function of x, a pair (x, values), or a mode as shape")
+    x, y = real_array(f"{name}[0]", shape[0], "metres"), real_array(f"{name}[1]", shape[1], "SI")
     if x.ndim != 1 or x.shape != y.shape or len(x) < 2 or not np.isfinite(y).all():
         raise InputError(f"{name} has x of the shape {x.shape} and values of {y.shape}: give as many finite ones")
     if not (np.diff(x) > 0).all() or max(abs(x[0]), abs(x[-1] - length)) > 1e-9 * length:
-        raise InputError(f"{name}[0] = {shown(given[0])}: let x ascend from 0 to {length!r} m")
+        raise InputError(f"{name}[0] = {shown(shape[0])}: give x that ascends from 0 to {length!r} m")
     return lambda at: np.asarray(np.interp(at, x, y)), x

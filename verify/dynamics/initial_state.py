@@ -1,4 +1,4 @@
-"""Initial states of beam and sliders: static deflection, steady state with attached mass, feet at rest."""
+"""Initial states of beam and sliders: static deflection, steady state with attached mass, feet in equilibrium."""
 
 import numpy as np
 
@@ -12,18 +12,18 @@ from verify.linear.time_basis import Ratio, TimeBasis
 from verify.problem.beam import Beam
 
 PASSES = 4
-"""Fixed-point iterations for the material under a point; each reduces the error by (h/2) w'' and more."""
+"""Fixed-point iterations for the material point under a contact point; each reduces the error by (h/2) w''."""
 BALANCED = 1e-12
-"""Relative resultant of the forces on a beam below which they cancel."""
+"""Relative resultant of the forces on a beam below which they are in balance."""
 STATIC_MODES = 20
-"""Modes of the static deflection in the margins."""
+"""Number of modes for the static deflection in the margins."""
 
 
 def static_deflection(basis: TimeBasis, contacts: Contacts) -> Array:
-    """Modal amplitudes of a beam at rest under the sliders, (n,), sqrt(kg) m.
+    """Modal amplitudes of a beam in static equilibrium under the sliders, (n,), sqrt(kg) m.
 
-    A load acts at the material point x + (h/2) w' under it, normal to the surface, so that it also turns the section
-    by (h/2) w'. Feet share their load equally among their points.
+    A load acts at the material point x + (h/2) w', normal to the surface, and therefore has the moment (h/2) w' per
+    unit load on the section. The points of a foot share its load equally.
     """
     p, x = contacts.points, contacts.start + contacts.points[:, lay.OFFSET]
     foot = contacts.indices[:, lay.OF_FOOT] if len(contacts.feet) else np.arange(len(p))
@@ -40,14 +40,14 @@ def static_deflection(basis: TimeBasis, contacts: Contacts) -> Array:
 
 
 def _material(basis: TimeBasis, q: Array, x: Array, lever: Array) -> Array:
-    """Material points under points at x, m."""
+    """Material points at the positions x, m."""
     return np.asarray(np.clip(x + lever * (q @ basis.shapes(x, 1)), 0.0, basis.beam.length))
 
 
 def _loads(contacts: Contacts, foot: Indices, compliance: Array) -> Array:
-    """Force along z on each foot at rest, N, or minus the load of each point without foot.
+    """Static force along z on each foot, N, or minus the load of each point without foot.
 
-    Preload springs relax as the beam, by its compliance (feet, feet) in m/N, and the contact deform.
+    Preload springs relax with the deformation of the beam (`compliance` (feet, feet), m/N) and of the contact.
     """
     if not len(contacts.feet):
         return -contacts.points[:, lay.LOAD]
@@ -59,9 +59,9 @@ def _loads(contacts: Contacts, foot: Indices, compliance: Array) -> Array:
 
 
 def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping: Ratio) -> ComplexArray:
-    """Response z of the modes to bilateral masses at rest on a steady beam, at the stage's time 0, (n,).
+    """Modal response z to bilateral masses on a steady beam, at time 0 of the stage, (n,).
 
-    W = W_0 + G m omega^2 W at all points: each mass loads the beam by m omega^2 W. Raises InputError at a resonance.
+    W = W_0 + G m omega^2 W at all points: a mass exerts the force m omega^2 W. Raises InputError at a resonance.
     """
     omega, x = stage.omega, contacts.start + contacts.points[:, lay.OFFSET]
     shapes, mass = basis.shapes(x, 0), contacts.points[:, lay.INERTIA]
@@ -75,9 +75,9 @@ def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping
 
 
 def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
-    """Set sliders level and at rest on the surface of free rows z: depths, heights of feet, normal velocities.
+    """Set sliders level in equilibrium on the surface of free rows z: depths, heights of feet, normal velocities.
 
-    Raises InputError for a foot that nothing presses on.
+    Raises InputError for a foot without load.
     """
     p, state, at = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
     x, lever, factors, rates = at, p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
@@ -120,7 +120,7 @@ def _rest_height(number: int, points: Array, level: Array, foot: Array) -> float
 
 
 def deepen_between_beams(basis: TimeBasis, contacts: Contacts, still: Array) -> None:
-    """Move a foot between two beams deeper by the mean deflection with which its preload bends them away."""
+    """Increase the depth of a foot between two beams by the mean deflection of the beams under its preload."""
     p = contacts.points
     x = contacts.start + p[:, lay.OFFSET]
     bent = still @ basis.shapes(_material(basis, still, x, p[:, lay.LEVER]), 0)
@@ -131,9 +131,9 @@ def deepen_between_beams(basis: TimeBasis, contacts: Contacts, still: Array) -> 
 
 
 def largest_static_deflection(beam: Beam, model: str, count: int | None, contacts: Contacts) -> float | None:
-    """Static deflection under the points, m, by the first modes.
+    """Largest static deflection under the points, m, by the first modes.
 
-    None where they would move a beam with rigid motions.
+    None where the load moves a beam with rigid-body motions.
     """
     p, foot = contacts.points, contacts.indices[:, lay.OF_FOOT]
     if beam.rigid_motions:
@@ -141,7 +141,7 @@ def largest_static_deflection(beam: Beam, model: str, count: int | None, contact
         turned = abs(load @ p[:, lay.OFFSET]) > BALANCED * (abs(load) @ abs(p[:, lay.OFFSET]))
         if abs(load.sum()) > BALANCED * abs(load).sum() or turned or (p[:, lay.WEIGHT] < 1.0).any():
             return None
-    if model == "analytic" and set(beam.added) - {"section", "mass"}:  # the exact beam has no modes with these
+    if model == "analytic" and set(beam.features) - {"section", "mass"}:  # the exact beam has no modes with these
         model, count = "fem", 2 * STATIC_MODES
     basis = basis_of(beam, model, count, STATIC_MODES if count is None else None)
     still = static_deflection(basis, contacts)

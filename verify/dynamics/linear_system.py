@@ -1,4 +1,4 @@
-"""A driven linear beam in time as complex modal rows and rows of the drive, stage by stage."""
+"""A driven linear beam in time: complex modal rows and rows of the drive in consecutive stages."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from verify.linear.field import HarmonicField
 
 EXACT_DEGREE = 8
-"""Degree of the polynomials for the exact steady field, 0.3 rad of its waves a piece: rounding."""
+"""Degree of the polynomials for the exact steady field on pieces of 0.3 rad of its waves: error is rounding."""
 
 
 class Steps(msgspec.Struct, frozen=True):
-    """Equal steps of a stretch of time."""
+    """Equal time steps of a stage."""
 
     n: int
     dt: float
@@ -37,13 +37,13 @@ class Steps(msgspec.Struct, frozen=True):
 
 
 def cut(duration: float, longest: float, samples: int) -> Steps:
-    """Equal steps no longer than `longest`, a whole number of them from sample to sample."""
+    """Equal steps no longer than `longest`, an integer number from sample to sample."""
     every = max(int(np.ceil(duration / longest / samples * (1.0 - 1e-12))), 1)
     return Steps(every * samples, duration / (every * samples), every)
 
 
 class Growth(msgspec.Struct, frozen=True, eq=False):
-    """A stretch of time in which the forces' amplitude is one polynomial of (t / duration)."""
+    """An interval in which the amplitude of the forces is a polynomial of t / duration."""
 
     steps: Steps
     coefficients: Array
@@ -54,29 +54,29 @@ def _no_shapes(x: Array, derivative: int) -> Array:
 
 
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A stretch of time in which the forces keep one envelope; its own time begins at 0."""
+    """An interval with one polynomial envelope of the forces; its time t starts at 0."""
 
     rows: Rows = NO_ROWS
     forced: Forced | None = None
     """None where the drive's rows are a steady field."""
     shapes: Callable[[Array, int], Any] = _no_shapes
-    """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 where no mode is free."""
+    """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 without free modes."""
     field: Callable[[Array, int, Any], ComplexArray]
     """(x, derivative, psi) -> shapes of the drive, one for each power of t, (degree + 1, len(x)), m."""
     edges: Array
-    """(pieces + 1,), m: between them all shapes are polynomials of `degree`."""
+    """(pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`."""
     degree: int
     omega: float
     origin: float = 0.0
-    """Seconds before the stage begins."""
+    """Start time of the stage, s."""
     unit_s: float = 1.0
     envelope: Array = CONSTANT
     """Amplitude of the forces as a polynomial in t / unit_s."""
     steps: Steps
     complex_rows: int = 0
-    """Rows with a complex psi, the last ones."""
+    """Number of rows with complex psi, which are the last ones."""
     ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
-    """What a slider did that is beyond the first edge, and beyond the last."""
+    """Messages for a slider beyond the first edge, and beyond the last."""
 
     @property
     def duration(self) -> float:
@@ -85,25 +85,25 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def sample_times(self) -> Array:
-        """Times of the samples, (n,), seconds from the start of the stage, which is not among them."""
+        """Times of the samples, (n,), s from the start of the stage, without the start."""
         return self.steps.every * self.steps.dt * np.arange(1.0, self.steps.n // self.steps.every + 1)
 
     def columns(self, x: Array, derivative: int = 0) -> Array:
-        """All shapes at x, (columns, len(x)): real parts of psi, imaginary parts of the complex rows, the drive's.
+        """All shapes at x, (columns, len(x)): Re psi, Im psi of the complex rows, then the drive.
 
-        The drive has two for each power of t, the real and the imaginary part.
+        The drive has two columns for each power of t, real and imaginary part.
         """
         psi = self.shapes(x, derivative)
         imaginary = psi[len(psi) - self.complex_rows :].imag
         return np.concatenate([psi.real, imaginary, interleaved(self.field(x, derivative, psi).T).T])
 
     def factors(self, z: ComplexArray, t: Array) -> Array:
-        """Factors of the columns for free rows z, (len(t), n), at the times t: (len(t), columns)."""
+        """Factors of the columns at times t, (len(t), columns), for free rows z (len(t), n)."""
         imaginary = z[:, z.shape[1] - self.complex_rows :].imag
         return np.concatenate([z.real, -imaginary, self.drive_factors(t)], axis=1)
 
     def table(self, first: int, last: int) -> Array:
-        """Polynomials of pieces first..last-1, (pieces, degree + 1, columns)."""
+        """Polynomial coefficients of pieces first..last-1, (pieces, degree + 1, columns)."""
         return taylor_table(self.columns, self.edges, first, last, self.degree)
 
     def drive_shapes(self, x: Array, derivative: int) -> ComplexArray:
@@ -125,23 +125,23 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.concatenate([rates.real, -imaginary, interleaved(drive[None].conj())[0]])
 
     def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
-        """Closed form, (len(t), len(x)), m: free rows from z at t = 0, and the drive."""
+        """Deflection in closed form, (len(t), len(x)), m: free rows from z at t = 0, and the drive."""
         return np.asarray(self.factors(self.rows.after(z, t), t) @ self.columns(x))
 
     def free(self, z: ComplexArray) -> ComplexArray:
-        """The free part at the start of a motion that begins with z, (n,)."""
+        """Free part at the start of a motion with total state z, (n,)."""
         return z - self.forced.at(0.0) if self.forced else z
 
     def whole(self, z: ComplexArray, t: float) -> ComplexArray:
-        """All of the motion at time t where its free part is z, (n,)."""
+        """Total state at time t with free part z, (n,)."""
         return z + self.forced.at(t) if self.forced else z
 
     def beyond(self, first: float, last: float) -> str:
-        """What a slider with points from `first` to `last`, m, did that is beyond an edge."""
+        """Message for a slider with points from `first` to `last`, m, of which one is beyond an edge."""
         return self.ends[0 if self.edges[0] - first > last - self.edges[-1] else 1]
 
     def within(self, contact: ContactRange) -> "Stage":
-        """The same for a slider that stays in a range of the beam: the pieces end there."""
+        """The stage with pieces in a contact range alone."""
         if contact.ends == self.ends:  # the whole beam
             return self
         near = SLACK * float(self.edges[-1])
@@ -149,12 +149,12 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return replace(self, edges=np.concatenate([[contact.start], inner, [contact.end]]), ends=contact.ends)
 
     def stepped(self, longest: float, closer: int = 1) -> "Stage":
-        """The same in steps no longer than `longest`, with `closer` times as many samples."""
+        """The stage in steps no longer than `longest`, with `closer` times as many samples."""
         return replace(self, steps=cut(self.duration, longest, closer * (self.steps.n // self.steps.every)))
 
 
 def interleaved(amplitudes: ComplexArray) -> Array:
-    """Real and imaginary parts in turns, (n, k) complex -> (n, 2 k)."""
+    """Alternate real and imaginary parts, (n, k) complex -> (n, 2 k)."""
     return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), 2 * amplitudes.shape[1])
 
 
@@ -171,7 +171,7 @@ def stages_from_rest(
     pieces: Sequence[Growth],
     origin: float,
 ) -> list[Stage]:
-    """One stage for every piece of the forces' envelope, with the steady response of truncated modes."""
+    """One stage per piece of the envelope, with the quasi-static response of truncated modes."""
     rows, stages = modal_rows(basis, forces, damping), []
     tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail and forces else None
     if tail:  # its third derivative jumps where a force acts
@@ -182,7 +182,7 @@ def stages_from_rest(
         growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
 
         def field(x: Array, derivative: int, psi: Any, forced: Forced = forced, growth: Array = growth) -> ComplexArray:
-            shapes = forced.drive_shapes(psi)  # truncated modes follow the envelope at once
+            shapes = forced.drive_shapes(psi)  # truncated modes follow the envelope without delay
             return shapes + np.outer(growth, tail(x, derivative)) if tail else shapes
 
         stages.append(
@@ -198,7 +198,7 @@ def stages_from_rest(
 def steady_stage(
     harmonic: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio
 ) -> Stage:
-    """A beam in its steady state; with a basis, its modes are at rest at first and respond to contact forces."""
+    """A beam in its steady state; the modes of `basis` start at rest and respond to contact forces."""
     edges, degree = _steady_edges(harmonic)
     if basis:
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
@@ -214,12 +214,12 @@ def steady_stage(
 
 
 def _to_the_end(edges: Array, beam: Beam) -> Array:
-    """Edges of which the last is the beam's end to the last digit."""
+    """Edges with the last one set exactly to the beam's end."""
     return np.append(edges[:-1], beam.length)
 
 
 def _steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
-    """Edges of the polynomial pieces of a steady field, m, and their degree."""
+    """(edges of the polynomial pieces of a steady field, m, their degree)."""
     beam = harmonic.beam
     if harmonic.count is not None:
         from verify.linear.mesh import divide
@@ -242,10 +242,10 @@ def damped_field(
     frequency_hz: float,
     damping: float | None,
 ) -> "HarmonicField":
-    """The steady field of a model with this damping ratio, the beam's own damping for None. Raises InputError."""
+    """The steady field of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0
     if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
-        # the exact beam has no modes to damp: a loss factor of twice the ratio stands for it
+        # the exact field has no modes: a loss factor of twice the ratio is equivalent
         modal_damping = damping if kind.sized else 0.0
         beam = replace(beam, loss_factor=0.0 if kind.sized else 2.0 * damping)
     return kind.build(beam, count).harmonic(tuple(forces), frequency_hz, modal_damping=modal_damping)

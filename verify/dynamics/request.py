@@ -1,4 +1,4 @@
-"""A checked simulation request: sliders, damping, the forces' envelope cut into steps, continuation of a run."""
+"""A validated simulation request: sliders, damping, time steps of the envelope, continuation of a run."""
 
 from collections.abc import Sequence
 from math import inf
@@ -20,27 +20,27 @@ from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.slider import GRAVITY, Slider
-from verify.validation import check_kind, check_number, check_unmasked, check_whole, plain, several
+from verify.validation import as_tuple, check_integer, check_number, check_type, check_unmasked, python_scalar
 
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
-"""Least number of a slider's steps in a period of the drive; a prime for feet: points at equal distances in a wave do
-not all reverse their friction at the same phases of it."""
+"""Least number of time steps per drive period. For feet it is prime, so that equally spaced points on a wave do not
+all reverse their friction in the same steps."""
 FEET_MODES = 80
-"""Modes of the exact beam under feet, unless given."""
+"""Default number of modes of the exact beam under feet."""
 SHORTEST = 1e-100
-"""Least seconds of a motion, and periods of a growth, shorter ones being a step: their squares are numbers."""
+"""Least duration, s, and least growth in periods (a shorter growth is a step): squares do not underflow."""
 COARSEST = 0.25
-"""Longest step of a slider in periods of the drive."""
+"""Largest step of a slider in drive periods."""
 MOST_PERIODS = 1e12
-"""Periods of the drive after which its phase is uncertain by 1e-3 rad."""
+"""Number of drive periods after which rounding of the phase is 1e-3 rad."""
 MOST_STEPS = 2e9
 MOST_SAMPLES = 10_000_000
 Envelope = Sequence[tuple[float, Sequence[float]]]
-"""Pieces (seconds, coefficients of ascending powers of t / seconds, 0 to 1 within each) of the forces' amplitude."""
+"""Envelope of the forces: pieces (seconds, coefficients of ascending powers of t / seconds)."""
 
 
 class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A checked simulation, its time cut into steps."""
+    """A validated simulation, its time divided into steps."""
 
     beam: Beam
     forces: tuple[PointForce, ...]
@@ -50,10 +50,10 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     modes: int | None
     start: str
     modal_damping: float | None
-    """Ratio of every mode where it replaces the damping of the beam."""
+    """Damping ratio of every mode; None: by the beam's loss factor."""
     sliders: tuple[Slider, ...]
     starts: tuple[float, ...]
-    """Initial positions of the sliders, m; those of the earlier run in a continued one."""
+    """Initial positions of the sliders, m; in a continued run those of the first run."""
     prescribed_speeds: tuple[float | None, ...]
     fixed: tuple[bool, ...]
     points: Array
@@ -78,15 +78,15 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def gravity(self) -> float:
-        """Least N / m of the sliders, m/s^2, or that of a slider under its weight."""
+        """Least normal force over moving mass of the sliders, m/s^2; without sliders standard gravity."""
         return min((slider.effective_gravity for slider in self.sliders), default=GRAVITY)
 
     def damping_in(self, basis: TimeBasis | None) -> Ratio:
-        """Damping ratio of all modes of a basis, one or (n,). Raises InputError for an overdamped mode."""
+        """Damping ratio of all modes of a basis, or (n,) of each. Raises InputError for an overdamped mode."""
         return 0.0 if basis is None else damping_in(basis, self.modal_damping)
 
     def notes(self, basis: TimeBasis | None) -> tuple[str, ...]:
-        """Modes, damping and growth of the forces."""
+        """Notes on modes, damping and growth of the forces."""
         notes = [f"modes: {basis.method}" if basis else f"steady field of the {self.model} model, no modes"]
         if self.modal_damping is not None:
             notes.append(f"damping: ratio {self.modal_damping:g}")
@@ -100,7 +100,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return tuple(notes)
 
     def end(self, stage: Stage, z: Any, time: float, **contact: Any) -> EndState:
-        """The state at a time, s, with all of the motion z of the last stage's rows."""
+        """The end state at a time, s, with the total state z of the last stage."""
         q, rates = stage.rows.state(z)
         steady = self.start == "steady"
         return EndState(
@@ -108,7 +108,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         )
 
     def continued(self, stage: Stage) -> Any:
-        """All of the motion z of the rows with which the earlier run ended. Raises InputError for other modes."""
+        """Total state z at the end of the earlier run. Raises InputError for other modes."""
         before, n = self.before, len(stage.rows.rates)
         assert before is not None
         if len(before.q) != n:
@@ -122,12 +122,12 @@ def request_of(
     prescribed_speed: Any, fixed_position: Any, at: Any, samples: int, step: float | None,
     steps_per_period: int | None, continue_from: Any,
 ) -> Request:  # fmt: skip
-    """A checked request; arguments as those of `simulate`. Raises InputError."""
+    """A validated request; arguments as in `simulate`. Raises InputError."""
     check_frequency("frequency_hz", frequency_hz, beam)
     check_number("duration", duration, "seconds", at_least=SHORTEST)
-    check_whole("samples", samples, 2, MOST_SAMPLES)
+    check_integer("samples", samples, 2, MOST_SAMPLES)
     check_damping(beam, modal_damping)
-    kind, sliders = MODELS.named(model), () if slider is None else several("slider", slider, Slider)
+    kind, sliders = MODELS.named(model), () if slider is None else as_tuple("slider", slider, Slider)
     driven = forces_on(beam, forces)
     if not driven and not sliders:
         raise InputError("forces is empty: give at least one PointForce")
@@ -136,22 +136,22 @@ def request_of(
     if start not in ("rest", "steady"):
         raise InputError(f"start = {start!r} is not known: known are rest, steady")
     if sliders and sliders[0].line == "raw" and ("raw" not in kind.lines or start == "steady"):
-        raise InputError("slider.line = 'raw': only rigid links from rest have straight edges, leave it out")
+        raise InputError("slider.line = 'raw': this model and start have no straight edges of links, leave it out")
     if modes is not None and start == "steady" and not two_way:
-        raise InputError(f"modes = {modes!r}: a steady field without two-way coupling has none, leave it out")
+        raise InputError(f"modes = {modes!r}: a steady field without two-way coupling uses no modes, leave it out")
     before = _before(continue_from, beam, model, count, start, sliders)
     if frequency_hz * (duration + (before.time if before else 0.0)) > MOST_PERIODS:
-        raise InputError(f"duration = {duration!r} s: the phase of the drive is unknown after 1e12 periods, shorten it")
+        raise InputError(f"duration = {duration!r} s: rounding makes the phase unknown after 1e12 periods, shorten it")
     replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
     own = before.starts if before and before.contact is not None and sliders else ()
-    starts = own or tuple(one.start_on(beam) for one in sliders)
+    starts = own or tuple(one.initial_position(beam) for one in sliders)
     if sliders:
         check_sliders(beam, sliders, starts)
     speeds = _each("prescribed_speed", prescribed_speed, len(sliders))
-    fixed = tuple(plain(one) for one in _each("fixed_position", fixed_position, len(sliders)))
+    fixed = tuple(python_scalar(one) for one in _each("fixed_position", fixed_position, len(sliders)))
     for speed, one in zip(speeds, fixed, strict=True):
         check_number("prescribed_speed", 0.0 if speed is None else speed, "m/s")
-        check_kind("fixed_position", one, bool)
+        check_type("fixed_position", one, bool)
     grown = _growth(soft_start_periods, envelope, frequency_hz, start == "steady" or before is not None)
     longest = _longest_step(frequency_hz, duration, step, steps_per_period, sliders)
     return Request(
@@ -179,12 +179,12 @@ def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
     row = given.tolist() if getattr(given, "shape", ()) else given
     values = tuple(row) if isinstance(row, Sequence) else (row,) * n
     if len(values) != n:
-        raise InputError(f"{field} has {len(values)} values for {n} sliders: give one for each, or one for all")
+        raise InputError(f"{field} has {len(values)} values for {n} sliders: give one per slider, or one for all")
     return values
 
 
 def _growth(soft: float, envelope: Envelope, frequency_hz: float, moves: bool) -> list[tuple[float, Array]]:
-    """The pieces (seconds, coefficients) over which the forces grow. Raises InputError."""
+    """Pieces (seconds, coefficients) of the growth of the forces. Raises InputError."""
     check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
     check_unmasked("envelope", envelope)
     try:
@@ -198,22 +198,22 @@ def _growth(soft: float, envelope: Envelope, frequency_hz: float, moves: bool) -
         raise InputError(f"soft_start_periods = {soft!r} and envelope = {shown(envelope)}: give one of the two")
     if (soft or pieces) and moves:
         given = f"soft_start_periods = {soft!r}" if soft else f"envelope = {shown(envelope)}"
-        raise InputError(f"{given} with start = 'steady' or continue_from: the beam moves already, leave it out")
+        raise InputError(f"{given} with start = 'steady' or continue_from: growth starts from rest, leave it out")
     return [(soft / frequency_hz, SMOOTH_STEP)] if soft >= SHORTEST else pieces
 
 
 def _longest_step(
     frequency_hz: float, duration: float, step: float | None, steps_per_period: int | None, sliders: Sequence[Slider]
 ) -> float:
-    """The longest step of a slider, s; infinite of a beam alone. Raises InputError."""
+    """Largest time step of a slider, s; infinite without slider. Raises InputError."""
     if not sliders:
         if step is not None or steps_per_period is not None:
             name = "steps_per_period" if step is None else "step"
-            raise InputError(f"{name}: a beam alone takes no steps, leave it out or give slider")
+            raise InputError(f"{name}: a beam without slider has no time steps, leave it out or give slider")
         return inf
     least = STEPS_PER_PERIOD if sliders[0].contact is None else FEET_STEPS_PER_PERIOD
     per_period = least if steps_per_period is None else steps_per_period
-    check_whole("steps_per_period", per_period, 1)
+    check_integer("steps_per_period", per_period, 1)
     longest = 1.0 / (per_period * frequency_hz) if step is None else step
     check_number("step", longest, "seconds", above=0)
     check_step(longest, frequency_hz)
@@ -222,7 +222,7 @@ def _longest_step(
 
 
 def check_steps(duration: float, step: float) -> None:
-    """Raise InputError for a step, s, of which a run takes too many."""
+    """Raise InputError for too many steps of this length, s."""
     if duration / step > MOST_STEPS:
         raise InputError(
             f"duration = {written(duration)} s: {duration / step:.2g} steps are too many, shorten it or lengthen step"
@@ -230,21 +230,21 @@ def check_steps(duration: float, step: float) -> None:
 
 
 def check_step(step: float, frequency_hz: float) -> None:
-    """Raise InputError for a slider's step, s, that does not resolve the period of the drive."""
+    """Raise InputError for a step, s, that does not resolve the drive period."""
     if step * frequency_hz > COARSEST:
         raise InputError(f"step = {step!r} s does not resolve the drive: give at most {COARSEST / frequency_hz:.3g} s")
 
 
 def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
-    """Steps of every piece of the envelope and of the constant forces after it, samples shared by length.
+    """Time steps of the envelope's pieces and of the constant forces after them; samples in proportion to duration.
 
-    As many samples as requested, or one for each piece where those are more. Raises InputError.
+    At least one sample per piece. Raises InputError.
     """
     total = sum(seconds for seconds, _ in grown)
     rest = duration - total
     if rest < -1e-12 * duration:
         raise InputError(
-            f"soft_start_periods or envelope last {written(total)} s: lengthen duration = {written(duration)} s"
+            f"soft_start_periods or envelope last {written(total)} s: increase duration = {written(duration)} s"
         )
     pieces = grown + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
     shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]
@@ -266,13 +266,13 @@ def _before(
     ran = (before.model, before.count, "steady" if before.steady else "rest")
     for name, here, there in zip(("model", "count", "start"), (model, count, start), ran, strict=True):
         if here != there:
-            raise InputError(f"{name} = {here!r}: continue_from is a run with {name} = {there!r}, give that")
+            raise InputError(f"{name} = {here!r}: continue_from is a run with {name} = {there!r}, give the same")
     if replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
-        raise InputError("continue_from is of another beam: give the one it was run with, but for loss_factor")
+        raise InputError("continue_from is a run of another beam: give the same beam (loss_factor may differ)")
     if before.contact is None or not sliders:
         return before
     if before.off:
-        raise InputError(f"continue_from ended where its slider {before.off}: continue one that stays on")
+        raise InputError(f"continue_from: its slider {before.off}, continue a run whose slider did not")
     if len(sliders) != len(before.starts):
         raise InputError(f"continue_from has {len(before.starts)} sliders and this run {len(sliders)}: give as many")
     states = zip(sliders, before.starts, before.contact.sliders.tolist(), before.sliders, strict=True)
@@ -280,5 +280,5 @@ def _before(
         own = (slider.position, (None, first, first + travelled)), (slider.speed, (0.0, earlier.speed, speed))
         for name, (value, known) in zip(("position", "speed"), own, strict=True):
             if value not in known:
-                raise InputError(f"slider.{name} = {value!r}: the earlier slider ends with {known[-1]!r}, give none")
+                raise InputError(f"slider.{name} = {value!r}: the earlier run ends with {known[-1]!r}, leave it out")
     return before

@@ -1,4 +1,4 @@
-"""Results of motions in time."""
+"""Results of time integration."""
 
 import numpy as np
 from msgspec import Struct
@@ -10,19 +10,19 @@ from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 
 END = "end"
-"""Why a run stopped: at its end, or by the user."""
+"""Value of `Statistics.stopped` of a complete run."""
 NONE, NO_EVENTS, NAN = np.empty(0), np.empty((0, 4)), float("nan")
 
 
 class Statistics(Struct, frozen=True, kw_only=True):
-    """Cost of a run and why it ended, of a beam or of a chain."""
+    """Cost of a run of a beam or a chain, and the reason of its end."""
 
     steps: int
-    """0 in closed form."""
+    """Number of time steps; 0 in closed form."""
     evaluations: int
-    """Of the surface under the slider, or of the closed form."""
+    """Number of evaluations of the surface under the slider, or of the closed form."""
     step_s: float
-    """Seconds; 0 without steps."""
+    """Time step, s; 0 without steps."""
     set_up_s: float
     """Wall time of modes and tables."""
     wall_s: float
@@ -30,15 +30,15 @@ class Statistics(Struct, frozen=True, kw_only=True):
     loop_s: float = 0.0
     """Processor time of the compiled loop."""
     step_change: float | None = None
-    """Relative change of the slider's displacement by the last halving of the step; None where none was halved."""
+    """Relative change of the slider's displacement when the step was last halved; None if it was not."""
     unconverged: int = 0
-    """Steps in which the contact forces did not converge."""
+    """Number of steps in which the contact forces did not converge."""
     stopped: str
-    """end, left the beam, came to a step (and where), or diverged; a chain's adds when."""
+    """end, left the beam, came to a step (with its position), or diverged; for a chain with the time."""
 
     @property
     def finished(self) -> bool:
-        """Whether it reached its end."""
+        """Whether the run reached its end."""
         return self.stopped == END
 
 
@@ -46,45 +46,45 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Energies and works over a run, J. Works are positive where they add energy, losses where they remove it."""
 
     kinetic: float
-    """Gained by the free modes of the beam, kinetic."""
+    """Gain of kinetic energy of the beam's free modes."""
     elastic: float
-    """The same, elastic."""
+    """Gain of elastic energy of the beam's free modes."""
     slider: float
-    """Kinetic energy gained by sliders and feet, along and across the beam."""
+    """Gain of kinetic energy of sliders and feet, along and across the beam."""
     contact_elastic: float
-    """Gained by normal and tangential contact springs."""
+    """Gain of elastic energy of normal and tangential contact springs."""
     drive_work: float
     """Work of the driving forces; 0 in a steady field, whose drive is not computed."""
     load_work: float
-    """Work of weight, preload, `slider.pull` and of what prescribes a speed."""
+    """Work of weight, preload, `slider.external_force` and of the force that prescribes a speed."""
     tangential_work: float
-    """Work of the surface's own motion along the beam on the sliders."""
+    """Work of the tangential motion of the surface on the sliders."""
     normal_work: float
-    """Work of the rising surface, dw/dt of its material, on the feet."""
+    """Work of the normal motion of the surface, dw/dt of its material, on the feet."""
     slope_work: float
-    """Work on sliders of slopes that they move along, N v w': no force along the beam pays for it in tangential
-    kinematics, in which friction and `slider.pull` alone move a slider."""
+    """Work N v w' of the slope along the path of the sliders; it has no counterpart in tangential kinematics, in which
+    only friction and `slider.external_force` move a slider."""
     damping_loss: float
-    """In the beam."""
+    """Loss by damping in the beam."""
     friction_loss: float
     contact_loss: float
-    """In dashpots of the contact and in impacts."""
+    """Loss in contact dashpots and impacts."""
     friction_on_beam: float
-    """Work of friction on the beam; one-way coupling does not charge the beam with it."""
+    """Work of friction on the beam; not in the beam's balance with one-way coupling."""
     normal_on_beam: float
-    """Work of the normal forces on the beam, likewise."""
+    """Work of the normal forces on the beam; not in the beam's balance with one-way coupling."""
     initial: float
-    """Energy of the modes of the beam at the start: of its static deflection, or of the motion before."""
+    """Initial energy of the beam's modes: of the static deflection, or of the earlier run."""
     created: float
-    """Sum of the positive works of friction in single steps, in which it returns what it has dissipated before."""
+    """Sum of the work of friction in steps in which it is positive: energy created by the discretisation."""
     slider_residual: float
-    """Works on sliders and feet less their gains and losses."""
+    """Residual of the balance of sliders and feet: work less gains and losses."""
     residual: float
-    """The same of the sliders or, from rest, of the beam, whichever is larger: the error of the time integration."""
+    """Larger residual of sliders and, from rest, of the beam: the error of the time integration."""
 
 
 class ContactState(Struct, frozen=True, eq=False):
-    """Sliders, feet and points at the end of a run, as the compiled loop has them (`layout`)."""
+    """Sliders, feet and points at the end of a run, in the columns of `layout`."""
 
     sliders: Array
     """(sliders, 2): distance travelled and speed."""
@@ -99,13 +99,13 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
 
     beam: Beam
     model: str
-    """Its name."""
+    """Name of the model."""
     count: int | None
-    """Segments or elements; None of the exact beam."""
+    """Segments or elements; None for the exact beam."""
     time: float
-    """Seconds from the first start."""
+    """Time since the start of the first run, s."""
     q: Array
-    """(n,), sqrt(kg) m: every mode with its forced part; beside the steady field with start = 'steady'."""
+    """(n,), sqrt(kg) m: modal amplitudes with their forced part; with start = 'steady' without the steady field."""
     rates: Array
     """(n,), dq/dt."""
     steady: bool = False
@@ -114,9 +114,9 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """Initial positions of the sliders, m."""
     sliders: tuple[Slider, ...] = ()
     contact: ContactState | None = None
-    """State of the sliders; None of a beam alone."""
+    """State of the sliders; None without slider."""
     off: str = ""
-    """What a slider did that left its contact range; empty otherwise."""
+    """Message for a slider that left its contact range; else empty."""
 
     @property
     def feet(self) -> Array:
@@ -125,21 +125,21 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def position(self) -> float | None:
-        """Position of the first slider, m; None of a beam alone."""
+        """Position of the first slider, m; None without slider."""
         return None if self.contact is None else self.starts[0] + float(self.contact.sliders[0, 0])
 
     @property
     def speed(self) -> float:
-        """Speed of the first slider, m/s; 0 of a beam alone."""
+        """Speed of the first slider, m/s; 0 without slider."""
         return 0.0 if self.contact is None else float(self.contact.sliders[0, 1])
 
 
 class Motion(Struct, frozen=True, eq=False, kw_only=True):
-    """A linear beam in time, with sliders or alone; arrays of one slider are (n,), of a sequence (n, sliders).
+    """Motion of a linear beam, with or without sliders; arrays of one slider are (n,), of a sequence (n, sliders).
 
-    Of a beam alone the fields of sliders are empty, NaN or None. Friction, normal force and shares of a slider with
-    feet are means over the interval that ends at the sample; friction and surface speed of a point slider are
-    instantaneous, but for friction that sticks.
+    Without slider the slider fields are empty, NaN or None. Friction, normal force and fractions of a slider with feet
+    are means over the interval that ends at the sample; friction and surface speed of a point slider are instantaneous,
+    except sticking friction.
     """
 
     model: str
@@ -147,68 +147,68 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     count: int | None
     """Elements or segments; None for the exact beam."""
     times: Array
-    """(n,), seconds; evenly while the forces grow and after, with another interval."""
+    """(n,), s; evenly spaced in each piece of growth of the forces, and after it."""
     points: Array
-    """(p,), m: places of the deflection."""
+    """(p,), m: positions of the deflection."""
     deflection: Array
     """(n, p), m."""
     slider: Slider | tuple[Slider, ...] | None = None
     start: float | tuple[float, ...] | None = None
     """Initial position, m from the left end."""
     travelled: Array = NONE
-    """Displacement along +x, m, to full digits."""
+    """Displacement along +x, m, without cancellation."""
     speed: Array = NONE
     """m/s."""
     friction: Array = NONE
     """Tangential force on the slider, N."""
     normal_force: Array = NONE
-    """Normal force on the slider, N; of a bilateral contact it may be negative."""
+    """Normal force on the slider, N; may be negative in bilateral contact."""
     surface_speed: Array = NONE
     """Tangential velocity of the surface under the slider, m/s."""
     contact_share: Array = NONE
-    """Share of points and time in contact, 0 to 1."""
+    """Fraction of points and time in contact, 0 to 1."""
     stuck_share: Array = NONE
-    """Share of points and time that stick, 0 to 1."""
+    """Fraction of points and time in stick, 0 to 1."""
     friction_loss: Array = NONE
-    """Energy lost in friction and tangential compliance over the interval before, J."""
+    """Energy lost in friction and tangential compliance since the previous sample, J."""
     tangential_work: Array = NONE
-    """Work of the surface's motion along the beam on the slider over the interval before, J."""
+    """Work of the tangential motion of the surface on the slider since the previous sample, J."""
     height: Array = NONE
-    """(n, feet), m."""
+    """(n, feet), height of the feet, m."""
     pitch: Array = NONE
-    """(n, feet), rad."""
+    """(n, feet), pitch of the feet, rad."""
     pressures: Array = NONE
     """(n, points), normal force at each point in the middle of the last step, N."""
     point_offsets: Array = NONE
-    """(points,), of the points from their slider, m."""
+    """(points,), positions of the points relative to their slider, m."""
     events: Array = NO_EVENTS
     """(k, 4): time, kind (1 sticks, 2 slips, 4 lands, 5 leaves), point, distance travelled."""
     mean_friction: float | Array = NAN
-    """Friction on the slider along +x, mean over all steps, N; (sliders,) of a sequence."""
+    """Mean friction on the slider along +x over all steps, N; (sliders,) for a sequence."""
     largest_friction: float | Array = NAN
     """Largest friction of all steps, N."""
     mean_surface_speed: float | Array = NAN
-    """Speed of the surface under the slider, mean over all steps, m/s."""
+    """Mean speed of the surface under the slider over all steps, m/s."""
     coupling: Coupling | None = None
-    """Coupling of sliders and beam, with sizes."""
+    """Coupling of sliders and beam, and its size."""
     margins: Margins
-    """What the assumptions of the run leave out, with sizes."""
+    """Errors of the assumptions of the run."""
     energy: EnergyBalance | None = None
     notes: tuple[str, ...]
-    """Modes, damping, envelope, events beyond the capacity."""
+    """Notes on modes, damping, envelope, and events beyond the capacity."""
     statistics: Statistics
     end: EndState
 
     @property
     def position(self) -> Array:
-        """Of the slider, m from the left end."""
+        """Position of the slider, m from the left end."""
         return self.travelled + (0.0 if self.start is None else self.start)
 
     @property
     def displacement(self) -> float:
-        """Of the one slider from its start to the end of the run, m. Raises InputError without one."""
+        """Displacement of a single slider over the run, m. Raises InputError for none or several."""
         if self.travelled.ndim != 1 or not len(self.travelled):
-            raise InputError("displacement and mean_speed are those of one slider: give slider")
+            raise InputError("displacement and mean_speed need a single slider: give one slider")
         return float(self.travelled[-1])
 
     @property

@@ -1,4 +1,4 @@
-"""A linear beam in time: in closed form alone, by exact modal steps with sliders in contact."""
+"""Motion of a linear beam: closed form without slider, exact modal steps with sliders in contact."""
 
 from collections.abc import Callable, Sequence
 from time import perf_counter
@@ -20,7 +20,7 @@ from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 
 CLOSED_FORM_ROWS = 2000
-"""Times evaluated at once."""
+"""Number of times evaluated at once."""
 Progress = Callable[[float], None]
 
 
@@ -47,64 +47,63 @@ def simulate(
     continue_from: Motion | FreeVibration | None = None,
     progress: Progress = lambda part: None,
 ) -> Motion:
-    """A driven beam from rest or in its steady state, with sliders in contact or alone.
+    """A driven beam from rest or in its steady state, with or without sliders in contact.
 
-    Forces are amplitude cos(omega t + phase), so that cos(0) = 1 is a step load at the start from rest. Modes advance
-    exactly by any time; of a slider's step only contact is approximate (friction law solved exactly for the mean
-    velocity over the step).
+    Forces are amplitude cos(omega t + phase): from rest, phase 0 is a step load. Modes advance exactly; the only
+    approximation in a time step is contact, whose friction law is solved for the mean velocity over the step.
 
     Parameters
     ----------
     beam : Beam
-        With its supports and attachments.
+        Beam with supports and attachments.
     forces : PointForce or sequence
         Amplitudes in N, phases in degrees; may be empty with a slider.
     frequency_hz : float
-        Of all forces.
+        Common frequency of the forces, Hz.
     duration : float
-        Seconds.
+        Duration, s.
     model, count : str, int
         Model of the beam and its number of segments or elements.
     modes : int, optional
-        Number of modes of the exact beam, 400 unless given, 80 under feet; the other models keep all they have.
+        Number of modes of the exact beam, default: 400, under feet 80; discrete models use all their modes.
     start : {"rest", "steady"}, optional
-        Beam at rest, or in its steady state under the forces; "steady" unless given for sliders with contact.
+        Beam at rest, or in its steady state under the forces; default: "steady" for sliders with contact, else "rest".
     soft_start_periods : float
         Periods over which the forces grow as 3 p^2 - 2 p^3.
     envelope : sequence of (seconds, coefficients)
-        Any other growth, piece after piece: in each the forces have the share c0 + c1 p + c2 p^2 + ... of their
-        amplitude, p from 0 to 1 within the piece; [(0.02, [0, 1])] grows linearly over 20 ms.
+        Other growth in consecutive pieces: the amplitude has the factor c0 + c1 p + c2 p^2 + ..., p from 0 to 1 within
+        the piece; [(0.02, [0, 1])] is linear growth over 20 ms.
     modal_damping : float, optional
-        Damping ratio of every mode; unless given that of the beam's loss factor at each mode.
+        Damping ratio of every mode; default: by the beam's loss factor.
     slider : Slider or sequence, optional
-        Coupled two-way it lies on the beam from the start: its weight bends it, and in the steady state the mass of a
-        bilateral slider is part of it. Sliders of a sequence share coupling and kind of contact.
+        With two-way coupling the initial state includes the static deflection under the slider, and in the steady state
+        the mass of a bilateral slider. All sliders of a sequence have one coupling and one kind of contact.
     prescribed_speed : float or sequence, optional
-        Speed of the slider, m/s. Without friction (mu = 0) a moving load, after which the beam vibrates on.
+        Prescribed speed of the slider, m/s. With mu = 0 a moving load; the run continues after it has left the beam.
     fixed_position : bool or sequence
-        Whether a slider keeps its position, whatever its speed, so that its motion is periodic.
+        Whether the position of a slider is fixed regardless of its speed, so that its motion is periodic.
     at : float or sequence
-        Places of the deflection, (p,), m.
+        Positions of the deflection, (p,), m.
     samples : int
-        Number of times, evenly on each piece of growth and after.
+        Number of times, evenly spaced on each piece of growth and after it.
     step, steps_per_period : float, int
-        Of a slider. Unless `step` is given, steps are at most this part of the drive's period (64, or 61 with feet),
-        resolve the modes that the start excites and the contact, and a two-way coupled point slider is run with the
-        doubled step too (`statistics.step_change`).
+        Time step of a slider. By default steps are at most a drive period over `steps_per_period` (64, with feet 61)
+        and resolve the contact and the modes that the start excites; a two-way coupled point slider is also run with
+        the doubled step (`statistics.step_change`).
     continue_from : Motion or FreeVibration, optional
-        A run that this one continues, with the same `start`; sliders keep place and speed.
+        A run that this one continues, with the same `start`, and position and speed of the sliders.
     progress : callable
-        Called with the fraction done.
+        Called with the completed fraction.
 
     Returns
     -------
     Motion
-        Up to where a slider left the beam (`statistics.stopped`).
+        The motion, until a slider leaves the beam (`statistics.stopped`).
 
     Raises
     ------
     InputError
-        For bad arguments, and where the energy balance does not close within 1 %.
+        For invalid arguments, and for a residual of the energy balance above 1 %.
     """
     began = perf_counter()
     request = request_of(
@@ -141,7 +140,7 @@ def _stages(request: Request, basis: TimeBasis | None) -> list[Stage]:
 
 
 def _closed_form(request: Request, stages: list[Stage], notes: tuple[str, ...]) -> Motion:
-    """A beam alone: every sample by its closed form."""
+    """A beam without slider: all samples in closed form."""
     began, first = perf_counter(), stages[0]
     whole = request.continued(first) if request.before else np.zeros(len(first.rows.rates), dtype=complex)
     parts = [first.deflection(first.free(whole), np.zeros(1), request.points)]

@@ -52,12 +52,12 @@ COLUMNS = {
     "surface_speed": lay.KEPT_SURFACE, "contact_share": lay.KEPT_TOUCH, "stuck_share": lay.KEPT_STUCK,
     "friction_loss": lay.KEPT_LOSS, "tangential_work": lay.KEPT_ALONG,
 }  # fmt: skip
-"""Column of the engine's samples of each field of a motion."""
+"""Column of the engine's samples by field of `Motion`."""
 WORKS = {
     "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "slope_work": lay.UPHILL, "friction_loss": lay.DISSIPATED,
     "contact_loss": lay.DAMPED, "friction_on_beam": lay.ON_BEAM, "normal_on_beam": lay.LIFTED_BEAM,
 }  # fmt: skip
-"""Column of the engine's sums of each term of the balance."""
+"""Column of the engine's sums by term of `EnergyBalance`."""
 SAMPLED = ("times", "deflection", "height", "pitch", "pressures", *COLUMNS)
 Progress = Callable[[float], None]
 
@@ -67,7 +67,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     request: Request
     basis: TimeBasis | None
-    """None where no mode is free."""
+    """None without free modes."""
     stages: list[Stage]
     coupling: Coupling
     margins: Margins
@@ -79,7 +79,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def of(
         cls, request: Request, basis: TimeBasis | None, stages: list[Stage], notes: tuple[str, ...], sequence: bool
     ) -> "SliderRun":
-        """The run in steps that resolve motion and contact. Raises InputError."""
+        """A run with time steps that resolve motion and contact. Raises InputError."""
         beam, hertz, starts = request.beam, request.frequency_hz, request.starts
         stages = [stage.within(contact_range(beam, starts[0])) for stage in stages]
         if basis is not None and request.start == "rest":
@@ -120,17 +120,17 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         z, longest = self._initial(self._contacts(), loaded=False), max(stage.steps.dt for stage in stages)
         if request.step is not None:
             share, enough = unresolved(stages, z, length, longest), point_step(stages, z, length, longest, 0.0)
-            note = f"step: {100 * share:.2g} % of the surface speed are not resolved, give at most {enough:.2g} s"
+            note = f"step: {100 * share:.2g} % of the surface speed is not resolved, give at most {enough:.2g} s"
             return replace(self, notes=(*self.notes, *(note,) * (enough < longest)))
         if request.two_way:
             rates = ((s.steepness or inf) * s.mu * s.normal_force / s.mass for s in request.sliders if s.mu)
             rate = max(rates, default=0.0)
-            if request.sliders[0].normal == "held":
-                longest *= 0.5  # the contact excites waves of its own
+            if request.sliders[0].normal == "bilateral":
+                longest *= 0.5  # the contact excites waves
         return replace(self, stages=stepped(stages, point_step(stages, z, length, longest, rate)))
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
-        """Free rows at the start, (n,); sets the sliders down, or continues them. Raises InputError."""
+        """Free rows at the start, (n,), sliders in equilibrium or in the state of an earlier run. Raises InputError."""
         request, basis, stage, before = self.request, self.basis, self.stages[0], self.request.before
         z: ComplexArray = np.zeros(len(stage.rows.rates), dtype=complex)
         if basis and loaded and contacts.presses:
@@ -145,7 +145,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             return z
         state = before.contact
         if state.points.shape != contacts.contacts.shape or len(state.feet) != len(contacts.feet):
-            raise InputError("continue_from has other feet than slider.foot: give both runs the same slider")
+            raise InputError("continue_from: its feet differ from slider.foot, give both runs the same slider")
         prescribed = contacts.sliders[:, lay.INVERSE_MASS] == 0.0
         contacts.sliders[:, lay.X] = state.sliders[:, 0]
         contacts.sliders[:, lay.V] = np.where(prescribed, contacts.sliders[:, lay.V], state.sliders[:, 1])
@@ -153,9 +153,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return z
 
     def converged(self, progress: Progress) -> Motion:
-        """The run; of a two-way coupled point slider whose step is not given with the change by doubling it.
+        """The run; for a two-way coupled point slider with automatic step also the change when the step is doubled.
 
-        Raises InputError where the energy balance does not close.
+        Raises InputError for a residual of the energy balance above its tolerance.
         """
         request, stages = self.request, self.stages
         if request.feet or not request.two_way or request.step is not None:
@@ -179,7 +179,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return self._checked(replace(fine, statistics=statistics, notes=notes, **kept))
 
     def _checked(self, motion: Motion) -> Motion:
-        """A motion with a note on its energy balance. Raises InputError where that does not close."""
+        """A motion with a note on its energy balance. Raises InputError for a residual above its tolerance."""
         if motion.energy is None:
             return motion
         statistics, request, resolved = motion.statistics, self.request, True
@@ -218,7 +218,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         state = contacts.sliders[:, [lay.X, lay.V]], contacts.feet[:, : lay.TURN + 1].copy(), contacts.contacts.copy()
 
         def each(values: Array) -> Any:
-            """Values of all sliders of a sequence, or those of the only one."""
+            """Values of all sliders of a sequence, or of the single slider."""
             own = np.array(values if self.sequence else values[..., 0], order="C")
             return own if own.ndim else float(own)
 
@@ -267,10 +267,10 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def _marched(
         self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
     ) -> tuple[Run, Array, tuple[float, float, float], bool]:
-        """Beam and sliders to the end.
+        """March beam and sliders to the end.
 
-        Also the deflection at the start, (1, p), m; what the beam gains, kinetic and elastic, and its energy at the
-        start, J; whether work of the drive and loss in the beam are known.
+        Returns the run, the initial deflection (1, p), m, the beam's gains of kinetic and elastic energy and its
+        initial energy, J, and whether the work of the drive and the loss in the beam are computed.
         """
 
         def energies(rows: Stage, z: ComplexArray) -> tuple[float, float]:
@@ -280,7 +280,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             return 0.5 * float(rates @ rates), 0.5 * float((self.basis.omegas**2 * q) @ q)
 
         n_steps, points = sum(stage.steps.n for stage in stages), self.request.points
-        # impacts are one-way: the balance of the beam is exact
+        # impacts do not act on the beam: its balance is exact
         rest = self.request.start == "rest" and contacts.restitution is None
         kinetic, elastic = energies(stages[0], stages[0].whole(z, 0.0))
         deflection = stages[0].deflection(z, np.zeros(1), points)
@@ -289,7 +289,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return recorded, deflection, (after[0] - kinetic, after[1] - elastic, kinetic + elastic), rest
 
     def _kinetic(self, contacts: Contacts) -> float:
-        """Of sliders and feet, along and across the beam, J."""
+        """Kinetic energy of sliders and feet, along and across the beam, J."""
         feet, masses = contacts.feet, np.array([slider.mass for slider in self.request.sliders])
         inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
         inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
@@ -300,7 +300,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def _time_after(stages: list[Stage], steps: int) -> float:
-    """The time after so many steps, s."""
+    """Time after a number of steps, s."""
     for stage in stages:
         if steps <= stage.steps.n:
             break
@@ -309,7 +309,7 @@ def _time_after(stages: list[Stage], steps: int) -> float:
 
 
 def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
-    """Works, losses and gains: of sliders, springs and modes, kinetic and elastic, and the modes' initial energy."""
+    """The energy balance; `gains` of sliders, springs, modes (kinetic, elastic), and initial energy of the modes, J."""
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
     load = s[lay.PULLED] + s[lay.PRESSED]
     residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored

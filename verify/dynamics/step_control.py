@@ -1,4 +1,4 @@
-"""Time steps of sliders: resolution of the motion, one step doubling, and the energy check."""
+"""Time steps of sliders: resolution of the motion, step doubling, energy check."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -12,29 +12,29 @@ from verify.dynamics.result import EnergyBalance, Motion
 from verify.errors import InputError
 
 UNRESOLVED = 1e-4
-"""Share of the surface speed, rms, that the steps of a run may leave unresolved."""
+"""Largest unresolved fraction of the surface speed, rms."""
 STICKY = 0.1
-"""Step times K mu N / m above which a slider practically sticks to a two-way coupled beam."""
+"""Step times K mu N / m above which a slider with tanh friction nearly sticks to a two-way coupled beam."""
 CONVERGED = 0.01
-"""Largest relative change of the displacement under step doubling that counts as converged."""
+"""Largest relative change of the displacement with the doubled step of a converged run."""
 CONTACT_RADIANS = 0.5
-"""Phase of the contact's natural oscillation in a step: an error of 1 % of its period."""
+"""Phase of the contact's natural oscillation per step, rad: period error 1 %."""
 MODE_RADIANS = 0.5 * np.pi
-"""Phase of the fastest mode in a step of feet on a two-way coupled beam."""
+"""Phase of the highest mode per step of feet on a two-way coupled beam, rad."""
 UNSTABLE = 2.0
-"""Phase of the contact's natural oscillation in a step from which it grows without bound."""
+"""Phase of the contact's natural oscillation per step at the stability limit, rad."""
 COMPARED = 16
-"""Least number of samples at which two runs are compared: at a single one, different runs may coincide."""
+"""Least number of samples for the comparison of two runs, which may coincide at a single one."""
 MOST_GAIN = 0.01
-"""Energy that contact may add, or the balance may miss, relative to all energy exchanged."""
+"""Tolerance of created energy and of the residual of the balance, relative to all energy exchanged."""
 
 
 def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: float) -> float:
-    """Share of the surface speed, rms, that steps of dt do not resolve from free rows z.
+    """Fraction of the surface speed, rms, that steps of dt do not resolve for free rows z.
 
-    A parabola through start, middle and end of a step misses (omega dt / 2)^4 / 180 of the mean of a cosine, and all of
-    one that turns faster. Speeds, but for a common factor, are means over the beam, omega |q| n pi / L, largest of all
-    stages: n pi / L is the slope of the nth mode over its deflection, whose mean square on a uniform beam is 1/mass.
+    Simpson's rule over a step has the error (omega dt / 2)^4 / 180 in the mean of a cosine; where this exceeds 1 a mode
+    counts as unresolved. Modal speeds, up to a common factor, are omega |q| n pi / L, the largest of all stages: n pi/L
+    is the slope of the nth mode over its deflection, whose mean square on a uniform beam is 1/mass.
     """
     if not len(z):
         return 0.0
@@ -56,10 +56,10 @@ def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: floa
 
 
 def point_step(stages: Sequence[Stage], z: ComplexArray, length: float, longest: float, rate: float) -> float:
-    """The longest of `longest`, its half, ... that resolves a point slider's motion, s.
+    """The largest of `longest`, its half, its quarter, ... that resolves a point slider's motion, s.
 
-    `rate` is K mu N / m of a two-way coupled slider, infinite for Coulomb's law, 0 one way: where it may stick, the
-    highest mode makes at most half a turn in a step.
+    `rate` is K mu N / m of a two-way coupled slider, infinite for Coulomb's law, 0 for one-way coupling. Where the
+    slider may stick, the phase of the highest mode per step is at most pi.
     """
     fastest = float(abs(stages[0].rows.rates.imag).max(initial=0.0))
     while unresolved(stages, z, length, longest) > UNRESOLVED:
@@ -70,9 +70,9 @@ def point_step(stages: Sequence[Stage], z: ComplexArray, length: float, longest:
 
 
 def feet_step(longest: float, contact: float, fastest: float, step: float | None) -> float:
-    """Step of sliders on springs, s: the given one where it is stable, else one that resolves contact and fastest mode.
+    """Step of sliders on springs, s: `step`, or for None one that resolves contact and highest mode.
 
-    Raises InputError.
+    Raises InputError for an unstable step.
     """
     if step is None:
         return min(longest, CONTACT_RADIANS / contact if contact else inf, MODE_RADIANS / fastest if fastest else inf)
@@ -87,9 +87,9 @@ def stepped(stages: Sequence[Stage], step: float, closer: int = 1) -> list[Stage
 
 
 def change(coarse: Motion, fine: Motion) -> float:
-    """Relative change of the displacements with the step: at the end, and over the largest at any sample.
+    """Relative change of the displacements with the step: larger of that at the end and over all samples.
 
-    Infinite where the runs end differently; 0 where nothing moved.
+    Infinite for runs with different ends; 0 for runs without displacement.
     """
     apart = abs(coarse.end.time - fine.end.time)
     if coarse.statistics.finished != fine.statistics.finished or apart > CONVERGED * fine.end.time:
@@ -101,10 +101,10 @@ def change(coarse: Motion, fine: Motion) -> float:
 
 
 def check_energy(energy: EnergyBalance, dt: float, frequency_hz: float, feet: bool, resolved: bool) -> tuple[str, ...]:
-    """Raise InputError where friction creates energy or the balance does not close, by 1 % of the energy exchanged.
+    """Raise InputError if friction creates, or the balance misses, more than 1 % of the energy exchanged.
 
-    Notes state the balance of feet, whose springs are of order 2 in the step, and that of a beam where the steps do not
-    resolve its motion: modes advance exactly, but the work of the drive and the loss in the modes are quadratures.
+    Notes report the residual of feet, whose springs are of order 2 in the step, and of a beam with unresolved motion:
+    modes advance exactly, but the work of the drive and the loss in the modes are quadratures.
     """
     works = (energy.drive_work, energy.tangential_work, energy.normal_work, energy.load_work, energy.elastic)
     exchanged = max(abs(work) for work in works) + abs(energy.friction_loss) + abs(energy.slider) + energy.initial

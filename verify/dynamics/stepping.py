@@ -1,4 +1,4 @@
-"""The compiled contact engine, stage by stage: rows and tables of a stage, chunks of the loop, raw samples."""
+"""Driver of the compiled contact engine: rows and tables of a stage, chunks of the loop, raw samples."""
 
 from collections.abc import Callable, Sequence
 from time import thread_time
@@ -11,15 +11,15 @@ from verify.dynamics import layout as lay
 from verify.dynamics.linear_system import Stage, interleaved
 
 CHUNK = 20_000
-"""Steps between two checks for an interrupt."""
+"""Number of steps between checks for an interrupt."""
 EVENTS = 20_000
 """Capacity of the event log."""
 SPANS = 12
-"""Spans between events in a step, as in `friction`."""
+"""Largest number of spans between events in a step, as in `friction`."""
 RESOLVED = 1.5
-"""Radians and nepers per step of a row beyond which rates are means over the step."""
+"""Phase or decay of a row per step, rad or neper, above which rates are means over the step."""
 REACH = 8
-"""Pieces of a table on each side of the points."""
+"""Number of pieces of a table on each side of the points."""
 
 
 class Contacts(msgspec.Struct, eq=False, kw_only=True):
@@ -29,19 +29,19 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """
 
     start: float
-    """Position of the first slider at the start, m; distances and edges count from it, so that nanometres are exact."""
+    """Initial position of the first slider, m, the origin of distances and edges, so that nanometres are exact."""
     sliders: Array
     """(sliders, SLIDER)"""
     feet: Array
     """(feet, FOOT); (0, FOOT) for points without feet."""
     points: Array
-    """(points, POINT), in the order of the sliders; OFFSET from `start`, also of a second slider's points."""
+    """(points, POINT), in the order of the sliders; OFFSET is measured from `start` for the points of all sliders."""
     contacts: Array
     """(points, CONTACT)"""
     indices: Indices
     """(points, 3)"""
     law: int
-    """GIVEN, BILATERAL or SPRING, of all points."""
+    """GIVEN, BILATERAL or SPRING, common to all points."""
     two_way: bool
     presses: bool
     """Whether normal forces act on the beam of a two-way run."""
@@ -49,9 +49,9 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     gravity: float = 0.0
     """m/s^2, along the slope for kinematics "following"."""
     moving_load: bool = False
-    """Whether the run goes on without contact after a point has left the beam: a prescribed speed without friction."""
+    """Prescribed speed without friction: the run continues without contact after a point has left the beam."""
     restitution: float | None = None
-    """Of rigid contact (`impact`): one point with a foot, one-way; None for the laws above."""
+    """Coefficient of hard contact (`impact`): one point with a foot, one-way; None for the other laws."""
 
 
 def run_stages(
@@ -63,11 +63,11 @@ def run_stages(
     accounts: bool = False,
     progress: Callable[[int], None] = lambda steps: None,
 ) -> "Run":
-    """Advance a beam and its sliders through all stages, whose `steps` set step, number of steps and sampling.
+    """Advance a beam and its sliders through all stages, whose `steps` define step, number of steps and sampling.
 
     z is the free part of the rows at the start, (n,); contacts are advanced in place; deflections are sampled at
-    `places`, (p,), m; with `accounts` the work of the drive and the loss of the modes are integrated; `progress` is
-    called with the number of steps done.
+    `places`, (p,), m; `accounts`: integrate the work of the drive and the loss of the modes; `progress` is called with
+    the number of completed steps.
     """
     run = Run(stages, contacts, places, accounts)
     stopped = "end"
@@ -88,12 +88,12 @@ class Run:
         n, n_sliders, n_feet = len(contacts.points), len(contacts.sliders), len(contacts.feet)
         self.contacts, self.places, self.accounts = contacts, places, accounts
         self.samples, self.first = np.zeros((samples, n_sliders, lay.KEPT)), np.zeros((n_sliders, lay.KEPT))
-        """`first`: speed; of points without feet the friction law and the surface speed."""
+        """`first`: speed; for points without feet also friction and surface speed."""
         self.heights, self.pressures = np.zeros((samples, n_feet, 2)), np.zeros((samples, n))
         """Heights and pitches of the feet; normal forces of the points."""
         self.deflections = np.zeros((samples, len(places)))
         self.events, self.n_events = np.zeros((EVENTS, 4)), 0
-        """Time, kind, point, distance travelled; how many altogether, also beyond the capacity."""
+        """Events (time, kind, point, distance travelled); total number, also beyond the capacity."""
         self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
         self.balance, self.tally = np.zeros(lay.BALANCE), np.zeros(3, dtype=np.int64)
         self.spans, self.block = np.zeros((n, 4 + 2 * SPANS)), np.zeros((n, n + 1))
@@ -101,15 +101,14 @@ class Run:
         if n_feet:
             self.feet_of[contacts.indices[:, lay.OF_FOOT]] = contacts.indices[:, lay.OF_SLIDER]
         self.n_steps, self.loop_s, self.set_up_s = 0, 0.0, 0.0
-        """Steps; processor time of the compiled loop, and of tables and arrays."""
+        """Number of steps; processor time of the compiled loop, and of tables and arrays."""
         self.stopped, self.z = "end", np.empty(0, dtype=complex)
-        """"end", "left the beam" and the like (`Stage.beyond`), "diverged" or "chatters"; the motion of
-        every row at the end, (n,)."""
+        """"end", a message of `Stage.beyond`, "diverged" or "chatters"; the total state of the rows at the end."""
 
     def recorded(self, z: ComplexArray, dt: float, stopped: str) -> "Run":
-        """The run that ended with all of the motion z, in steps of dt: its samples and events so far.
+        """The run that ended with the total state z, in steps of dt: its samples and events.
 
-        Energy of the normal springs is added, that at the end of the last step, with the depths of its middle drawn on.
+        Adds the energy of the normal springs at the end of the last step, with depths extrapolated from its middle.
         """
         p, c, feet, indices = self.contacts.points, self.contacts.contacts, self.contacts.feet, self.contacts.indices
         if len(feet):
@@ -124,7 +123,7 @@ class Run:
         return self
 
     def stage(self, stage: Stage, z: ComplexArray, progress: Callable[[int], None]) -> str:
-        """One stage from free rows z in chunks; why it ended."""
+        """Advance one stage from free rows z in chunks; the reason of its end."""
         from verify.dynamics.integrator import advance
 
         began, contacts, n = thread_time(), self.contacts, len(z)
@@ -193,7 +192,7 @@ class Run:
         self, n_steps: int, stage: Stage, codes: Indices, drive: Array, rows: Array, table: Array, edges: Array,
         factors: Array, places: Array,
     ) -> int:  # fmt: skip
-        """Steps of a rigid contact."""
+        """Steps of hard contact."""
         from verify.dynamics.impact import advance_impacts
 
         contacts, steps = self.contacts, stage.steps
@@ -208,7 +207,7 @@ class Run:
         )  # fmt: skip
 
     def sample_first(self) -> None:
-        """The state before the first step; a slider in contact with feet has friction from the first step on."""
+        """Sample the state before the first step; friction of a slider with feet starts in the first step."""
         sliders, contacts = self.contacts.sliders, self.contacts.contacts
         self.first[:, [lay.KEPT_X, lay.KEPT_V]] = sliders[:, [lay.X, lay.V]]
         self.first[:, lay.KEPT_TOUCH] = 1.0
@@ -226,12 +225,12 @@ class Run:
         self.first[:, lay.KEPT_NORMAL], self.first[:, lay.KEPT_SURFACE] = load, contacts[:, lay.START]
 
     def positions(self) -> Array:
-        """Points from the start of the first slider, (points,), m, half a step on for feet."""
+        """Positions of the points relative to `start`, (points,), m; with feet half a step ahead."""
         x, owner = self.contacts.sliders[:, lay.X], self.contacts.indices[:, lay.OF_SLIDER]
         return np.asarray(x[owner] + self.contacts.points[:, lay.OFFSET])
 
     def _around(self, stage: Stage) -> tuple[int, int] | None:
-        """The pieces around all points, first and end, or None where a point is off the beam."""
+        """(first, end) piece around all points; None where a point is off the beam."""
         edges, x = stage.edges - self.contacts.start, self.positions()
         if x.min() < edges[0] or x.max() > edges[-1]:
             return None
@@ -240,7 +239,7 @@ class Run:
         return max(int(low) - REACH, 0), min(int(high) + 1 + REACH, pieces)
 
     def _go_on(self, stage: Stage) -> None:
-        """The beam alone, after a moving load has left it, to the end of the stage."""
+        """Advance the beam to the end of the stage after a moving load has left it."""
         begun, dt = int(self.tally[lay.STEP]), stage.steps.dt
         rest = np.arange(begun // stage.steps.every + 1, stage.steps.n // stage.steps.every + 1) * stage.steps.every
         row, (x, speed) = int(self.tally[lay.SAMPLES]), self.contacts.sliders[:, [lay.X, lay.V]].T
@@ -255,7 +254,7 @@ class Run:
 
 
 def rows_of(stage: Stage, z: ComplexArray) -> Array:
-    """The rows of a stage in state z as the kernels read them, (ROW, n)."""
+    """The rows of a stage in state z in the columns of the kernels, (ROW, n)."""
     rate, dt = stage.rows.rates, stage.steps.dt
     grown = np.expm1(rate * dt)
     gain = stage.rows.participations * np.where(rate == 0.0, dt, grown / np.where(rate == 0.0, 1.0, rate))

@@ -1,4 +1,4 @@
-"""Validity of a run: the size of the coupling of sliders and beam, and margins, errors that no time step removes."""
+"""Validity of a run: size of the coupling of sliders and beam, and margins, the errors of its assumptions."""
 
 from collections.abc import Callable, Sequence
 from math import inf, pi
@@ -21,28 +21,28 @@ if TYPE_CHECKING:
     from verify.dynamics.request import Request
 
 NONLINEAR = 1e-3
-"""(kL)^2 <theta^2> from which the linear chain departs from the paper's nonlinear one."""
+"""(kL)^2 <theta^2> above which the linear chain departs from the paper's nonlinear chain."""
 COUPLED = 1e-3
-"""Relative change of the surface motion above which one-way coupling is an error to state."""
+"""Relative change of the surface motion above which one-way coupling is not valid."""
 NEAR = 1e-3
-"""Distance of the forces that represent a couple, over 1/k, or over L/50 where that is shorter."""
+"""Spacing of the forces that represent a couple, over the smaller of 1/k and L/50."""
 Receptance = Callable[[float, Array], tuple[ComplexArray, ComplexArray]]
-"""(x, places) -> deflections there under a unit force at x, m/N, and slopes under a unit couple, rad/(N m)."""
+"""(x, places) -> deflections at places under a unit force at x, m/N, and slopes under a unit couple, rad/(N m)."""
 
 
 class Coupling(Struct, frozen=True, kw_only=True):
-    """Whether sliders and beam are coupled two-way, and the size of what one-way coupling leaves out."""
+    """Whether sliders and beam are coupled two-way, and the relative error of one-way coupling."""
 
     two_way: bool
     friction_size: float | None
-    """Surface speed due to full friction over that due to the drive; None where the drive moves no surface there."""
+    """Surface speed due to friction mu N over that due to the drive; None without surface motion by the drive."""
     normal_size: float
-    """Surface motion due to the normal load over its motion by the drive: N |G| / |w| of a slider with contact, of a
-    bilateral one m omega^2 |G| of its inertia. Infinite where the drive does not move a loaded surface."""
+    """Surface motion due to the normal load over that due to the drive: N |G| / |w| with unilateral contact, else
+    m omega^2 |G| of the slider's inertia. Infinite for a loaded surface without motion by the drive."""
 
     @property
     def relative_size(self) -> float | None:
-        """The larger of the sizes; None where the drive does not move the surface under the slider."""
+        """The larger of both sizes; None where the drive does not move the surface under the slider."""
         return None if self.friction_size is None else max(self.friction_size, self.normal_size)
 
 
@@ -52,31 +52,31 @@ class Margins(Struct, frozen=True, kw_only=True):
     lift_off: float
     """Largest downward acceleration of the surface over N / m: a free slider lifts off above 1.
 
-    Under a point slider during the run; else the largest of the steady motion along the beam."""
+    Under a point slider in the run; else the largest along the beam in the steady state."""
     nonlinearity: float
-    """(kL)^2 <theta^2>: the axial inertia of a roller-ended chain that linear theory leaves out."""
+    """(kL)^2 <theta^2>: relative size of the axial inertia, neglected in linear theory, of a roller-ended chain."""
     model_form: float | None
     """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1.
 
-    None unless the beam is uniform, pinned at both ends and carries nothing: there it has a closed form."""
+    None unless the beam is uniform, pinned at both ends and without attachments, where a closed form exists."""
     discretisation: float | None
     """Leading error of the discrete frequency at that mode; None for the exact beam and where no law is known."""
     presliding: float | None = None
-    """2 mu kappa / (kappa_t k h): how little a compliant contact slips before it has deformed tangentially. 0 where it
-    is rigid along the surface; None without contact springs, and of a compliant one where no wave travels."""
+    """Presliding 2 mu kappa / (kappa_t k h): tangential deformation of the contact before it slips, relative to the
+    surface motion. 0 for tangentially rigid contact; None without contact springs or without a travelling wave."""
     contact_step: float = 0.0
-    """Natural frequency of the contact times the step, radians; its square over 24 is the relative period error."""
+    """Natural frequency of the contact times the step, rad; its square over 24 is the relative period error."""
     static_deflection: float | None = None
-    """Static deflection under sliders with contact, m; left out by one-way coupling. None without such sliders, and of
-    a beam with rigid motions that they would move."""
+    """Static deflection under sliders with contact, m; neglected by one-way coupling. None without such sliders, and
+    for a beam with rigid-body motions that they would move."""
 
 
 def coupling_of(
     beam: Beam, sliders: Sequence[Slider], starts: Sequence[float], stage: Stage, receptance: Receptance
 ) -> Coupling:
-    """Sizes under the slider where they are largest, by the loads of all.
+    """Largest sizes over the sliders, with the loads of all sliders.
 
-    Full friction mu N is a couple (h/2) mu N on the beam, which turns its section and so moves the surface h/2 off.
+    Friction mu N exerts a couple (h/2) mu N on the beam, which rotates the section and thereby moves the surface.
     """
     places, omega = np.array(starts), stage.omega
     half = np.array([section_at(beam, x).surface_distance for x in starts])
@@ -97,7 +97,7 @@ def coupling_of(
 
 
 def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptance:
-    """Of all modes, and for the slope of the truncated ones too: their sum falls as slowly as 1/n."""
+    """Receptance by all modes, slopes including truncated modes, whose sum decays as slowly as 1/n."""
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
 
     def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
@@ -114,7 +114,7 @@ def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptan
 def field_receptance(
     beam: Beam, model: str, count: int | None, frequency_hz: float, damping: float | None
 ) -> Receptance:
-    """Of the model's steady fields, with this damping ratio or the beam's own. Raises InputError."""
+    """Receptance by steady fields of the model with damping ratio `damping` (None: loss factor). Raises InputError."""
 
     def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
         forces = (PointForce(position=x),), couple(beam, x, frequency_hz)
@@ -125,15 +125,14 @@ def field_receptance(
 
 
 def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
-    """A unit couple at x, 1 N m, as five close forces from x inwards: the derivative of a force by its place, order 4.
+    """A unit couple at x, 1 N m, as five close forces from x inwards: a difference quotient of order 4.
 
-    Curvature jumps under a couple: elements turn too little by up to 0.066 l/EI, links of length l by 0.15, at an end
-    by 0.30.
+    Curvature jumps at a couple: the rotation of elements errs by up to 0.066 l/EI, of links 0.15, at an end 0.30.
     """
     near = NEAR * min(float(np.sqrt(beam.wave_constant / (2.0 * np.pi * frequency_hz))), 0.02 * beam.length)
     inwards = near if x < 0.5 * beam.length else -near
     places = x + inwards * np.arange(5)
-    powers = np.vander((places - x) / inwards, increasing=True).T  # of the places as rounded
+    powers = np.vander((places - x) / inwards, increasing=True).T  # positions as rounded
     weights = np.linalg.solve(powers, np.eye(5)[1]) / inwards
     return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
 
@@ -141,14 +140,14 @@ def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
 def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float) -> float:
     """Nonlinearity of a roller-ended chain of rigid links, (k L)^2 <theta^2>, relative, through its axial inertia.
 
-    k is the wave's under tension and on a foundation, without losses; <theta^2> is the mean over links and time. A
-    scale, not a bound: the paper's beam at 4276 Hz, first millisecond from rest, departs at mid-span by 0.6 of it.
+    k is the lossless wavenumber with tension and foundation; <theta^2> is the mean over links and time. A scale, not a
+    bound: the paper's beam at 4276 Hz departs by 0.6 of it at mid-span in the first millisecond from rest.
     """
     return float(abs(lossless_wavenumber(beam, frequency_hz)) ** 2 * beam.length**2 * mean_square_slope)
 
 
 def margins_of(request: "Request", stage: Stage) -> Margins:
-    """Margins of a run with this last stage, before its steps are known."""
+    """Margins of a run with last stage `stage`, except those that depend on time steps."""
     beam, hertz, x = request.beam, request.frequency_hz, np.linspace(0.0, request.beam.length, 400)
     falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
     square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
@@ -161,7 +160,7 @@ def margins_of(request: "Request", stage: Stage) -> Margins:
 
 
 def _nearest_mode(beam: Beam, drive_hz: float) -> int:
-    """The exact mode whose frequency lies nearest a drive's."""
+    """The exact mode with frequency nearest to that of the drive."""
     turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
     return min(range(max(int(turns) - 2, 1), int(turns) + 4), key=lambda n: abs(frequency_hz(beam, n) - drive_hz))
 
@@ -175,7 +174,7 @@ def _model_form(beam: Beam, drive_hz: float) -> float | None:
 
 
 def _discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
-    """The whole law for a chain with clamped ends: its leading terms have the wrong sign at practical sizes."""
+    """For a chain with clamped ends `expected_error`: its leading terms have the wrong sign at usual sizes."""
     if count is None or not beam.uniform or model not in LAWS:
         return None
     mode = _nearest_mode(beam, drive_hz)

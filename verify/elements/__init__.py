@@ -1,1 +1,1 @@
-"""Hermite and Timoshenko beam elements for scikit-fem, behind `fem_beam`; `stock` is scikit-fem's own."""
+"""Hermite and Timoshenko beam elements for scikit-fem, parts of `fem_beam`; `stock` is scikit-fem's own element."""

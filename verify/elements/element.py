@@ -1,13 +1,13 @@
 """The beam elements that scikit-fem assembles: cubic Hermite, and Timoshenko with internal shear strains.
 
-Imports scikit-fem, so that it is itself imported in functions alone. scikit-fem's own ElementLineHermite is the same
-element by the inverse of a Vandermonde matrix in global coordinates, which loses n^3 digits (`stock`); here the
-polynomials of the reference cell are mapped.
+This module imports scikit-fem and is therefore imported inside functions. scikit-fem's own ElementLineHermite inverts
+a Vandermonde matrix in global coordinates, with rounding like n^3 (`stock`); here the polynomials of the reference
+cell are mapped.
 
 The Timoshenko element has nodal deflection w and rotation psi and two internal shear strains, gamma = w' - psi =
-g_0 + g_1 (2 xi - 1). w is cubic and psi quadratic with no more than that between them: nothing locks, and where shear
-is stiff the strains vanish and the Hermite element remains. g_0 alone is the element that is exact in statics (Friedman
-and Kosmatka, Computers & Structures 47, 1993), whose frequencies are of order 2; with g_1 they are of order 4.
+g_0 + g_1 (2 xi - 1). w is cubic and psi quadratic with this difference: no shear locking, and in the limit of stiff
+shear the Hermite element. g_0 alone is the element that is exact in statics (Friedman and Kosmatka, Computers &
+Structures 47, 1993), whose frequencies are of order 2; with g_1 they are of order 4.
 """
 
 from functools import lru_cache
@@ -30,7 +30,7 @@ DEFLECTION = np.array(
 )
 """w on [0, 1] of w_0, psi_0, w_1, psi_1, g_0 and g_1, each by its powers of xi; all but w times the length."""
 ROTATION = np.array([[0, -6, 6], [1, -4, 3], [0, 6, -6], [0, -2, 3], [0, -6, 6], [0, 0, 0]], dtype=float)
-"""psi likewise, over the length."""
+"""psi over the length on [0, 1], for the same unknowns by powers of xi."""
 
 
 def polynomial(table: Array, i: int, xi: Array, derivative: int = 0) -> Array:
@@ -57,7 +57,7 @@ class HermiteLine(Element):  # type: ignore[misc]
 
 
 class TimoshenkoLine(HermiteLine):
-    """The same with deflection and rotation at its ends and two shear strains inside."""
+    """Timoshenko element: deflection and rotation at its ends and two internal shear strains."""
 
     interior_dofs = 2
     dofnames = ("u", "u_x", "g_0", "g_1")
@@ -103,12 +103,12 @@ def line_basis(nodes: Array, shear: bool) -> Any:
 
 @lru_cache(maxsize=16)
 def cached_basis(nodes: bytes, shear: bool) -> Any:
-    """`line_basis` of small meshes, which beams of many lengths share; about a kilobyte an element."""
+    """`line_basis` of small meshes, shared by beams of different lengths; about 1 kB per element."""
     return line_basis(np.frombuffer(nodes), shear)
 
 
 def element_matrices(basis: Any, form: Any, weight: Array) -> Any:
-    """A form with a weight of each element, (N,), as scikit-fem's COOData: entries of every element's own matrix."""
+    """Element matrices of a form with a weight per element, (N,), as scikit-fem's COOData."""
     return form.coo_data(basis, weight=DiscreteField(np.broadcast_to(weight[:, None], basis.dx.shape)))
 
 
@@ -130,7 +130,7 @@ def rows(nodes: Array, x: Array, unknowns: Indices, derivative: int = 0, *, rota
 
 
 def piecewise(nodes: Array, values: Any, unit: float) -> tuple[PPoly, PPoly]:
-    """W and psi of values of all degrees of freedom (n_all, k) as polynomials between nodes: x in m -> (n, k)."""
+    """(w, psi) as piecewise polynomials for values of all degrees of freedom (n_all, k): x in m -> (n, k)."""
     n = len(nodes) - 1
     length, deflections, slopes = np.diff(nodes)[:, None], values[: 2 * n + 2 : 2], values[1 : 2 * n + 2 : 2]
     chord, first, second = np.diff(deflections, axis=0) / length, slopes[:-1], slopes[1:]

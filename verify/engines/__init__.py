@@ -1,4 +1,4 @@
-"""Other multibody engines on the same chain, each behind one interface; none is imported before its use."""
+"""Adapters of other multibody engines for the same chain; an engine is imported on first use."""
 
 from verify.engines.base import ENGINES, Chain, Engine, Run, chain_of, missing
 

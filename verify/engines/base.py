@@ -1,4 +1,4 @@
-"""The chain that every engine gets, what it returns, and which engines there are."""
+"""Input and output of the engine adapters, and the registry of engines."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,10 +10,10 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.registry import Registry
-from verify.validation import check_whole
+from verify.validation import check_integer
 
 SAMPLES = 200
-"""Kept of a run, or every step of a shorter one."""
+"""Number of samples of a run; every step of a shorter one."""
 
 
 @dataclass(frozen=True)
@@ -52,10 +52,10 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
     """The chain of a uniform pinned undamped beam. Raises InputError for any other."""
     if beam.supports != ("pinned", "pinned"):
         raise InputError(f"beam.supports = {beam.supports!r}: the engines' chain is pinned, give ('pinned', 'pinned')")
-    beam.check_added("the engines' chain")
+    beam.check_features("the engines' chain")
     if beam.loss_factor:
         raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: the engines' chain is undamped, give 0")
-    check_whole("count", n, 2)
+    check_integer("count", n, 2)
     check_frequency("frequency_hz", frequency_hz, beam)
     for i, force in enumerate(forces):
         if force.position > beam.length:
@@ -66,9 +66,9 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
 
 @dataclass(frozen=True)
 class Run:
-    """What an engine returned, up to where it failed: times (m,), s, and deflections of mid-span (m,), m.
+    """Result of an engine up to a failure: times (m,), s, and mid-span deflections (m,), m.
 
-    `steps` are those completed, `failure` is what the engine did where it failed, and when.
+    `steps`: completed steps; `failure`: message with the time of a failure.
     """
 
     times: Array
@@ -78,20 +78,20 @@ class Run:
 
 
 class Adapter(Protocol):
-    """An engine behind one interface."""
+    """Interface of an engine."""
 
     def frequencies(self, chain: Chain) -> Array | None:
-        """(n - 1,), Hz, ascending; None where the engine has none."""
+        """Natural frequencies (n - 1,), Hz, ascending; None if the engine computes none."""
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
-        """The motion from rest to `end` seconds in so many steps."""
+        """The motion from rest to `end` (s) in `steps` steps."""
 
 
 @dataclass(frozen=True)
 class Engine:
-    """An engine and where its adapter is.
+    """An engine and its adapter.
 
-    `package` is pip's name, `home` the 'module:class' of the adapter; steps of `implicit` ones have no stability limit.
+    `package`: name for pip; `home`: 'module:class' of the adapter; `implicit`: steps have no stability limit.
     """
 
     name: str
@@ -101,7 +101,7 @@ class Engine:
     implicit: bool = False
 
     def adapter(self) -> Adapter:
-        """The adapter, which imports the engine. Raises InputError where it is not installed."""
+        """The adapter, which imports the engine. Raises InputError if it is not installed."""
         if why := missing(self):
             raise InputError(f"engine = {self.name!r}: {why}")
         module, _, attribute = self.home.partition(":")
@@ -121,7 +121,7 @@ ENGINES: Registry[Engine] = Registry(
 
 
 def missing(engine: Engine) -> str:
-    """Why an engine takes no part; empty where it is installed. Imports nothing."""
+    """Message for an engine that is not installed, else empty; imports nothing."""
     from importlib.util import find_spec
 
     if find_spec(engine.module) is not None:

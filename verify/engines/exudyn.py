@@ -1,8 +1,7 @@
 """Exudyn: plane rigid bodies in redundant coordinates, revolute joints, its trapezoidal rule of index 2.
 
-That rule has order 2, no numerical damping and no step limit, and constrains velocities: with constrained positions
-rounding grows as 1 / step^2. Where Newton's
-iteration stalls the engine halves its step and then raises an error.
+The rule has order 2, no numerical damping and no step limit, and constrains velocities: with constrained positions
+rounding grows as 1 / step^2. If Newton's iteration fails the engine halves its step, then raises an error.
 """
 
 from contextlib import redirect_stdout
@@ -15,22 +14,22 @@ from verify.arrays import Array
 from verify.engines.base import SAMPLES, Chain, Run
 
 TOLERANCE = 1e-7
-"""Relative, of Newton's residual."""
+"""Relative tolerance of Newton's residual."""
 
 
 class Exudyn:
     """The adapter."""
 
     def frequencies(self, chain: Chain) -> Array:
-        """By the engine's eigenvalue solver, which eliminates the constraints."""
+        """Natural frequencies by the engine's eigenvalue solver, which eliminates the constraints."""
         system, _ = assemble(chain)
         system.Assemble()
         with redirect_stdout(StringIO()):
-            found, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
-        return np.sort(np.asarray(found, dtype=float))[-(chain.n - 1) :]
+            hertz, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
+        return np.sort(np.asarray(hertz, dtype=float))[-(chain.n - 1) :]
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
-        """In steps of the trapezoidal rule."""
+        """Motion by the trapezoidal rule."""
         import exudyn as exu
         from exudyn import utilities as items
 
@@ -97,7 +96,7 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
 
 
 def _settings(steps: int, end: float) -> Any:
-    """Modified Newton, sparse matrices; sensors at `SAMPLES` times."""
+    """Settings: modified Newton, sparse matrices, sensors at `SAMPLES` times."""
     import exudyn as exu
 
     settings = exu.SimulationSettings()

@@ -1,8 +1,8 @@
-"""MuJoCo: hinges in a tree, the far end held by a fixed tendon, which is linear in the angles; its own RK4.
+"""MuJoCo: a tree of hinges with the far end constrained by a fixed tendon, linear in the angles; MuJoCo's RK4.
 
-Bending is in its x-z plane, about -y. The tendon is a soft equality as hard as the engine makes one. Forces act in
-the control callback, a Python function at every stage: a C function takes half the time at 49 links. Beyond its
-stability limit the engine resets itself and raises nothing; a run stops where its time goes backwards.
+Bending is in the x-z plane, about -y. The tendon is a soft equality, as stiff as the engine allows. Forces are applied
+in the control callback, a Python function at every stage; a C function takes half the time at 49 links. Beyond its
+stability limit the engine resets itself without an error; a run stops when its time decreases.
 """
 
 from typing import Any
@@ -18,7 +18,7 @@ class Mujoco:
     """The adapter."""
 
     def frequencies(self, chain: Chain) -> Array:
-        """From the engine's mass matrix, closure and joint stiffnesses."""
+        """Natural frequencies from the engine's mass matrix, closure and joint stiffnesses."""
         import mujoco
 
         model = mujoco.MjModel.from_xml_string(model_text(chain, 1e-6))
@@ -33,7 +33,7 @@ class Mujoco:
         return tree_frequencies(mass, np.array(data.efc_J).reshape(-1, model.nv)[0], np.array(stiffness))
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
-        """In steps of its Runge-Kutta method."""
+        """Motion by the engine's Runge-Kutta method."""
         import mujoco
 
         h = end / steps
@@ -51,7 +51,7 @@ class Mujoco:
             return run_up_to(0, f"before its first step it rejected the model: {one_line(str(error))}")
         data = mujoco.MjData(model)
         before = mujoco.get_mju_user_warning()
-        mujoco.set_mju_user_warning(lambda text: None)  # it would write a file
+        mujoco.set_mju_user_warning(lambda text: None)  # the default handler writes a file
         mujoco.set_mjcb_control(_loads(chain))
         try:
             for k in range(1, steps + 1):
@@ -67,10 +67,10 @@ class Mujoco:
 
 
 def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
-    """(n - 1,), Hz, of a tree over joint angles whose far end is constrained, ascending.
+    """Natural frequencies (n - 1,), Hz, ascending, of a tree over joint angles with constrained far end.
 
-    `mass` (n, n), `closure` (n,) the far end's height by the angles, `stiffness` (n,). The largest eigenvalues of the
-    inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
+    `mass` (n, n), `closure` (n,) derivative of the far end's height by the angles, `stiffness` (n,). The largest
+    eigenvalues of the inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
     """
     from scipy.linalg import eigh
 

@@ -1,1 +1,1 @@
-"""Behind `verify.analytic_modes`: layout, characteristic equation, multiple shooting, closed forms, error laws."""
+"""Parts of `verify.analytic_modes`: layout, characteristic equation, multiple shooting, closed forms, error laws."""

@@ -1,14 +1,14 @@
-"""The characteristic equation of a beam by the minors of its transfer, and the count of frequencies below a trial.
+"""The characteristic equation of a beam by minors of its transfer matrix, and the count of frequencies below a trial.
 
-The two motions that the left support leaves free are carried along the beam by their 2 x 2 minors (the delta matrix of
-Pestel and Leckie, Matrix Methods in Elastomechanics, 1963): the growing parts of long spans are a common factor, short
-spans have no cancellation, and no small eigenvalue of an assembled stiffness is lost to rounding.
+The two motions that the left support leaves free are transferred along the beam as 2 x 2 minors (the delta matrix of
+Pestel and Leckie, Matrix Methods in Elastomechanics, 1963): growing exponentials of long spans are a common factor,
+short spans have no cancellation, and no stiffness is assembled, whose small eigenvalues would be lost to rounding.
 
 Minors of (w, psi, M, V) are u = p12, p13, p14, p24, p34; p23 = p14 by reciprocity. The stiffness of the beam to the
-left of a position against w and psi there is [[u3, -u2], [-u2, u1]] / u0, with determinant u4 / u0. So the count of
-Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) needs no other matrix: the negative eigenvalues at every
-station, and the frequencies of each span with clamped ends, derived from those with pinned ends (Howson and Williams,
-J. Sound Vib. 26, 1973).
+left of a position against w and psi is [[u3, -u2], [-u2, u1]] / u0, with determinant u4 / u0. The count of Wittrick and
+Williams (Q. J. Mech. Appl. Math. 24, 1971) is the number of negative eigenvalues at every station plus the number of
+frequencies of each span with clamped ends below the trial, derived from pinned ends (Howson and Williams, J. Sound Vib.
+26, 1973).
 """
 
 from collections.abc import Callable
@@ -26,14 +26,14 @@ from verify.problem.beam import Beam
 _END = {"clamped": 0, "pinned": 1, "guided": 3, "free": 4}
 """Minor of the quantities that a support sets to zero; that of the others is 4 less this."""
 _SHORT, _TERMS = 2.25, 16
-"""Largest |wavenumber l|^2 for which power series are summed, and their terms to rounding."""
+"""Largest |wavenumber l|^2 for power series, and their number of terms."""
 _CLOSE = 16.0
 """(sigma1 - sigma2)^2 / (sigma1 sigma2) below which two squares of wavenumbers are close."""
 _TINY = 1e-120
 """Replaces a minor that is exactly zero, where a stiffness is infinite."""
 _NOTHING = Station()
 _CANCELLED = 1e-3
-"""Fraction of its products in a determinant below which it is taken from another form."""
+"""Ratio of a determinant to its products below which another form computes it."""
 
 Minors = tuple[float, float, float, float, float]
 
@@ -112,7 +112,7 @@ def carry(c: float, p: float, q: float) -> Carry:
 
 
 def _from_plain(c: float, p: float, q: float, one: float, e1: float, g3: float, g2: float, h4: float) -> Carry:
-    """The same by the fundamental solutions of fourth order."""
+    """`carry` from the fundamental solutions of fourth order."""
     t, m = p - c * q, p + c * q
     return Carry(
         one,
@@ -145,7 +145,7 @@ def _series(sums: float, gap: float) -> tuple[float, float, float, float, float]
 
 
 def _close(sums: float, product: float, gap: float) -> tuple[float, float, float, float, float]:
-    """The same where the squares of both wavenumbers are close, by their sum and difference."""
+    """`_series` for close squares of both wavenumbers, by their sum and difference."""
     w = 2.0 * sqrt(product)
     far = sums + w if sums >= 0.0 else sums - w
     a, d = (far, gap / far) if sums >= 0.0 else (gap / far, far)
@@ -171,7 +171,7 @@ def _carried(u: Minors, by: Carry, c: float, p: float, q: float) -> Minors:
 
 
 def _over(u: Minors, station: Station, omega2: float) -> Minors:
-    """Minors right of attachments; a support at the station is an infinite stiffness."""
+    """Minors to the right of attachments; a support at the station is an infinite stiffness."""
     if station == _NOTHING:
         return u
     u0, u1, u2, u3, u4 = u
@@ -189,7 +189,7 @@ def _over(u: Minors, station: Station, omega2: float) -> Minors:
 def count_at(layout: BeamLayout, omega2: float) -> Count:
     """The count at a trial omega^2 over EI / (rho A L^4): frequencies below it, rigid motions at 0 included.
 
-    At omega = 0 the shapes that have buckled under the layout's tension. Dashpots do not count.
+    At omega = 0 the number of buckled shapes under the layout's tension. Dashpots have no effect.
     """
     start = [0.0] * 5
     start[4 - _END[layout.supports[0]]] = 1.0
@@ -222,8 +222,8 @@ def count_at(layout: BeamLayout, omega2: float) -> Count:
 def _count_clamped(by: Carry, c: float, p: float, q: float) -> int:
     """Number of frequencies of a span with clamped ends below the trial.
 
-    With pinned ends it has at most two more; the parity follows from the sign of its minor. Pinned, a sine of
-    wavenumber n pi = k has one below where k^4 - (c q - p) k^2 - q (1 + p c) < 0, and up to two above the cut-off.
+    Pinned ends have at most two more; the parity follows from the sign of the minor. For pinned ends a sine of
+    wavenumber n pi = k has one if k^4 - (c q - p) k^2 - q (1 + p c) < 0, and up to two above the cut-off.
     """
     half, product, gap = 0.5 * (c * q - p), -q * (1.0 + p * c), (p + c * q) ** 2 + 4.0 * q
     if gap <= 0.0:
@@ -241,7 +241,7 @@ def _count_clamped(by: Carry, c: float, p: float, q: float) -> int:
 
 
 def _at_station(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float, left: str) -> int:
-    """Negative eigenvalues of the stiffness at a station: of the beam to its left, and of the span ahead clamped.
+    """Number of negative eigenvalues of the stiffness at a station: beam to the left, and next span clamped at its end.
 
     ahead: p12 at the far end of that span, whose sign is that of the determinant.
     """
@@ -259,7 +259,7 @@ def _at_station(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float
 
 
 def _negatives(a: float, b: float, d: float, determinant: float) -> int:
-    """Negative eigenvalues of [[a, b], [b, d]]; `determinant` has the sign of its determinant without cancellation."""
+    """Number of negative eigenvalues of [[a, b], [b, d]]; `determinant` has the sign of its determinant."""
     products = a * d, b * b
     difference = products[0] - products[1]
     sign = difference if abs(difference) > _CANCELLED * sum(products) else determinant
@@ -268,7 +268,7 @@ def _negatives(a: float, b: float, d: float, determinant: float) -> int:
 
 @lru_cache(maxsize=20_000)
 def wavenumber_length(layout: BeamLayout, number: int) -> float:
-    """Wavenumber beta L of a frequency by its number, 1 the lowest, rigid motions included: omega = beta^2 at L = 1.
+    """Wavenumber beta L of frequency `number` from 1, rigid-body motions included: omega = beta^2 at L = 1.
 
     In closed form for a uniform Euler-Bernoulli beam without attachments.
     """
@@ -281,9 +281,9 @@ def wavenumber_length(layout: BeamLayout, number: int) -> float:
 
 
 def nth_root(count: Callable[[float], Count], number: int) -> float:
-    """The positive trial value above which `number` roots are counted.
+    """The positive trial value at which the count reaches `number`.
 
-    Intervals are bisected, the same for all roots, until one contains this root alone; otherwise roots coincide.
+    The same intervals are bisected for all roots, until one contains a single root, or roots that coincide.
     """
     from scipy.optimize import brentq
 
@@ -301,7 +301,7 @@ def nth_root(count: Callable[[float], Count], number: int) -> float:
 
 
 def buckling_load(beam: Beam) -> float:
-    """The smallest compression at which a beam buckles, N, whatever its own axial force; 0 where it rotates freely.
+    """Lowest buckling load in compression, N, without the beam's own axial force; 0 with a rigid-body rotation.
 
     The root of the characteristic equation at omega = 0 by Euler-Bernoulli theory, for a force of constant direction.
     """
@@ -321,6 +321,6 @@ def check_stable(beam: Beam) -> None:
     """Raise InputError for an axial compression that reaches the buckling load."""
     if beam.tension < 0.0 and -beam.tension >= (load := buckling_load(beam)):
         raise InputError(
-            f"beam.tension = {beam.tension!r} N compresses the beam beyond its buckling load of {load:.6g} N: it has "
-            "no vibration about its straight shape, compress it less or support it better"
+            f"beam.tension = {beam.tension!r} N exceeds the buckling load {load:.6g} N: compress the beam less or "
+            "support it better"
         )

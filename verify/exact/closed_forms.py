@@ -8,7 +8,7 @@ from math import atan, exp, pi, sqrt
 
 from verify.errors import InputError
 from verify.problem.beam import Beam
-from verify.validation import check_whole
+from verify.validation import check_integer
 
 HIGHEST = 10**9
 """Highest mode number."""
@@ -29,16 +29,16 @@ _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
 
 
 def check_mode(mode: int) -> None:
-    """Raise InputError unless `mode` counts from 1 to `HIGHEST`."""
-    check_whole("mode", mode, 1, HIGHEST)
+    """Raise InputError unless `mode` is an integer from 1 to `HIGHEST`."""
+    check_integer("mode", mode, 1, HIGHEST)
 
 
 def check_uniform(beam: Beam) -> None:
     """Raise InputError for a stepped beam and for attachments."""
     if not beam.uniform:
         raise InputError(
-            f"beam.{beam.added[0]}: a beam with it has no closed form here, use the analytic, fem or segment model, or "
-            "none of it"
+            f"beam.{beam.features[0]}: a beam with it has no closed form, leave it out or use the analytic, fem or "
+            "segment model"
         )
 
 

@@ -1,6 +1,6 @@
 """Frequencies and errors of both discrete models in closed form: discrete dispersion and error laws, mu = beta L / N.
 
-The dispersion is exact where a sine fits the ends (pinned and guided); other ends have leading error laws.
+The dispersion is exact for pinned and guided ends, where modes are sines; other ends have leading error laws.
 """
 
 from cmath import tanh
@@ -48,7 +48,7 @@ def _segment_root(mu: float) -> float:
 def _hermite_root(mu: float) -> float:
     """omega^2 rho A l^4 / EI of Hermite elements: the lower root of two nodal equations.
 
-    Sine deflections and cosine slopes at the nodes satisfy them exactly.
+    Sine deflections and cosine slopes at the nodes satisfy both exactly.
     """
     c, s, fall = cos(mu), sin(mu), sin(mu / 2.0) ** 2  # fall = (1 - cos mu) / 2
     k11, k12, k22 = 48.0 * fall, -12.0 * s, 8.0 + 4.0 * c
@@ -103,7 +103,7 @@ def wall_residual(mu: float) -> float:
 
 
 def smallest_count(beam: Beam, mode: int) -> int:
-    """The fewest parts that have the mode on their lower branch."""
+    """Smallest number of parts with the mode on the lower branch."""
     return max(int(wavenumber_length(beam.supports, mode) / pi) + 1, mode + 1, 2)
 
 
@@ -128,5 +128,5 @@ LAWS = {
 def law_of(model: str) -> Law:
     """The law of a discrete model. Raises InputError for one without."""
     if model not in LAWS:
-        raise InputError(f"model = {model!r}: no error law of it is known, choose one of {', '.join(LAWS)}")
+        raise InputError(f"model = {model!r} has no known error law: choose one of {', '.join(LAWS)}")
     return LAWS[model]

@@ -5,9 +5,9 @@ Every span obeys, for the state deflection w, rotation psi, moment M and transve
     w' = psi - V / (kappa G A),  psi' = M / EI,  M' = V + p psi,  V' = q w,
     p = T - rho I omega^2,  q = rho A omega^2 - k_f,
 
-which is Euler-Bernoulli's beam under a tension T on a foundation k_f where 1 / (kappa G A) and rho I are zero,
-Rayleigh's where only the first is, Timoshenko's where none is. V = EI w''' - T w' balances the attachments:
-over a point mass or spring V falls by (k - m omega^2) w and M rises by (k_r - J omega^2) psi.
+with tension T and foundation k_f: Euler-Bernoulli theory for 1 / (kappa G A) = rho I = 0, Rayleigh theory for
+1 / (kappa G A) = 0, else Timoshenko theory. V = EI w''' - T w' balances the attachments: across a point mass or spring
+V decreases by (k - m omega^2) w and M increases by (k_r - J omega^2) psi.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ from verify.problem.point_attachments import PointMass, PointSpring
 SAME_PLACE = 1e-12
 """Distance, relative to the beam's length, below which two positions are one station."""
 HELD = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
-"""Which of w, psi, M, V a support sets to zero."""
+"""Indices of w, psi, M, V that a support sets to zero."""
 
 
 class UniformSpan(NamedTuple):
@@ -42,14 +42,14 @@ class UniformSpan(NamedTuple):
 
 
 class Station(NamedTuple):
-    """Attachments at one position, relative likewise."""
+    """Attachments at one position, relative to the beam's own L, EI and rho A."""
 
     stiffness: float = 0.0
     rotational: float = 0.0
     mass: float = 0.0
     inertia: float = 0.0
     dashpot: float = 0.0
-    """Relative to EI / L^3 per dimensionless frequency, as is the next."""
+    """Relative to EI / L^3 per dimensionless frequency; `rotational_dashpot` relative to EI / L."""
     rotational_dashpot: float = 0.0
     support: str = "free"
     """Support at the station: "pinned" prevents the deflection, "guided" the rotation, "clamped" both."""
@@ -60,7 +60,7 @@ class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
 
     supports: tuple[str, str]
     spans: tuple[UniformSpan, ...]
-    """From the left, n of them."""
+    """n spans from the left."""
     stations: tuple[Station, ...]
     """(n + 1): at the left end, between spans, at the right end."""
     tension: float
@@ -83,7 +83,7 @@ class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
 def layout_of(
     beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = (), devices: tuple[Device, ...] = ()
 ) -> BeamLayout:
-    """The layout of a beam with devices by a theory that it has the properties for; `also`: further stations, m."""
+    """The layout of a beam with devices by a theory; `also`: additional stations, m."""
     attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.attached, *devices)
     cuts = [*(one.position for one in attached), *also]
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
@@ -124,7 +124,7 @@ def layout_of(
 
 
 def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) -> BeamLayout:
-    """The layout with attachments (x / L, station) added to its stations; a support at an end joins that of the end."""
+    """The layout with attachments (x / L, station) added to its stations; supports at an end are combined."""
     stations, supports = list(layout.stations), list(layout.supports)
     for xi, more in added:
         at = layout.station_at(xi)
@@ -138,6 +138,6 @@ def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) ->
 
 
 def _both(one: str, other: str) -> str:
-    """The support that prevents the motions that either prevents."""
+    """The support that prevents the motions of both supports."""
     deflection, rotation = ({one, other} & {prevents, "clamped"} for prevents in ("pinned", "guided"))
     return "clamped" if deflection and rotation else "pinned" if deflection else "guided" if rotation else "free"

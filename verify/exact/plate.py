@@ -1,9 +1,9 @@
 """Plate effect: a uniform rectangular strip as a thin plate with free long edges, against Euler-Bernoulli theory.
 
-A beam's section keeps its shape; a strip's bends across its width as it bends along its length, by Poisson's ratio. A
-half wave hardly longer than the width suppresses that but for the edges, and so does a clamped end, whose section stays
-straight. Pinned and guided ends fit a sine: closed form (Levy; Leissa, Vibration of Plates, NASA SP-160, 1969, section
-4.2). Clamped and free ends: Ritz's method with integrated Legendre polynomials along and Legendre polynomials across.
+Bending along a strip causes anticlastic bending across its width by Poisson's ratio, which beam theory neglects. A half
+wave not much longer than the width suppresses it except near the edges, and so does a clamped end. Pinned and guided
+ends: closed form (Levy; Leissa, Vibration of Plates, NASA SP-160, 1969, section 4.2). Clamped and free ends: Ritz
+method with integrated Legendre polynomials along and Legendre polynomials across.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 
 if TYPE_CHECKING:
     from verify.arrays import Array
 
 FLATNESS = 5.0
-"""Width over thickness from which on thin-plate theory is used."""
+"""Smallest width over thickness for thin-plate theory."""
 MOST_UNKNOWNS = 25_000
-"""Unknowns of the largest Ritz solution, which takes about 2 s."""
+"""Largest number of unknowns of a Ritz solution, about 2 s."""
 
 
 def plate_error(beam: Beam, mode: int) -> float:
@@ -29,17 +29,17 @@ def plate_error(beam: Beam, mode: int) -> float:
 
     The mode is symmetric across the width, without a nodal line along the strip: 0 for a narrow strip,
     1/sqrt(1 - nu^2) - 1 for cylindrical bending. The thickness has no influence. Exact for pinned and guided ends; an
-    upper bound within about 1e-6 (|nu| <= 0.4) otherwise. Raises InputError for anything but a uniform rectangular
+    upper bound within about 1e-6 (|nu| <= 0.4) otherwise. Raises InputError unless the beam is a uniform rectangular
     strip, at least `FLATNESS` times as wide as thick, and for a mode without a counterpart in the plate.
     """
     if not beam.uniform:
-        raise InputError(f"beam.{beam.added[0]}: plate theory covers a strip without it, leave it out")
+        raise InputError(f"beam.{beam.features[0]}: plate theory does not model it, leave it out")
     if beam.width is None or beam.thickness is None:
         raise InputError("beam.width is missing: plate theory needs a rectangle's width and thickness")
     if beam.width < FLATNESS * beam.thickness:
         raise InputError(
-            f"beam.width = {beam.width!r} m on thickness = {beam.thickness!r} m: thin-plate theory holds for strips "
-            f"at least {FLATNESS:g} times as wide as thick, use theory = 'timoshenko'"
+            f"beam.width = {beam.width!r} m and thickness = {beam.thickness!r} m: thin-plate theory needs a width of "
+            f"at least {FLATNESS:g} thicknesses, use theory = 'timoshenko'"
         )
     if set(beam.supports) <= {"pinned", "guided"}:
         half_width = 0.5 * beam.width * wavenumber_length(beam.supports, mode) / beam.length
@@ -48,9 +48,9 @@ def plate_error(beam: Beam, mode: int) -> float:
 
 
 def plate_warnings(beam: Beam, errors: Mapping[int, Sequence[float]]) -> list[str]:
-    """One warning on the modes whose plate effect exceeds a discretisation error, none elsewhere.
+    """A warning on modes whose plate effect exceeds a discretisation error; empty list otherwise.
 
-    `errors`: relative discretisation errors by mode number. A beam that is no thin strip has no warning.
+    `errors`: relative discretisation errors by mode number. No warning for beams that are not thin strips.
     """
     exceeded = []
     for mode, own in errors.items():
@@ -63,13 +63,13 @@ def plate_warnings(beam: Beam, errors: Mapping[int, Sequence[float]]) -> list[st
     if not exceeded:
         return []
     return [
-        "Bending across the width (thin plate), which no beam theory has, changes frequencies by more than "
-        f"discretisation does: {', '.join(exceeded)}."
+        "Bending across the width (thin plate), absent in beam theory, changes frequencies by more than the "
+        f"discretisation: {', '.join(exceeded)}."
     ]
 
 
 def stiffening(half_width: float, poissons_ratio: float) -> float:
-    """Omega relative to the beam's, less 1, of a wave along an endless strip with free edges.
+    """Relative frequency difference of a wave along an infinite strip with free edges from the beam's.
 
     `half_width` q is its wavenumber times half its width, dimensionless. With g = omega sqrt(rho h / D) / k^2,
     deflections cosh(k sqrt(1 +- g) y) without moment and force at the edges satisfy
@@ -78,7 +78,7 @@ def stiffening(half_width: float, poissons_ratio: float) -> float:
     """
     nu = poissons_ratio
     narrow = sqrt(1.0 - nu * nu)
-    # Bisection down to neighbouring numbers: in narrow strips rounding hides the change of sign from a root finder.
+    # bisection to adjacent floating-point numbers: in narrow strips the change of sign is within rounding
     below, above = narrow, 1.0
     while below < (g := 0.5 * (below + above)) < above:
         fast, slow = sqrt(1.0 + g), sqrt(1.0 - g)
@@ -92,9 +92,9 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     """Plate effect for any supports, by Ritz's method: an upper bound of the frequency. `aspect`: length over width.
 
     The energy is a sum of squares, (1 - nu^2) w_xx^2 + (w_yy + nu w_xx)^2 + 2 (1 - nu) w_xy^2 over D/2, so that the
-    quotient of the eigenvector's own strains has no cancellation. Of the eigenvectors around the endless strip's
-    frequency the mode is the one with more than half of its modal mass in the beam's mode, constant across the width;
-    no other can have that (Bessel). Raises InputError where there is none, as in strips about as wide as long.
+    Rayleigh quotient has no cancellation. Of the eigenvectors near the infinite strip's frequency the mode is the one
+    with more than half of its modal mass in the beam's mode, constant across the width; it is unique (Bessel). Raises
+    InputError if there is none, as in strips about as wide as long.
     """
     import numpy as np
     from numpy.polynomial import legendre
@@ -103,7 +103,7 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
 
     wavenumber = 0.5 * wavenumber_length(supports, mode)  # lengths in half lengths, widths in half widths
     half_width = wavenumber / aspect
-    # Two terms a half wave, and as many as resolve the ends, where polynomials cluster as the square of their degree.
+    # two terms per half wave, and terms for the ends, where the resolution is the square of the degree
     terms_along = int(2 * mode + 90 + 12 * sqrt(aspect))
     terms_across = int(10 + 0.7 * half_width)
     if terms_along * terms_across > MOST_UNKNOWNS:
@@ -123,7 +123,7 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     strains = (sqrt(1.0 - nu * nu) * w_xx, w_yy + nu * w_xx, sqrt(2.0 * (1.0 - nu)) * w_xy)
 
     def nearest(parts: "Sequence[Any]", motion: Any, eigenvalue: float, n: int) -> "Array":
-        # a shift off the eigenvalue, so that the matrix is not singular; a fixed start repeats every digit
+        # a shift off the eigenvalue, so that the matrix is not singular; a fixed start makes results reproducible
         stiffness, start = sum(part.T @ part for part in parts), np.ones(motion.shape[1])
         vectors: Array = eigsh(stiffness, n, (motion.T @ motion).tocsc(), sigma=1.0001 * eigenvalue, v0=start)[1]
         return vectors
@@ -133,14 +133,14 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     vectors = nearest(strains, w, narrow * (1.0 + stiffening(half_width, nu)) ** 2, 8)
     mass = np.sum((w @ vectors) ** 2, axis=0)
     share = (beam @ (along[0] @ vectors[::terms_across])) ** 2 / (beam @ beam) / mass
-    found = int(share.argmax())
-    if share[found] <= 0.5:
+    best = int(share.argmax())
+    if share[best] <= 0.5:
         raise InputError(
             f"mode = {mode}: on a strip of length / width = {aspect:.3g} no plate mode has more than half of its modal "
-            f"mass in this mode of the beam ({100.0 * share[found]:.0f} %), choose a narrower strip or another mode"
+            f"mass in this mode of the beam ({100.0 * share[best]:.0f} %), choose a narrower strip or another mode"
         )
-    energy = sum(float(np.sum((part @ vectors[:, found]) ** 2)) for part in strains)
-    return sqrt(energy / float(mass[found]) / narrow) - 1.0
+    energy = sum(float(np.sum((part @ vectors[:, best]) ** 2)) for part in strains)
+    return sqrt(energy / float(mass[best]) / narrow) - 1.0
 
 
 def _along(supports: tuple[str, str], n: int) -> "list[Any]":
@@ -154,7 +154,7 @@ def _along(supports: tuple[str, str], n: int) -> "list[Any]":
     from scipy import sparse
 
     degree = np.arange(n)
-    norm = sparse.diags_array(np.sqrt(degree + 0.5))  # P_k times it has unit norm
+    norm = sparse.diags_array(np.sqrt(degree + 0.5))  # P_k times this factor has unit norm
     rise = 1.0 / (2.0 * degree + 1.0)  # the integral of P_k is (P_k+1 - P_k-1) / (2 k + 1)
     integral = sparse.diags_array([rise[:-1], -rise[1:]], offsets=[-1, 1])
     bent = norm.tocsc()[:, 2:-2]
@@ -162,7 +162,7 @@ def _along(supports: tuple[str, str], n: int) -> "list[Any]":
     hermite = np.array(
         [[0.5, -0.6, 0.0, 0.1], [1 / 6, -0.1, -1 / 6, 0.1], [0.5, 0.6, 0.0, -0.1], [-1 / 6, -0.1, 1 / 6, 0.1]]
     )
-    cubic = hermite[[not prevented for support in supports for prevented in HOLDS[support]]].T
+    cubic = hermite[[not prevented for support in supports for prevented in FIXED[support]]].T
     series = []
     for order in range(3):
         derived = legendre.legder(cubic, order)

@@ -20,13 +20,13 @@ from verify.exact.layout import HELD, SAME_PLACE, BeamLayout
 ROTATION = 1
 """Index of the rotation in the state (w, psi, M, V)."""
 _REACH, _TERMS = 3.0, 32
-"""Largest wavenumber times length of a piece (e^3 costs one digit), and terms of its Taylor series, to rounding."""
+"""Largest wavenumber times length of a piece (e^3 costs one digit), and number of terms of its Taylor series."""
 _MOST_PIECES = 300_000
-"""Pieces of one solution, 1.5 kB each."""
+"""Largest number of pieces of one solution, 1.5 kB each."""
 _LOWER, _UPPER = 5, 3
-"""Diagonals of the banded system below and above the main one."""
+"""Number of diagonals of the banded system below and above the main one."""
 _TRIES = 3
-"""Excitations of each mode; one is far from orthogonal to it."""
+"""Number of excitations per mode, one of which is far from orthogonal to the mode."""
 _PAIR = 1e-9
 """Relative distance of two frequencies that coincide."""
 _NUDGE = 7e-16
@@ -44,7 +44,7 @@ class Division(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     rates: Any
     """(n_cases * n_spans, 4, 4), d/dt of (w, psi, M, V), each relative to `sizes`; t is 0 to 1 over a piece."""
     sums: Any
-    """(n_cases * n_spans,), S; real without losses, as all below."""
+    """(n_cases * n_spans,), S; real without losses, as are all following arrays."""
     products: Any
     """(n_cases * n_spans,), P."""
     over: Any
@@ -74,8 +74,8 @@ def divide(layout: BeamLayout, omega2: Array, loss_factor: float = 0.0) -> Divis
     counts = np.ceil(np.sqrt(abs(sums) + np.sqrt(abs(products))) * length / _REACH).clip(1.0)
     if counts.sum() > _MOST_PIECES:
         raise InputError(
-            f"frequency: this beam bends in so many waves that {counts.sum():.0f} pieces follow them, more than "
-            f"{_MOST_PIECES}: lower frequency_hz or mode, or what shortens its waves (beam.tension, beam.foundation)"
+            f"frequency: the waves of this beam need {counts.sum():.0f} pieces, more than {_MOST_PIECES}: lower "
+            "frequency_hz or mode, or change beam.tension or beam.foundation, which shorten the waves"
         )
     counts = counts.astype(int)
     sizes = (np.maximum(omega2, 1.0) ** 0.25)[:, None] ** np.arange(4)
@@ -131,11 +131,11 @@ def _taylor(starts: Any, sums: Any, products: Any, derivative: int = 0) -> Itera
 
 def _starts(division: Division, states: Any, of: int = 0) -> Any:
     """(4, n_pieces, k), an entry of the state and its derivatives by t at the left end of each piece."""
-    rates, here, found = division.rates[division.span], states[division.left], []
+    rates, here, starts = division.rates[division.span], states[division.left], []
     for _ in range(4):
-        found.append(here[:, of])
+        starts.append(here[:, of])
         here = rates @ here
-    return np.array(found)
+    return np.array(starts)
 
 
 def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]] = ()) -> tuple[Any, Any]:
@@ -184,15 +184,15 @@ def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]]
     if real and np.iscomplexobj(right):  # real and imaginary parts side by side
         right = right.view(float)
     (gbsv,) = get_lapack_funcs(("gbsv",), (matrix, right))
-    *_, found, info = gbsv(_LOWER, _UPPER, matrix, right, overwrite_ab=True, overwrite_b=True)
-    if info or not np.isfinite(found).all():
+    *_, states, info = gbsv(_LOWER, _UPPER, matrix, right, overwrite_ab=True, overwrite_b=True)
+    if info or not np.isfinite(states).all():
         raise np.linalg.LinAlgError("singular")
-    found = np.ascontiguousarray(found)
+    states = np.ascontiguousarray(states)
     if real and np.iscomplexobj(jumps):
-        found = found.view(complex)
-    found = found.reshape(n_ends, 4, -1)
-    forces = found[held, 0].reshape(len(imposed), len(division.omega2), found.shape[2]).swapaxes(0, 1)
-    return over @ found + jumps, forces * division.sizes[:, 3, None, None]
+        states = states.view(complex)
+    states = states.reshape(n_ends, 4, -1)
+    forces = states[held, 0].reshape(len(imposed), len(division.omega2), states.shape[2]).swapaxes(0, 1)
+    return over @ states + jumps, forces * division.sizes[:, 3, None, None]
 
 
 class Motion(msgspec.Struct, frozen=True, eq=False):
@@ -203,9 +203,9 @@ class Motion(msgspec.Struct, frozen=True, eq=False):
     """(n_ends, 4, k), right of each end."""
 
     def read(self, xi: Array, derivative: int, of: int = 0) -> Any:
-        """Derivative of the deflection by x / L at xi (n_x,), (n_cases, k, n_x), from the right where it jumps.
+        """Derivative by x / L at xi (n_x,), (n_cases, k, n_x), right-continuous at jumps.
 
-        Likewise of the rotation.
+        `of` = 0: deflection; 1: rotation.
         """
         division = self.division
         ends = np.cumsum(division.counts.sum(axis=1))
@@ -226,13 +226,13 @@ class Motion(msgspec.Struct, frozen=True, eq=False):
 
 
 def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
-    """Free motions of consecutive modes, of modal mass 1 over rho A L, positive off the left end.
+    """Free motions of consecutive modes, of modal mass 1 over rho A L, positive next to the left end.
 
     numbers: mode numbers, (n,). betas: beta L of these, of the mode before and the mode after, (n + 2,).
 
     Inverse iteration: the largest response to a few arbitrary excitations at resonance, then the response to forces and
-    couples like that motion, which excite no other mode. Two modes of one frequency share a plane of motions; the
-    second is made orthogonal to the first.
+    couples in proportion to that motion, which excite no other mode. The second of two modes of equal frequency is
+    made orthogonal to the first.
     """
     close = np.diff(betas) < _PAIR * betas[1:]
     paired, betas = close[:-1], betas[1:-1]
@@ -246,7 +246,7 @@ def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
         columns = np.arange(n_columns)
         phases = index * (1.0 + 0.37 * (numbers[case][:, None, None] - columns // _TRIES) + 0.11 * (columns % _TRIES))
         try:
-            largest = []  # of the responses to the excitations of each mode, its largest entry 1
+            largest = []  # largest response of each mode, scaled to a largest entry of 1
             for some in np.split(solve(division, np.cos(phases))[0], n_columns // _TRIES, axis=2):
                 peaks = np.maximum.reduceat(abs(some).max(axis=1), starts, axis=0)
                 best = some[np.arange(len(case)), :, peaks.argmax(axis=1)[case]]

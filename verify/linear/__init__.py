@@ -1,1 +1,1 @@
-"""What models of a vibrating beam share: the interface, factored systems, modes, fields, time bases, division."""
+"""Common parts of the beam models: interface, factored systems, modes, fields, time bases, division into parts."""

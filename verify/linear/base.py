@@ -1,4 +1,4 @@
-"""`BeamModel`, the interface of every model of a vibrating beam: a beam, a size, settings, and verbs."""
+"""`BeamModel`, the interface of all models of a vibrating beam: a beam, a size, settings, and methods."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -14,10 +14,10 @@ from verify.linear.time_basis import TimeBasis
 from verify.options import THEORIES
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
-from verify.validation import check_kind, check_whole, check_word, several
+from verify.validation import as_tuple, check_choice, check_integer, check_type
 
 Devices: TypeAlias = Device | Sequence[Device]
-"""One device alone stands for a list of it."""
+"""One device, or several."""
 
 _NEEDS = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "shear_stiffness")}
 
@@ -25,69 +25,69 @@ _NEEDS = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "she
 class BeamModel(ABC):
     """A model of one beam. Subclasses are frozen dataclasses: `beam`, the number of parts if any, then settings.
 
-    Another package registers one by `MODELS.register(cls)` or an entry point of the group `verify.models`; a verb that
-    it does not override is refused by name.
+    Another package registers a model by `MODELS.register(cls)` or an entry point of the group `verify.models`. A method
+    that a model does not override raises InputError.
     """
 
     name: ClassVar[str]
-    """In a scene or on a command line."""
+    """Name in scenes and on the command line."""
     parts: ClassVar[str] = "parts"
-    """What its count counts: 'segments'."""
+    """Name of the parts that `count` counts, for instance 'segments'."""
     title: ClassVar[str] = ""
-    """In charts and tables; the name unless given."""
+    """Title in charts and tables; default: the name."""
     colour: ClassVar[str] = "#8f5bd1"
-    """Of its lines in charts."""
+    """Line colour in charts."""
     sized: ClassVar[bool] = True
-    """Whether it has parts."""
+    """Whether the model is discrete."""
     bounds: ClassVar[Literal["below", "above"] | None] = None
-    """Side of the exact frequencies on which it lies, on uniform beams without a clamped end."""
+    """Side of the exact frequencies on which its own lie, for uniform beams without a clamped end."""
     fewest: ClassVar[int] = 1
-    """Least number of parts."""
+    """Smallest number of parts."""
     library: ClassVar[str] = ""
-    """Package that it needs beside numpy and scipy."""
+    """Package that the model needs besides numpy and scipy."""
     lines: ClassVar[tuple[str, ...]] = ("spline",)
     """Contact lines on which a slider can run."""
     modal_settings: ClassVar[tuple[str, ...]] = ()
-    """Settings that its frequencies depend on, among those of `analysis.variants`."""
+    """Settings of `analysis.variants` on which the frequencies depend."""
     beam: Beam
     theory: str = "euler-bernoulli"
 
     def __init_subclass__(cls) -> None:
-        """One without a title is called by its name."""
+        """The default title is the name."""
         cls.title = cls.title or getattr(cls, "name", "")
 
     @classmethod
     def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":
-        """The model of a beam by the number of parts, None for a model without. Raises InputError."""
+        """The model of a beam with `count` parts, None for the exact beam. Raises InputError."""
         cls.check_count(count)
         for name, value in settings.items():
             if name not in cls.settings():
-                raise InputError(f"{name} = {value!r} is no setting of the {cls.name} model: leave it out")
+                raise InputError(f"{name} = {value!r} is not a setting of the {cls.name} model: leave it out")
         return cls(beam, count, **settings) if cls.sized else cls(beam, **settings)  # type: ignore[call-arg]
 
     @classmethod
     def check_count(cls, count: int | None) -> None:
-        """Raise InputError for a missing number of parts, and for one where there are none."""
+        """Raise InputError for a discrete model without a number of parts, or the exact beam with one."""
         if cls.sized == (count is None):
             raise InputError(
                 f"count is missing: give the number of {cls.parts} for model = {cls.name}"
                 if cls.sized
-                else f"count = {count!r} is for models of parts: {cls.name} has none, leave it out"
+                else f"count = {count!r} is for discrete models: leave it out for model = {cls.name}"
             )
 
     @classmethod
     def settings(cls) -> tuple[str, ...]:
-        """Names of its settings: its fields after the beam and the number of parts."""
+        """Names of the settings: the fields after the beam and the number of parts."""
         return tuple(one.name for one in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
 
     @classmethod
     def can(cls, verb: str) -> bool:
-        """Whether it has a verb of its own."""
+        """Whether the model implements a method of this interface."""
         return getattr(cls, verb) is not getattr(BeamModel, verb)
 
     @property
     def count(self) -> int | None:
-        """Number of parts; None for a model without."""
+        """Number of parts; None for the exact beam."""
         return None
 
     @property
@@ -104,13 +104,13 @@ class BeamModel(ABC):
     ) -> HarmonicField:
         """The steady field under harmonic point forces, e^{+i omega t}, at one frequency or many.
 
-        `devices` are impedances on the beam, at one frequency. Damping: the beam's loss factor, or `modal_damping`,
-        the ratio of every mode. Raises InputError, and ResonanceError at an undamped resonance.
+        `devices` are impedances on the beam (one frequency only). Damping: the beam's loss factor, or `modal_damping`,
+        the damping ratio of every mode. Raises InputError, and ResonanceError at an undamped resonance.
         """
         raise self._has_no("harmonic")
 
     def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
-        """The steady field under imposed harmonic displacements: amplitudes in metres; its first forces impose them.
+        """The steady field under imposed harmonic displacements, amplitudes in m; their forces are the first `forces`.
 
         Raises InputError for two at one position or one at a support without deflection, and ResonanceError.
         """
@@ -124,27 +124,27 @@ class BeamModel(ABC):
         raise self._has_no("receptance")
 
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
-        """Its free modes for motion in time; a model without parts keeps the first `modes`. Raises InputError."""
+        """Free modes for motion in time; of the exact beam the first `modes`. Raises InputError."""
         raise self._has_no("time_basis")
 
     def buckling_load(self) -> float:
-        """Least compression at which it buckles, by Euler-Bernoulli theory, N, whatever the beam's own axial force."""
+        """Lowest buckling load in compression, Euler-Bernoulli theory, N; the beam's own axial force is ignored."""
         raise self._has_no("buckling_load")
 
     def expected_order(self) -> int | None:
-        """Order in the number of parts at which its frequencies converge; None where it is not known."""
+        """Order of convergence of the frequencies in the number of parts; None if unknown."""
         return None
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of waves in it, 1/m; by default that of the exact beam of the same theory."""
+        """Wavenumber of waves in the model, 1/m; default: that of the exact beam of the same theory."""
         return wavenumber(self.beam, frequency_hz, self.theory)
 
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
-        """Raise NoFigureError for a frequency above the cut-off of its parts."""
+        """Raise NoFigureError for a frequency above the cut-off of the parts."""
 
     def check_n_modes(self, n_modes: int) -> None:
-        """Raise InputError unless it has so many elastic modes."""
-        check_whole("n_modes", n_modes, 1)
+        """Raise InputError unless the model has `n_modes` elastic modes."""
+        check_integer("n_modes", n_modes, 1)
         if n_modes > self.n_elastic:
             raise InputError(
                 f"n_modes = {n_modes}: the {self.name} model at count = {self.count} has {self.n_elastic} elastic "
@@ -152,13 +152,13 @@ class BeamModel(ABC):
             )
 
     def check_theory(self) -> None:
-        """Raise InputError for an unknown theory, and for one that the beam has no figures for."""
-        check_kind("beam", self.beam, Beam)
-        check_word("theory", self.theory, THEORIES)
+        """Raise InputError for an unknown theory, and for missing section properties of the theory."""
+        check_type("beam", self.beam, Beam)
+        check_choice("theory", self.theory, THEORIES)
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(
-                f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: there is more than one such "
-                "theory, leave the axial force out or choose euler-bernoulli"
+                f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: the theory is not unique, "
+                "leave the axial force out or choose euler-bernoulli"
             )
         for i, piece in enumerate(self.beam.pieces):
             for figure in _NEEDS.get(self.theory, ()):
@@ -170,8 +170,8 @@ class BeamModel(ABC):
                     )
 
     def check_stationed(self, forces: Forces, devices: Devices) -> tuple[tuple[PointForce, ...], Any]:
-        """(forces, devices) as tuples. Raises InputError for one off the beam or without effect, and for none."""
-        acting, stationed = forces_on(self.beam, forces), several("devices", devices, Device)
+        """(forces, devices) as tuples. Raises InputError for a position off the beam, no effect, and no forces."""
+        acting, stationed = forces_on(self.beam, forces), as_tuple("devices", devices, Device)
         for device in stationed:
             device.check_on(self.beam)
         if not acting and not any(device.amplitude for device in stationed):

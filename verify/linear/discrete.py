@@ -1,6 +1,6 @@
-"""`DiscreteModel`: the verbs of a model of parts, each written once over its `StructuralSystem`.
+"""`DiscreteModel`: the methods of `BeamModel` for discrete models, in terms of their `StructuralSystem`.
 
-A model gives the system, the weights by which a place acts on its unknowns, and the line through them. Unknowns are
+A subclass defines the system, the weights of its unknowns at a position, and their interpolation. Unknowns are
 dimensionless: lengths in `unit`, stiffnesses in EI and masses in rho A unit.
 """
 
@@ -21,15 +21,15 @@ from verify.linear.field import HarmonicField, phasor, point_force
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, frequencies_on, vector_on
 from verify.linear.system import FEW, SUPERPOSED, StructuralSystem, memory
-from verify.linear.time_basis import TimeBasis, check_held
+from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import PointForce
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
-from verify.validation import check_number, check_word
+from verify.validation import check_choice, check_number
 
 
 class DiscreteModel(BeamModel):
-    """A model of parts; see `BeamModel` for arguments, results and errors of its verbs."""
+    """A discrete model; see `BeamModel` for arguments, results and errors of its methods."""
 
     @property
     @abstractmethod
@@ -39,52 +39,52 @@ class DiscreteModel(BeamModel):
     @property
     @abstractmethod
     def n_unknowns(self) -> int:
-        """Number n of unknowns, known without building the system."""
+        """Number n of unknowns, computed without building the system."""
 
     @property
     @abstractmethod
     def system(self) -> StructuralSystem:
-        """Its stiffness and mass, stable or not; a cached property."""
+        """Stiffness and mass, also beyond buckling; a cached property."""
 
     @abstractmethod
     def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
         """Weights of the unknowns for a unit force (or couple) at each position (m), sparse (n_positions, n).
 
-        A device reads its rotation by the same row.
+        The row of a couple also gives the rotation at a device.
         """
 
     def device_rows(self, positions: Array) -> Any:
-        """The same of devices, which read their deflection, and exert a force of their own, by them."""
+        """Weights of the unknowns for deflection and force of devices at positions (m), sparse (n_positions, n)."""
         return self.load_rows(positions)
 
     @abstractmethod
     def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
-        """The beam's deflection of unknowns (n, k): (x in m, derivative) -> (k, len(x)), per metre^derivative."""
+        """Deflection for unknowns (n, k): (x in m, derivative) -> (k, len(x)), per metre^derivative."""
 
     def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
-        """The same of the section's rotation, rad per metre^derivative; None where it is the slope."""
+        """Section rotation for unknowns (n, k): (x in m, derivative) -> (k, len(x)); None where it is the slope."""
         return None
 
     @abstractmethod
     def lossy_stiffness(self, omega: float) -> Any:
-        """D of the system with the losses of material and dashpots at omega (rad/s), (m,); real without losses."""
+        """Stiffness d with losses of material and dashpots at omega (rad/s), (m,); real without losses."""
 
     @abstractmethod
     def leading_sign(self, vectors: Array) -> Array:
-        """+-1 for each vector (n, k), (k,): positive where the beam first moves off its left end."""
+        """+-1 for each vector (n, k), (k,): the sign of the deflection next to the left end."""
 
     @abstractmethod
     def modes_of(self, vectors: Array) -> dict[str, Any]:
-        """Fields of `Modes` other than frequencies and shapes, of mass-normalised vectors (n, k)."""
+        """Fields of `Modes` except frequencies and shapes, for mass-normalised vectors (n, k)."""
 
     @abstractmethod
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
-        """Fields `shapes`, `edges`, `degree` and, where bodies rotate otherwise, `turns` of `TimeBasis`."""
+        """Fields `shapes`, `edges`, `degree` of `TimeBasis`, and `turns` where bodies do not follow the slope."""
 
     @property
     @abstractmethod
     def cut_off_hz(self) -> float:
-        """Frequency up to which waves travel along all its parts, Hz: a half wave on one of them."""
+        """Cut-off frequency, Hz: half a wavelength on one part; waves propagate below it."""
 
     @property
     def n_elastic(self) -> int:
@@ -93,7 +93,7 @@ class DiscreteModel(BeamModel):
 
     @property
     def _omega_unit(self) -> float:
-        """rad/s of a dimensionless frequency of 1."""
+        """Unit of omega, rad/s."""
         return self.beam.wave_constant / self.unit**2
 
     @property
@@ -108,11 +108,11 @@ class DiscreteModel(BeamModel):
 
     @property
     def _tilts(self) -> bool:
-        """Whether the beam without its axial force rotates freely as a whole."""
+        """Whether the beam without its axial force has a rigid-body rotation."""
         return any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines)
 
     def check_memory(self, n_modes: int = 0) -> None:
-        """Raise InputError, before anything is built, for a system of more than 10 GB: `system.memory`."""
+        """Raise InputError for a system of more than 10 GB (`system.memory`), before it is built."""
         if memory(self.n_unknowns, n_modes) > 10e9:
             raise InputError(
                 f"count = {self.count}: {self.n_unknowns} unknowns with {n_modes} modes exceed the largest system of "
@@ -125,28 +125,28 @@ class DiscreteModel(BeamModel):
             beam, n = self.beam, self.count or 0
             plain = self.theory == "euler-bernoulli" and not (beam.section or beam.tension or beam.foundation)
             raise NoFigureError(
-                f"count = {n}: {n} {self.parts} carry waves up to {limit:.6g} Hz and frequency_hz = "
-                f"{float(frequency_hz)!r} lies beyond, "
-                # the cut-off of plain parts is in proportion to their number squared
+                f"count = {n}: frequency_hz = {float(frequency_hz)!r} exceeds the cut-off {limit:.6g} Hz of {n} "
+                f"{self.parts}, "
+                # the cut-off of equal parts without tension and foundation is proportional to their number squared
                 + (f"give count = {int(n * sqrt(frequency_hz / limit)) + 1} or more" if plain else "raise count")
             )
 
     @cached_property
     def stable_system(self) -> StructuralSystem:
-        """The system. Raises InputError where the beam's axial force buckles it."""
+        """The system. Raises InputError where the beam's axial force exceeds the buckling load."""
         if self.beam.tension < 0.0:
             load = 0.0 if self._tilts else -self.beam.tension * self.system.buckling_factor()
             if -self.beam.tension >= load:
                 raise InputError(
-                    f"beam.tension = {self.beam.tension!r} N compresses the beam beyond its buckling: {self.count} "
-                    f"{self.parts} buckle at {load:.6g} N, compress it less or hold it better"
+                    f"beam.tension = {self.beam.tension!r} N exceeds the buckling load {load:.6g} N of {self.count} "
+                    f"{self.parts}: compress the beam less or support it better"
                 )
         return self.system
 
     # --- Modes, buckling, motion in time -------------------------------------------------------------------------
 
     def modes(self, n_modes: int) -> Modes:
-        """The first elastic modes. Raises InputError for more than it has, and for a compression beyond buckling."""
+        """The first elastic modes. Raises InputError for too many modes, and for compression beyond buckling."""
         self.check_n_modes(n_modes)
         self.check_memory(n_modes)
         values, vectors = self.stable_system.modes(n_modes)
@@ -162,11 +162,11 @@ class DiscreteModel(BeamModel):
         )
 
     def _normalised(self, vectors: Array) -> Array:
-        """Vectors of dimensionless unit modal mass (n, k) in 1/sqrt(kg), positive off the left end."""
+        """Vectors (n, k) of dimensionless unit modal mass in 1/sqrt(kg), positive next to the left end."""
         return np.asarray(vectors * (self.leading_sign(vectors) / sqrt(self.beam.mass_per_length * self.unit)))
 
     def buckling_load(self) -> float:
-        """The compression at which it buckles first, N, without shear; 0 where nothing keeps the beam from tilting."""
+        """Lowest buckling load in compression, N, without shear; 0 for a beam with a rigid-body rotation."""
         if self._tilts:
             return 0.0
         load = float(self.beam.bending_stiffness / self.beam.length**2)
@@ -175,15 +175,15 @@ class DiscreteModel(BeamModel):
         return load * compressed.system.buckling_factor()
 
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
-        """All its modes for motion in time. Raises InputError for rigid-body motions, and for too many unknowns."""
-        check_held(self.beam)
-        check_word("line", line, self.lines)
+        """All modes for motion in time. Raises InputError for rigid-body motions, and for too many unknowns."""
+        check_supported(self.beam)
+        check_choice("line", line, self.lines)
         if modes is not None:
-            raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} keeps all it has, leave it out")
+            raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} uses all its modes, leave it out")
         values, vectors = self.stable_system.all_modes
         ratios = None
         if self.beam.loss_factor and self.beam.lossless:
-            # half of the loss factor times the share of what has loss in each mode's stiffness
+            # half the loss factor times the lossy fraction of each modal stiffness
             energies = self.stable_system.strain(vectors) ** 2
             ratios = 0.5 * (np.imag(self.lossy_stiffness(1.0)) @ energies) / (self.stable_system.stiffness @ energies)
         vectors = self._normalised(vectors)
@@ -205,7 +205,7 @@ class DiscreteModel(BeamModel):
     ) -> HarmonicField:
         """The steady field under harmonic point forces.
 
-        Many frequencies are superposed from all modes where damping does not couple them.
+        Many frequencies: superposition of all modes, unless damping couples them.
         """
         acting, stationed = self.check_stationed(forces, devices)
         if (cut := self._cut_at(stationed)) is not None:
@@ -214,7 +214,7 @@ class DiscreteModel(BeamModel):
         check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
         frequencies = frequencies_on(self.beam, frequency_hz)
         if stationed and np.ndim(frequency_hz):
-            raise InputError("frequency_hz has several values: with devices give one at a time")
+            raise InputError("frequency_hz has several values: give one frequency with devices")
         own, omegas = tuple(device.own_force for device in stationed if device.amplitude), 2.0 * pi * frequencies
         loads, omega2 = self._loads(acting, own), (omegas / self._omega_unit) ** 2
         impedances = self._impedances(stationed, float(omegas[0]))
@@ -222,7 +222,7 @@ class DiscreteModel(BeamModel):
         if modal_damping and (loss is None or impedances):
             coupling = "devices" if impedances else "a loss in a part of the stiffness"
             raise InputError(
-                f"modal_damping = {modal_damping!r} beside {coupling}: the modes would couple, give one of the two"
+                f"modal_damping = {modal_damping!r} with {coupling}: the modes are coupled, give one of the two"
             )
         if loss is not None:
             unknowns = self.stable_system.harmonic_sweep(loads, omega2, loss, modal_damping)[:, :, 0]
@@ -239,23 +239,23 @@ class DiscreteModel(BeamModel):
         return self._field(unknowns, frequency_hz, (*acting, *own, *reactions), stationed)
 
     def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
-        """The steady field under imposed harmonic displacements: constraint rows of the system.
+        """The steady field under imposed harmonic displacements, which are constraint rows of the system.
 
-        Chains read deflections by other weights than those of a force: the constraints are scaled to what is read.
+        Deflections of a chain have other weights than forces: the constraints are scaled to the deflections.
         """
         drives, stationed = self.check_stationed(displacements, devices)
         if (cut := self._cut_at(stationed)) is not None:
             return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
         if np.ndim(frequency_hz):
-            raise InputError("frequency_hz has several values: with imposed displacements give one at a time")
+            raise InputError("frequency_hz has several values: give one frequency with imposed displacements")
         omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
         own = tuple(device.own_force for device in stationed if device.amplitude)
         places, p = np.array([drive.position for drive in drives]), len(drives)
         rows = self.load_rows(places)
         if np.linalg.matrix_rank(rows.toarray()) < p:
             raise InputError(
-                "drive.force.position: displacements are imposed at one place twice, or at a support without "
-                "deflection: move one, or leave it out"
+                "drive.force.position: two displacements are imposed at one position, or one at a support without "
+                "deflection, move one or leave it out"
             )
         impedances = self._impedances(stationed, omega)
         try:
@@ -283,7 +283,7 @@ class DiscreteModel(BeamModel):
         loads = self.load_rows(at).toarray().T * (self.unit**3 / self.beam.bending_stiffness)
         omega2 = (omegas / self._omega_unit) ** 2
         if self._many(omegas) and (loss := self._shared_loss(omegas)) is not None:
-            # shapes are read once, of modes, and not of every response
+            # interpolate the modes once instead of every response
             receptances, acting, responding = self.stable_system.modal_receptances(omega2, loss)
             weights, shapes = acting.T @ loads, self.line(responding)(read, 0)
             return np.asarray(np.einsum("mp,fm,mx->fpx", weights, receptances, shapes, optimize=True), dtype=complex)
@@ -297,7 +297,7 @@ class DiscreteModel(BeamModel):
         return result
 
     def _loads(self, forces: Sequence[PointForce], own: Sequence[PointForce]) -> ComplexArray:
-        """Dimensionless loads of forces and of devices' own forces, (n, 1)."""
+        """Dimensionless loads of forces and of active devices, (n, 1)."""
         loads = np.zeros((self.n_unknowns, 1), dtype=complex)
         for rows, acting in ((self.load_rows, forces), (self.device_rows, own)):
             if acting:
@@ -306,9 +306,9 @@ class DiscreteModel(BeamModel):
         return np.asarray(loads * (self.unit**3 / self.beam.bending_stiffness))
 
     def _cut_at(self, devices: Sequence[Device]) -> "DiscreteModel | None":
-        """The model with negligible bodies at devices against rotation, None where it has bodies there.
+        """The model with negligible bodies at devices against rotation; None if it has bodies at all of them.
 
-        A model divides its beam, and lets its ends rotate, at bodies; a couple elsewhere is of order 1 or 2.
+        Bodies place nodes, and elastic joints at the ends; a couple at any other position is of order 1 or 2.
         """
         beam, negligible = self.beam, 1e-15 * self.beam.mass_per_length * self.unit**3
         bodies = {mass.position for mass in beam.mass if mass.rotary_inertia}
@@ -319,11 +319,11 @@ class DiscreteModel(BeamModel):
         return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))  # type: ignore[type-var]
 
     def _many(self, omegas: Array) -> bool:
-        """Whether all modes cost less than a factorisation for each frequency."""
+        """Whether all modes cost less than one factorisation per frequency."""
         return len(omegas) > FEW and self.n_unknowns <= SUPERPOSED
 
     def _shared_loss(self, omegas: Array) -> float | None:
-        """The loss factor of every stiffness at every frequency; None where they differ and couple the modes."""
+        """The loss factor common to all stiffnesses and frequencies; None where they differ and couple the modes."""
         first, last = (self.lossy_stiffness(float(omega)) for omega in (omegas[0], omegas[-1]))
         losses = np.imag(first / self.stable_system.stiffness)
         shared = np.ptp(losses) <= 1e-15 * (1.0 + losses.max()) and np.array_equal(first, last)
@@ -336,7 +336,7 @@ class DiscreteModel(BeamModel):
         )
 
     def _impedances(self, devices: Sequence[Device], omega: float) -> list[tuple[float | None, Any, complex]]:
-        """(position, None for a rotation; row; dimensionless dynamic stiffness) of the devices."""
+        """(position or None for a rotation, row, dimensionless dynamic stiffness) of each impedance."""
         impedances, scale = list[tuple[float | None, Any, complex]](), self.unit / self.beam.bending_stiffness
         for device in devices:
             at = np.array([device.position])
@@ -355,7 +355,7 @@ class DiscreteModel(BeamModel):
     def _field(
         self, unknowns: ComplexArray, frequency_hz: Any, forces: tuple[PointForce, ...], devices: Sequence[Device]
     ) -> HarmonicField:
-        """The field of unknowns (n_frequencies, n), of one frequency where one is given."""
+        """The field for unknowns (n_frequencies, n); of one frequency if `frequency_hz` is a number."""
         line, rotation, one = self.line(unknowns.T), self.rotation_line(unknowns.T), np.ndim(frequency_hz) == 0
 
         def first(read: Callable[[Array, int], Any]) -> Callable[[Array, int], Any]:

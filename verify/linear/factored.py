@@ -1,7 +1,7 @@
-"""A structural system in factored form, K = B^T diag(d) B, and the augmented matrix that keeps it so.
+"""A structural system in factored form, K = B^T diag(d) B, and its augmented matrix.
 
-An assembled K loses the low eigenvalues of a beam to rounding like n^4 eps; B is applied as successive differences. The
-augmented (saddle-point) matrix [[-1/d, B], [B^T, -s M]] takes stiffnesses of any size and sign.
+Rounding in an assembled K costs the low eigenvalues of a beam n^4 eps; B is applied as successive differences instead.
+The augmented (saddle-point) matrix [[-1/d, B], [B^T, -s M]] is valid for stiffnesses of any size and sign.
 
 Unknowns, stiffnesses and masses are dimensionless, of order one; models scale them.
 """
@@ -17,7 +17,7 @@ from verify.arrays import Array, Indices
 
 
 def sparse_rows(columns: Indices, values: Array, n: int) -> Any:
-    """Sparse (r, n) of values (r, c) at columns (r, c), without zeros and columns outside 0..n - 1."""
+    """Sparse (r, n) with values (r, c) at columns (r, c), without zeros and columns outside 0..n - 1."""
     from scipy.sparse import csr_array
 
     stored = (values != 0.0) & (columns >= 0) & (columns < n)
@@ -30,18 +30,17 @@ class FactoredSystem:
     """K = B^T diag(d) B and M over n unknowns, B a product of sparse factors."""
 
     strain_factors: Sequence[Any]
-    """Sparse; B = factors[-1] @ ... @ factors[0]. The first take plain differences, which are exact."""
+    """Sparse; B = factors[-1] @ ... @ factors[0]. The first factors are differences, exact in floating point."""
     stiffness: Array
     """d, (m,); negative where an axial compression releases energy."""
     mass: Any
     """M, (n, n), sparse by columns."""
     rigid: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    """(n, r), motions without strain, whose zero eigenvalues are left out."""
+    """(n, r), rigid-body motions, whose zero eigenvalues are excluded."""
     lower_bound: float = 0.0
-    """Lower bound of all eigenvalues without `bodies`. A hard foundation raises them to where they lie close together;
-    the shift of Lanczos follows it."""
+    """Lower bound of all eigenvalues without `bodies`, the shift of Lanczos: a stiff foundation clusters them above."""
     bodies: Any = None
-    """Sparse rows (r, n) whose squares are the part of M of attached bodies, which may lower r eigenvalues further."""
+    """Sparse rows R (r, n) of attached bodies, R^T R a part of M: r eigenvalues may be below `lower_bound`."""
 
     @property
     def n(self) -> int:
@@ -69,9 +68,9 @@ class FactoredSystem:
 
     @cached_property
     def _pattern(self) -> tuple[Array, Indices, Any, Any, Array]:
-        """[[-1, B], [B^T, M]]: its values in turn; their order by columns, rows and starts of columns; scales.
+        """[[-1, B], [B^T, M]]: values by block; their order by columns, rows and starts of columns; scales.
 
-        Rows of soft strains are scaled by powers of two: an endless 1/d beside others costs their digits.
+        Rows of soft strains are scaled by powers of two: an infinite 1/d costs the other rows their digits.
         """
         m, scales = len(self.stiffness), np.exp2(np.minimum(np.round(0.5 * np.log2(abs(self.stiffness))), 0.0))
         strain, mass, diagonal = self.transposed.T.tocoo(), self.mass.tocoo(), np.arange(m)
@@ -84,7 +83,7 @@ class FactoredSystem:
         return values, order, rows[order].astype(np.int32), starts.astype(np.int32), scales
 
     def augmented(self, mass_factor: float, stiffness: Any = None) -> Any:
-        """[[-1/d, B], [B^T, mass_factor M]], sparse by columns. Its pattern is made once, its data per frequency."""
+        """[[-1/d, B], [B^T, mass_factor M]], sparse by columns; the pattern is built once, the data per frequency."""
         from scipy.sparse import csc_array
 
         d, m = self.stiffness if stiffness is None else stiffness, len(self.stiffness)

@@ -25,21 +25,21 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Elements or segments; None for the exact beam."""
     beam: Beam
     frequency_hz: float | Array
-    """Of the drive, Hz: one, or (n_frequencies,)."""
+    """Drive frequency, Hz: a number, or (n_frequencies,)."""
     forces: tuple[PointForce, ...]
-    """All transverse point forces on the beam, N: the given ones and the reactions of devices and imposed
-    displacements. With several frequencies the given ones alone."""
+    """Transverse point forces on the beam, N: the drive and, for a single frequency, the reactions of devices and
+    imposed displacements."""
     shapes: Callable[[Array, int], ComplexArray]
     """(x, derivative) -> (len(x),), or (n_frequencies, len(x)), in metres per metre^derivative."""
     theory: str = "euler-bernoulli"
     rotation_shapes: Callable[[Array, int], ComplexArray] | None = None
-    """The same of the section's rotation psi, rad, where shear makes it differ from the slope w'."""
+    """Section rotation psi with the arguments of `shapes`, rad; None where it is the slope w'."""
     couples: tuple[float, ...] = ()
-    """Positions at which devices act against rotation, m: their couples are not among the forces."""
+    """Positions of devices against rotation, m, whose couples are not in `forces`."""
 
     @property
     def omega(self) -> float:
-        """2 pi f, rad/s, of a field at one frequency."""
+        """2 pi f, rad/s; single frequency only."""
         return 2.0 * np.pi * float(self.frequency_hz)
 
     @property
@@ -48,7 +48,7 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return wavenumber(self.beam, float(self.frequency_hz), self.theory)
 
     def deflection(self, x: Numbers) -> ComplexArray:
-        """Complex deflection at x (m), (*shape of x), m; a number is a row of one. Raises InputError off the beam."""
+        """Complex deflection at x (m), (*shape of x), m; (1,) for a number. Raises InputError off the beam."""
         return self.derivative(x, 0)
 
     def slope(self, x: Numbers) -> ComplexArray:
@@ -64,21 +64,21 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return reshape_like(self.rotations(positions_on("x", x, self.beam.length).ravel(), 0), x)
 
     def rotations(self, x: Array, derivative: int) -> ComplexArray:
-        """Derivative of that rotation at x (n,), (n,), rad per m^derivative.
+        """Derivative of the section rotation at x (n,), (n,), rad per m^derivative.
 
-        Raises InputError for a Timoshenko field of a model that does not give the rotation.
+        Raises InputError for a Timoshenko field of a model without section rotation.
         """
         if self.rotation_shapes is not None:
             return self.rotation_shapes(x, derivative)
         if self.theory == "timoshenko":
             raise InputError(
-                f"theory = 'timoshenko': fields of model = {self.model!r} do not give the rotation of the section, "
-                "with which a surface moves: choose another model, or a deflection or a slope"
+                f"theory = 'timoshenko': fields of model = {self.model!r} have no rotation of the section, which moves "
+                "the surface: choose another model, or a deflection or a slope"
             )
         return self.shapes(x, derivative + 1)
 
     def at(self, index: int) -> "HarmonicField":
-        """The field at one of several frequencies, counted from 0."""
+        """The field at the frequency of an index from 0."""
         read, rotation = self.shapes, self.rotation_shapes
         return replace(
             self,
@@ -94,7 +94,7 @@ def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli")
     (rho A omega^2 / (EI (1 + i eta)))^{1/4}; under a tension T and on a foundation k_f the root of
     EI k^4 + T k^2 = rho A omega^2 - k_f that propagates. Rayleigh's theory adds rotary inertia, Timoshenko's
     (Phil. Mag. 41, 1921) shear, with G = kappa G A: EI G k^4 - omega^2 (rho A EI + rho I G) k^2 =
-    rho A omega^2 (G - rho I omega^2), where rho A omega^2 is less by k_f in what resists deflection.
+    rho A omega^2 (G - rho I omega^2), with rho A omega^2 - k_f for rho A omega^2 in the balance of forces.
     """
     lossy = 1.0 + 1j * beam.loss_factor
     if not (beam.tension or beam.foundation) and theory == "euler-bernoulli":
@@ -112,18 +112,18 @@ def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli")
 
 
 def lossless_wavenumber(beam: Beam, frequency_hz: float) -> complex:
-    """The same of a beam without losses, 1/m: real where a wave propagates."""
+    """Wavenumber of the beam without losses, 1/m: real where a wave propagates."""
     return wavenumber(replace(beam, loss_factor=0.0), frequency_hz)
 
 
 def travelling_wavenumber(beam: Beam, frequency_hz: float) -> float | None:
-    """The same where a wave propagates, 1/m; None below the cut-on frequency of a foundation."""
+    """Lossless wavenumber where a wave propagates, 1/m; None below the cut-on frequency of a foundation."""
     k = lossless_wavenumber(beam, frequency_hz)
     return k.real if k.real > 0.0 == k.imag else None
 
 
 def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
-    """The weighted sum of fields, otherwise like the first of them."""
+    """The weighted sum of fields; other data are those of the first."""
     first = parts[0][1]
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
@@ -136,16 +136,16 @@ def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
 
 
 def unit_response(beam: Beam, frequency_hz: float) -> float:
-    """Scale of the response to a unit force, min(1/|k|, L)^3 / EI, m/N: what is tiny relative to it is rounding."""
+    """Scale of the response to a unit force, min(1/|k|, L)^3 / EI, m/N, for comparison with rounding."""
     length = min(1.0 / abs(wavenumber(beam, frequency_hz)), beam.length)
     return float(length**3 / beam.bending_stiffness)
 
 
 def phasor(force: PointForce) -> complex:
-    """Amplitude and phase as one complex number, N."""
+    """Complex amplitude of a force, N."""
     return complex(force.amplitude * np.exp(1j * np.deg2rad(force.phase_deg)))
 
 
 def point_force(position: float, value: complex) -> PointForce:
-    """The force of a complex amplitude, N."""
+    """The force with a complex amplitude, N."""
     return PointForce(position=position, amplitude=abs(value), phase_deg=float(np.angle(value, deg=True)))

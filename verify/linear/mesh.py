@@ -8,11 +8,11 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.problem.beam import SHORTEST_SECTION, Beam
 from verify.problem.cross_section import Piece
-from verify.validation import check_kind, check_number
+from verify.validation import check_number, check_type
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """N parts from left to right, each (N,), relative to the beam's own E, I, rho A, A and to `unit` of length."""
+    """N parts from left to right; (N,) arrays relative to the beam's own E, I, rho A, A and to `unit` of length."""
 
     unit: float
     """Mean length of a part, m: equal parts have length 1 exactly."""
@@ -22,11 +22,11 @@ class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     masses_per_length: Array
     areas: Array
     equal: bool
-    """Whether all parts are alike."""
+    """Whether all parts are equal."""
     pieces: tuple[Piece, ...]
-    """Sections that the parts divide."""
+    """Pieces of the beam that are divided."""
     shares: list[int]
-    """Number of parts of each."""
+    """Number of parts of each piece."""
 
     def of(self, figure: str) -> Array:
         """A property of the section of every part, (N,), SI."""
@@ -51,9 +51,9 @@ class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ...] = ()) -> Parts:
     """Divide a beam into `count` parts whose ends fall on its steps.
 
-    Every piece has parts in proportion to its length, at least one. `grading` is the length of a piece's last part
-    over that of its first, in geometric progression. `pieces` replace the beam's own, as `cut_pieces` has them. Raises
-    InputError for fewer parts than pieces, and for a grading that is not between 0.001 and 1000.
+    The number of parts of a piece is proportional to its length, at least one. `grading` is the length of a piece's
+    last part over that of its first, in geometric progression. `pieces` (see `cut_pieces`) replace those of the beam.
+    Raises InputError for fewer parts than pieces, and for a grading that is not between 0.001 and 1000.
     """
     pieces = pieces or beam.pieces
     check_division(beam, count, grading, len(pieces))
@@ -80,7 +80,7 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
 def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:
     """E, I, rho A, A of every piece over the beam's own, (n_pieces, 4).
 
-    Without a shape E is 1 everywhere, I stands for EI, and areas are not a number.
+    Without a shape E is 1, I is EI, and areas are NaN.
     """
     every = (own, *pieces)
     if any(p.youngs_modulus is None for p in every):
@@ -93,31 +93,31 @@ def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:
 def cut_pieces(beam: Beam) -> tuple[Piece, ...]:
     """The pieces of a beam, cut at masses and springs.
 
-    An attachment closer than the shortest section to a step, an end or its neighbour makes no cut.
+    No cut at an attachment closer than the shortest section to a step, an end or another attachment.
     """
     places = sorted({*(mass.position for mass in beam.mass), *(spring.position for spring in beam.spring)})
-    near, found, start = SHORTEST_SECTION * beam.length, [], 0.0
+    near, pieces, start = SHORTEST_SECTION * beam.length, [], 0.0
     for piece in beam.pieces:
         left, end = start, start + piece.length
         for place in places:
             if left + near <= place <= end - near:
-                found.append(replace(piece, length=place - left))
+                pieces.append(replace(piece, length=place - left))
                 left = place
-        found.append(replace(piece, length=end - left) if left > start else piece)
+        pieces.append(replace(piece, length=end - left) if left > start else piece)
         start = end
-    return tuple(found)
+    return tuple(pieces)
 
 
 def check_division(beam: Beam, count: int, grading: float = 1.0, least: int = 0) -> None:
-    """Raise InputError for a wrong grading, and for fewer parts than the beam has sections, or than `least`."""
-    check_kind("beam", beam, Beam)
+    """Raise InputError for an invalid grading, and for fewer parts than `least` or the number of pieces."""
+    check_type("beam", beam, Beam)
     check_number("grading", grading, "last over first length", at_least=1e-3, at_most=1e3)
     if count < (least := max(least, len(beam.pieces))):
         raise InputError(f"count = {count}: steps, masses and springs cut the beam into {least}, give as many parts")
 
 
 def part_counts(lengths: list[float], count: int) -> list[int]:
-    """Numbers of parts of each section: in proportion to length by largest remainders, at least one."""
+    """Number of parts of each piece: proportional to length by largest remainders, at least one."""
     shares = np.array(lengths) / sum(lengths) * count
     counts = np.maximum(np.floor(shares + 1e-9), 1.0)
     while (missing := count - counts.sum()) != 0.0:

@@ -13,7 +13,7 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Elastic modes of one model, ascending; mode n has index n - 1.
 
     Shapes are normalised to unit modal mass (integral of rho A phi^2 dx = 1 kg m^2 / m^2, for a discrete
-    model with its own mass matrix) and positive where the beam first moves off its left end.
+    model with its own mass matrix) and positive next to the left end.
     """
 
     model: str
@@ -29,24 +29,24 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     nodes: Array
     """(n_nodes,), m: joints or element ends, both ends of the beam included; empty for the exact beam."""
     readings: dict[str, Callable[[], Array]] = msgspec.field(default_factory=dict)
-    """Ways to read the deflection at `nodes`, by name, the default first: () -> (n_modes, n_nodes)."""
+    """Readings of the deflection at `nodes` by name, default first: () -> (n_modes, n_nodes)."""
     points: Array
-    """(n_points,), m, evenly spaced: where the model has its shape without interpolation."""
+    """(n_points,), m, evenly spaced positions at which the shape needs no interpolation."""
     sampled: Callable[[], Array]
     """() -> deflection at `points`, (n_modes, n_points)."""
     curvature_points: Array
-    """(n_curvatures,), m: where the model has its curvature best."""
+    """(n_curvatures,), m: positions of most accurate curvature."""
     curvatures: Callable[[], Array]
     """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg)); from the right at a step."""
     method: str = "closed form"
     """Method of the eigenvalues."""
 
     @classmethod
-    def of_shapes(cls, nodes: Array, shapes: Callable[[Array, int], Array], **known: Any) -> "Modes":
-        """Modes of a model that has its shapes anywhere, with as many derivatives: (x, derivative) -> (n, len(x)).
+    def of_shapes(cls, nodes: Array, shapes: Callable[[Array, int], Array], **fields: Any) -> "Modes":
+        """Modes from continuous shapes with two or more derivatives: (x, derivative) -> (n, len(x)).
 
-        `nodes` (n_nodes,) are the ends of its parts, both ends of the beam included, evenly spaced; `known` are model,
-        count, frequencies_hz and, if any, method.
+        `nodes` (n_nodes,) are the evenly spaced ends of the parts, including both ends of the beam; `fields` are model,
+        count, frequencies_hz and optionally method.
         """
         return cls(
             length=float(nodes[-1]),
@@ -57,7 +57,7 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             sampled=lambda: shapes(nodes, 0),
             curvature_points=nodes,
             curvatures=lambda: shapes(nodes, 2),
-            **known,
+            **fields,
         )
 
     @property

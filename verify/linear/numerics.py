@@ -9,14 +9,14 @@ from verify.arrays import Array
 
 
 class Rule(NamedTuple):
-    """Points of an interval and their weights, of sum 1."""
+    """Points of an interval and their weights, whose sum is 1."""
 
     x: Array
     weights: Array
 
 
 def gauss_rule(interval: tuple[float, float], parts: int) -> Rule:
-    """12-point Gauss quadrature of an interval in equal parts, exact to rounding where each has at most a period."""
+    """12-point Gauss quadrature of an interval in equal parts, exact to rounding for at most one period per part."""
     points, weights = np.polynomial.legendre.leggauss(12)
     edges = np.linspace(*interval, parts + 1)
     x = edges[:-1, None] + np.diff(edges)[:, None] * 0.5 * (points + 1.0)
@@ -24,7 +24,7 @@ def gauss_rule(interval: tuple[float, float], parts: int) -> Rule:
 
 
 def mean_over(function: Callable[[Array], Array], interval: tuple[float, float], parts: int) -> float:
-    """The mean over an interval, to 1e-9 of the largest value if smooth over eighths of the parts."""
+    """Mean over an interval, to 1e-9 of the largest value for functions that are smooth over an eighth of a part."""
     before = mean = float("nan")
     for doubling in range(4):
         x, weights = gauss_rule(interval, parts * 2**doubling)
@@ -36,7 +36,7 @@ def mean_over(function: Callable[[Array], Array], interval: tuple[float, float],
 
 
 def whole_halves(window: tuple[float, float], k: float) -> tuple[tuple[float, float], int]:
-    """(middle part of a window that is a whole number of half wavelengths, the number); all of it if shorter."""
+    """(centred part of a window with an integer number of half wavelengths, the number); the window if shorter."""
     number = int((window[1] - window[0]) * k / np.pi * (1.0 + 1e-12))
     if number < 1:
         return window, 1
@@ -45,9 +45,9 @@ def whole_halves(window: tuple[float, float], k: float) -> tuple[tuple[float, fl
 
 
 def extremes(function: Callable[[Array], Array], x: Array) -> tuple[float, float]:
-    """(least, largest) of a smooth function over the span of x, fine enough to separate its 64 highest hills."""
+    """(least, largest) value of a smooth function over the span of x, which has to resolve its 64 highest maxima."""
     values = function(x)
-    found = [values]
+    samples = [values]
     for sign in (1.0, -1.0):
         padded = np.concatenate([[-np.inf], sign * values, [-np.inf]])
         tops = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:]))
@@ -57,6 +57,6 @@ def extremes(function: Callable[[Array], Array], x: Array) -> tuple[float, float
             at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 17)
             best, rows = (sign * function(at.ravel())).reshape(at.shape).argmax(axis=1), np.arange(len(tops))
             low, high = at[rows, np.maximum(best - 1, 0)], at[rows, np.minimum(best + 1, 16)]
-        found.append(function(0.5 * (low + high)))
-    both = np.concatenate(found)
+        samples.append(function(0.5 * (low + high)))
+    both = np.concatenate(samples)
     return float(both.min()), float(both.max())

@@ -1,4 +1,4 @@
-"""The models by name: those of this package, and subclasses of `BeamModel` that another package registers."""
+"""Registry of the models: those of this package, and subclasses of `BeamModel` of other packages."""
 
 from typing import TYPE_CHECKING
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 EXACT = "analytic"
 """Name of the exact beam."""
 MEAN = "mean"
-"""Middle of the model below and the model above, where a frequency may have it in place of a model."""
+"""Name of the mean of the models below and above the exact frequencies."""
 
 
 def _problem_of(model: object) -> str:
     from verify.linear.base import BeamModel
 
     if not (isinstance(model, type) and issubclass(model, BeamModel)):
-        return "is no subclass of verify.linear.base.BeamModel: make it one"
+        return "is not a subclass of verify.linear.base.BeamModel: derive it"
     return "bounds the exact frequencies, as two models of the package do: leave `bounds` out" if model.bounds else ""
 
 
@@ -38,12 +38,12 @@ MODELS: "Registry[type[BeamModel]]" = Registry(
 
 
 def discrete(verb: str = "modes", beam: "Beam | None" = None) -> "tuple[type[BeamModel], ...]":
-    """All models of parts with a verb; with a beam, those of other packages that do not take it are left out."""
+    """Discrete models that implement a method; with a beam, without models of other packages that cannot solve it."""
     able = (model for model in MODELS.values() if model.sized and model.can(verb))
-    return tuple(model for model in able if beam is None or model.name in MODELS.built_in or _takes(model, beam))
+    return tuple(model for model in able if beam is None or model.name in MODELS.built_in or _solves(model, beam))
 
 
-def _takes(model: "type[BeamModel]", beam: "Beam") -> bool:
+def _solves(model: "type[BeamModel]", beam: "Beam") -> bool:
     try:
         model.build(beam, max(model.fewest, len(beam.pieces)))
     except InputError:
@@ -58,5 +58,5 @@ def bounding() -> "tuple[type[BeamModel], type[BeamModel]]":
 
 
 def check_count(name: str, count: int | None, field: str = "model") -> None:
-    """Raise InputError for a model of parts without their number, or one without parts with one."""
+    """Raise InputError for a discrete model without a number of parts, or the exact beam with one."""
     MODELS.named(name, field).check_count(count)

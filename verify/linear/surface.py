@@ -1,7 +1,4 @@
-"""The section of a stepped beam at a position, and the range in which its surface has no step.
-
-At a step the section to the right counts.
-"""
+"""The section of a stepped beam at a position (at a step the right one), and ranges without a step of the surface."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -30,25 +27,25 @@ def section_at(beam: Beam, x: float) -> Beam:
 
 @lru_cache(maxsize=256)
 def _uniform(beam: Beam, number: int) -> Beam:
-    kept = ("length", "supports", "poissons_ratio", "loss_factor", "tension", "foundation")
-    taken = ("bending_stiffness", "mass_per_length", "extreme_fibre", "shear_stiffness", "rotary_inertia")
+    of_beam = ("length", "supports", "poissons_ratio", "loss_factor", "tension", "foundation")
+    of_piece = ("bending_stiffness", "mass_per_length", "extreme_fibre", "shear_stiffness", "rotary_inertia")
     piece = beam.pieces[number]
-    return Beam(**{name: getattr(beam, name) for name in kept}, **{name: getattr(piece, name) for name in taken})
+    return Beam(**{name: getattr(beam, name) for name in of_beam}, **{name: getattr(piece, name) for name in of_piece})
 
 
 def surface_distance_at(beam: Beam, x: Numbers) -> Array:
-    """From the neutral line to the surface at x (m), m, of the shape of x. Raises InputError where it is unknown."""
+    """Distance of the surface from the neutral line at x (m), m, of the shape of x. Raises InputError if unknown."""
     at, beams = piece_at(beam, x), [_uniform(beam, i) if beam.section else beam for i in range(len(beam.pieces))]
     return np.asarray(np.array([one.surface_distance if i in at else np.nan for i, one in enumerate(beams)])[at])
 
 
 class ContactRange(NamedTuple):
-    """The range of a beam, m, in which its surface has no step."""
+    """A range of the beam, m, without a step of the surface."""
 
     start: float
     end: float
     ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
-    """What a slider did that is beyond its start, and beyond its end."""
+    """Messages for a slider beyond the start, and beyond the end, of the range."""
 
 
 def contact_range(beam: Beam, x: float) -> ContactRange:
@@ -75,6 +72,6 @@ def check_one_range(beam: Beam, positions: Sequence[float]) -> None:
     for x in positions:
         if contact_range(beam, x).ends != first.ends:
             raise InputError(
-                f"slider.position = {written(x)} m lies on another beam.section than {written(positions[0])} m, and "
-                "the surface has a step between: put all sliders on sections of one thickness"
+                f"slider.position = {written(x)} m and {written(positions[0])} m are separated by a step of the "
+                "surface: place all sliders on sections of one thickness"
             )

@@ -1,7 +1,7 @@
 """Linear structural systems K = B^T diag(d) B: modes, harmonic response, buckling.
 
-Vectors may come from any solver; each eigenvalue is the Rayleigh quotient sum d (B v)^2 / v^T M v, with B applied as
-successive differences, so that its error is of second order in that of the vector. Factorisations are those of the
+Eigenvectors come from any of several solvers; each eigenvalue is the Rayleigh quotient sum d (B v)^2 / v^T M v, with B
+applied as successive differences: its error is of second order in that of the vector. Factorisations are of the
 augmented matrix (`factored`).
 """
 
@@ -17,33 +17,33 @@ from verify.errors import InputError
 from verify.linear.factored import FactoredSystem
 
 DENSE = 150
-"""Unknowns up to which all modes come from one singular value decomposition, which is faster than Lanczos there."""
+"""Largest number of unknowns for one singular value decomposition, which is then faster than Lanczos."""
 MOST_MODES = 2000
-"""Unknowns of which all modes are computed: these take ten seconds, and the time grows with the cube."""
+"""Largest number of unknowns for all modes: ten seconds, growing with the cube."""
 RESONANCE = 1e-9
-"""Relative distance in frequency to an undamped resonance below which a response is rounding."""
+"""Relative frequency distance to an undamped resonance below which a response is rounding."""
 HARD = 100.0
-"""Of the lowest bending eigenvalue, about: from where a foundation raises modes to where they lie close together."""
+"""Lower bound over the lowest bending eigenvalue, about, above which a foundation clusters the eigenvalues."""
 REFINED = 6
-"""Steps of iterative refinement at most: one where parts are alike, more on soft supports."""
+"""Largest number of iterative refinements: one for equal parts, more on soft supports."""
 FEW = 4
-"""Frequencies up to which each is solved by itself: all modes cost more than a few factorisations."""
+"""Largest number of frequencies solved one by one: all modes cost more than a few factorisations."""
 SUPERPOSED = 600
-"""Unknowns up to which many frequencies are superposed from all modes."""
+"""Largest number of unknowns for superposition of all modes at many frequencies."""
 
 
 def uses_dense(n: int, k: int) -> bool:
-    """Whether k modes of n unknowns come from dense matrices: few unknowns, or a good part of all modes."""
+    """Whether k modes of n unknowns are computed with dense matrices: few unknowns, or many of the modes."""
     return n <= DENSE or 3 * k > n
 
 
 def memory(n: int, k: int) -> int:
-    """Bytes that k modes of n unknowns take: eight dense matrices, or sparse factors and the Lanczos basis."""
+    """Memory for k modes of n unknowns, bytes: eight dense matrices, or sparse factors and the Lanczos basis."""
     return 64 * n**2 if uses_dense(n, k) else 8 * n * (250 + 8 * k)
 
 
 def _sums(terms: Array) -> Array:
-    """Sums over rows, pairwise as contiguous sums are: one after another, a million terms leave 1e-12."""
+    """Pairwise sums over rows, through contiguous memory: sequential sums of a million terms err by 1e-12."""
     return np.asarray(np.ascontiguousarray(terms.T).sum(axis=1))
 
 
@@ -60,19 +60,19 @@ class StructuralSystem(FactoredSystem):
     def modes(self, k: int) -> tuple[Array, Array]:
         """The lowest k elastic eigenvalues omega^2 (k,), ascending, and vectors (n, k) of unit modal mass.
 
-        Raises InputError where a compression leaves no positive eigenvalue, and where Lanczos does not converge.
+        Raises InputError for a compression beyond buckling, and where Lanczos does not converge.
         """
-        ways = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
-        strains, vectors = ways[self.method(k)](k)
+        solvers = {"Lanczos": self._by_lanczos, "singular values": self._by_svd, "dense": self._by_dense_pencils}
+        strains, vectors = solvers[self.method(k)](k)
         masses = _sums(vectors * (self.mass @ vectors))
         values = _sums(self.stiffness[:, None] * strains**2) / masses
         if values.min(initial=1.0) <= 0.0:
-            raise InputError("beam.tension: the compression buckles this model, compress less or hold the beam better")
+            raise InputError("beam.tension exceeds the buckling load of this model: compress less or support it better")
         order = np.argsort(values, kind="stable")[:k]
         return values[order], (vectors / np.sqrt(masses))[:, order]
 
     def method(self, k: int) -> str:
-        """How `modes` computes k vectors: "Lanczos", "singular values", or "dense" where a stiffness is negative."""
+        """Solver of `modes` for k vectors: "Lanczos", "singular values", or "dense" for negative stiffnesses."""
         if not uses_dense(self.n, k + self.n_rigid):
             return "Lanczos"
         return "singular values" if self.stiffness.min() > 0.0 else "dense"
@@ -88,7 +88,7 @@ class StructuralSystem(FactoredSystem):
         return self.modes(self.n - self.n_rigid)
 
     def _by_svd(self, k: int) -> tuple[Array, Array]:
-        """From the singular values of diag(d)^(1/2) B L^-T with M = L L^T, conditioned like n^2 and not n^4."""
+        """The k modes from the singular values of diag(d)^(1/2) B L^-T, M = L L^T: condition n^2 instead of n^4."""
         from scipy.linalg import solve_triangular
 
         lower, strain = np.linalg.cholesky(self.mass.toarray()), self.strain(np.eye(self.n))
@@ -99,9 +99,9 @@ class StructuralSystem(FactoredSystem):
         return self.strain(vectors), vectors
 
     def _by_dense_pencils(self, k: int) -> tuple[Array, Array]:
-        """Of negative stiffnesses, which have no square root: low modes from K^-1, high ones from K.
+        """The k modes with negative stiffnesses, which have no square root: low ones from K^-1, high ones from K.
 
-        K loses the low eigenvalues and K^-1 the high ones; at their geometric mean both are conditioned like n^2.
+        Rounding costs K its low eigenvalues and K^-1 its high ones; at their geometric mean both have condition n^2.
         """
         from scipy.linalg import eigh
 
@@ -115,14 +115,14 @@ class StructuralSystem(FactoredSystem):
         return self.strain(vectors), vectors
 
     def _by_lanczos(self, k: int) -> tuple[Array, Array]:
-        """Shift and invert, from below all eigenvalues but those that bodies lower.
+        """Shift-invert Lanczos, the shift below all eigenvalues except those that bodies lower.
 
-        The last digit of a vector is a strain, 1e-4 of it at 1e6 parts: strains are those of a refined solution.
+        Rounding of a vector is 1e-4 of its strain at 1e6 parts: strains are those of a refined solution.
         """
         from scipy.linalg import eigh
         from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-        # eigenvalues of a hard foundation lie close together; soft supports would lose bending without a shift
+        # a stiff foundation clusters the eigenvalues; on soft supports bending is lost without a shift
         bending = (3.0 / self.n) ** 4
         shift = 0.999 * self.lower_bound if self.lower_bound > HARD * bending else 0.0 if self.n_rigid else -bending
         solve = self._inverse(shift)
@@ -136,13 +136,13 @@ class StructuralSystem(FactoredSystem):
             vectors = np.hstack([eigsh(inverse, one, which=end, **sought)[1] for one, end in sides if one > 0])
         except ArpackNoConvergence:
             raise InputError(
-                f"the lowest {k} of {self.n} modes do not converge: hold the beam or lower count"
+                f"the lowest {k} of {self.n} modes do not converge: support the beam or lower count"
             ) from None
         strains, vectors = solve(self.mass @ vectors, refined=True)
         energies, masses = strains.T @ (self.stiffness[:, None] * strains), vectors.T @ (self.mass @ vectors)
         slow = np.flatnonzero(energies.diagonal() < 1e-3 * bending * masses.diagonal())
         if slow.size > 1:
-            # two motions on soft supports, which the shift makes one eigenvalue: Rayleigh-Ritz in their plane
+            # two motions on soft supports, one eigenvalue after the shift: Rayleigh-Ritz in their plane
             plane = eigh(energies[np.ix_(slow, slow)], masses[np.ix_(slow, slow)])[1]
             strains[:, slow], vectors[:, slow] = strains[:, slow] @ plane, vectors[:, slow] @ plane
         return strains, vectors
@@ -162,22 +162,22 @@ class StructuralSystem(FactoredSystem):
     def _inverse(self, shift: float) -> Callable[..., tuple[Array, Array]]:
         """Strains (m, k) and response (n, k) of K - shift M to loads (n, k), also with one step of refinement.
 
-        Without a shift rigid-body motions are held, and projected out of loads and response.
+        Without a shift rigid-body motions are constrained, and projected out of loads and response.
         """
         from scipy.sparse.linalg import splu
 
         m, free = len(self.stiffness), np.arange(self.n) if shift else np.delete(np.arange(self.n), self._grounded())
         matrix, scales = self.augmented(-shift), self._pattern[-1][:, None]
         compliance = scales / self.stiffness[:, None]
-        kept = np.concatenate([np.arange(m), m + free])
-        factor = splu(matrix if len(free) == self.n else matrix[kept][:, kept])
+        unknowns = np.concatenate([np.arange(m), m + free])
+        factor = splu(matrix if len(free) == self.n else matrix[unknowns][:, unknowns])
 
         def solve(loads: Array, *, refined: bool = False) -> tuple[Array, Array]:
             right, response = np.zeros((m + len(free), loads.shape[1])), np.zeros(loads.shape)
             right[m:] = (self._without_rigid(loads, load=True) if len(free) < self.n else loads)[free]
             solution = factor.solve(right)
             response[free] = solution[m:]
-            if refined:  # residuals by successive differences are exact where those of the matrix are rounding
+            if refined:  # residuals by successive differences are exact, those of the matrix are rounding
                 forces = scales * solution[:m]
                 for part in reversed(self.strain_factors):
                     forces = part.T @ forces
@@ -196,19 +196,19 @@ class StructuralSystem(FactoredSystem):
         return inertia, np.linalg.solve(self.rigid.T @ inertia, self.rigid.T).T
 
     def _without_rigid(self, vectors: Array, *, load: bool = False) -> Array:
-        """Vectors (or loads) (n, ...) without their rigid-body part."""
+        """Vectors, or loads, (n, ...) without their rigid-body part."""
         if not self.n_rigid:
             return vectors
         inertia, dual = self._rigid_dual
         return np.asarray(vectors - (inertia @ (dual.T @ vectors) if load else dual @ (inertia.T @ vectors)))
 
     def _grounded(self) -> list[int]:
-        """One unknown for each rigid-body motion that, held, leaves none (pivots of a Gaussian elimination)."""
-        motions, held = self.rigid.copy(), list[int]()
+        """Unknowns that, fixed, prevent all rigid-body motions (pivots of a Gaussian elimination)."""
+        motions, fixed = self.rigid.copy(), list[int]()
         for j in range(self.n_rigid):
-            held.append(int(abs(motions[:, j]).argmax()))
-            motions[:, j + 1 :] -= np.outer(motions[:, j] / motions[held[-1], j], motions[held[-1], j + 1 :])
-        return held
+            fixed.append(int(abs(motions[:, j]).argmax()))
+            motions[:, j + 1 :] -= np.outer(motions[:, j] / motions[fixed[-1], j], motions[fixed[-1], j + 1 :])
+        return fixed
 
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
@@ -234,16 +234,15 @@ class StructuralSystem(FactoredSystem):
     ) -> Any:
         """The steady response (n, k) to loads (n, k): (K + devices - omega^2 M) v = load.
 
-        `stiffness` is d with losses, complex (m,). A device is a sparse row (1, n), which reads its displacement, and
-        its dynamic stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of a resonance where
-        nothing is damped.
+        `stiffness` is d with losses, complex (m,). A device is the sparse row (1, n) of its displacement and a dynamic
+        stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of an undamped resonance.
         """
         d, k, m = self.stiffness if stiffness is None else stiffness, loads.shape[1], len(self.stiffness)
         undamped = not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices)
         factor = self._factor(omega2, d if undamped else np.asarray(d, dtype=complex), devices)
 
         def solve(load: Any) -> Any:
-            # iterative refinement: the factors lose what a soft support holds to what bends, factored strains do not
+            # iterative refinement: the factors lose soft supports beside bending, factored strains do not
             right = np.concatenate([np.zeros((m, load.shape[1]), dtype=load.dtype), load])
             response = factor.solve(right)[m:]
             for _ in range(REFINED):
@@ -279,7 +278,7 @@ class StructuralSystem(FactoredSystem):
     def harmonic_sweep(
         self, loads: Any, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
     ) -> ComplexArray:
-        """The response (n_frequencies, n, k) to loads (n, k) by superposition of all modes, all of which have the loss.
+        """The response (n_frequencies, n, k) to loads (n, k) by superposition of all modes, with a common loss factor.
 
         `modal_damping` is the damping ratio of every mode. NaN at the frequencies of undamped resonances.
         """
@@ -291,7 +290,7 @@ class StructuralSystem(FactoredSystem):
     def modal_receptances(
         self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
     ) -> tuple[ComplexArray, Array, Array]:
-        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k), and vectors (n, k): load, response.
+        """1 / (omega_n^2 (1 + i eta) - omega^2) of all motions, (n_frequencies, k); load and response vectors (n, k).
 
         Rigid-body motions come first, with omega_n = 0. NaN at the frequencies of undamped resonances.
         """
@@ -317,9 +316,9 @@ class StructuralSystem(FactoredSystem):
         stiffness: Any = None,
         devices: Sequence[tuple[Any, complex]] = (),
     ) -> tuple[ComplexArray, ComplexArray]:
-        """The steady response (n, k) to loads (n, k) where rows (p, n) of it are (p, k), and the forces (p, k) there.
+        """(steady response (n, k) to loads (n, k) with rows (p, n) @ response = displacements, their forces (p, k)).
 
-        Raises LinAlgError within `RESONANCE` of a resonance of the system so held where nothing is damped.
+        Raises LinAlgError within `RESONANCE` of an undamped resonance of the constrained system.
         """
         m, d = len(self.stiffness), self.stiffness if stiffness is None else stiffness
         factor = self._factor(omega2, np.asarray(d, dtype=complex), devices, rows)
@@ -340,8 +339,8 @@ class StructuralSystem(FactoredSystem):
     def buckling_factor(self) -> float:
         """The factor on all negative stiffnesses at which the system buckles; infinite without any.
 
-        Rigid-body motions are of no consequence unless they strain a negative stiffness. Raises InputError where the
-        lowest loads lie too close together.
+        Rigid-body motions have no effect unless they strain a negative stiffness. Raises InputError where the lowest
+        loads are too close together.
         """
         from scipy.sparse import diags_array
         from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
@@ -365,5 +364,5 @@ class StructuralSystem(FactoredSystem):
             return float(1.0 / eigsh(operator, 1, which="LA", v0=start, ncv=60, return_eigenvectors=False)[0])
         except ArpackNoConvergence:
             raise InputError(
-                "count: the lowest buckling loads lie too close together on so many parts, lower it"
+                "count: the lowest buckling loads are too close together with so many parts, lower it"
             ) from None

@@ -13,7 +13,7 @@ from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointForce
 
 Ratio: TypeAlias = float | Array
-"""Damping ratio of all modes, or (n,), of each."""
+"""Damping ratio of all modes, or of each mode, (n,)."""
 
 
 class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -27,14 +27,14 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     omegas: Array
     """(n,), rad/s, undamped."""
     shapes: Callable[[Array, int], Array]
-    """(x, derivative) -> (n, len(x)), in 1/sqrt(kg) per metre^derivative; from the right where it jumps. Positive
-    where the beam first moves off its left end, as the shapes of `Modes`."""
+    """(x, derivative) -> (n, len(x)), in 1/sqrt(kg) per metre^derivative; right-continuous at jumps. Signs as in
+    `Modes`: positive next to the left end."""
     loads: Callable[[float], Array]
     """Position in metres -> (n,), the load of every mode under a unit transverse force there."""
     edges: Array
-    """(pieces + 1,), metres: between them the shapes are polynomials of `degree`."""
+    """(pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`."""
     degree: int
-    """Degree of those polynomials."""
+    """Degree of the polynomials of the shapes."""
     method: str
     """Origin of the modes, for a summary."""
     tail: Callable[[Sequence[PointForce], float, Ratio], Callable[[Array, int], ComplexArray]] | None = None
@@ -43,8 +43,8 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     None where no mode is truncated.
     """
     ratios: Array | None = None
-    """(n,), damping ratio of each mode by the beam's loss factor: half of it times the share of the lossy stiffness in
-    the mode's. None where all stiffness is lossy: half of it for every mode."""
+    """(n,), damping ratio of each mode: half the beam's loss factor times the lossy fraction of the modal stiffness.
+    None where all stiffness is lossy: half the loss factor for every mode."""
     turns: Callable[[], Array] | None = None
     """() -> (n, bodies): rotation of the bodies of `beam.mass`; None where it is the slope of the shapes there."""
 
@@ -60,7 +60,7 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:
-    """The damping ratio of every mode, one or (n,): `ratio`, or that of the beam's loss factor for None.
+    """The damping ratio of all modes or (n,) of each: `ratio`, or by the beam's loss factor if None.
 
     Raises InputError for an overdamped mode.
     """
@@ -69,8 +69,8 @@ def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:
     if basis.ratios.max() >= 1.0:
         worst = int(basis.ratios.argmax())
         raise InputError(
-            f"beam.loss_factor = {basis.beam.loss_factor!r} is a ratio of {basis.ratios[worst]:.3g} in mode "
-            f"{worst + 1}, which is overdamped: give a smaller one or modal_damping"
+            f"beam.loss_factor = {basis.beam.loss_factor!r} makes mode {worst + 1} overdamped (damping ratio "
+            f"{basis.ratios[worst]:.3g}): give a smaller one or modal_damping"
         )
     return basis.ratios
 
@@ -78,8 +78,8 @@ def damping_in(basis: TimeBasis, ratio: float | None) -> Ratio:
 def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:
     """Coefficients in xi = (x - edge) / length of pieces first..last-1, (pieces, degree + 1, rows).
 
-    Expanded about the middle of each piece: an edge that rounding puts on the wrong side of a node would be read
-    off the neighbour.
+    Expanded about the middle of each piece: an edge that rounds to the wrong side of a node would have the polynomial
+    of the neighbour.
     """
     lengths = np.diff(edges[first : last + 1])
     middles = edges[first:last] + 0.5 * lengths
@@ -89,10 +89,10 @@ def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int
     return np.ascontiguousarray(np.einsum("kd,drp->pkr", shift, parts))
 
 
-def check_held(beam: Beam) -> None:
-    """Raise InputError for supports that let the beam drift away as a whole."""
+def check_supported(beam: Beam) -> None:
+    """Raise InputError for supports with rigid-body motions."""
     if beam.rigid_motions:
         raise InputError(
-            f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), in which a beam that "
-            "is driven or let go may drift off: clamp an end, pin both, or give beam.spring"
+            f"beam.supports = {list(beam.supports)!r} allow {beam.rigid_motions} rigid-body motion(s), in which the "
+            "beam may drift away: clamp an end, pin both, or give beam.spring"
         )

@@ -1,1 +1,1 @@
-"""Characteristics of a motor: steady states, curves, periodic orbits, closed waves; feet on the nonlinear chain."""
+"""Characteristics of a motor: steady states, curves, periodic orbits, sliders on a travelling wave."""

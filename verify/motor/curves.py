@@ -1,8 +1,8 @@
-"""Curves of a motor: force over speed, the speed without load, start, stop and reversal, phase portraits.
+"""Curves of a motor: force over speed, no-load speed, start, stop and reversal, phase portraits.
 
-The no-load speed is that of a heavy slider: its speed is prescribed and does not vary within a period of the drive. A
-light slider, which follows the surface within the period, runs freely at another speed (`transient`).
-Time constants come from means over a sliding period, so that the phase of the drive at the start does not matter.
+The no-load speed is that of a heavy slider, with a prescribed speed that is constant within a drive period. That of a
+light free slider (`transient`) differs, since its speed varies within the period. Time constants come from means over a
+sliding period, which are independent of the phase of the drive at the start.
 """
 
 from math import ceil, e
@@ -27,30 +27,30 @@ from verify.motor.steady_state import (
 )
 
 FINE = 32
-"""Periods at the start of a free run in which every step is sampled, later every period."""
+"""Number of periods of a free run with samples at every step; later one sample per period."""
 PORTRAIT = 48
-"""Points of a phase portrait in a period."""
+"""Number of points of a phase portrait per period."""
 REASONS = {
     "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
     "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
-    "shares": "the shares of contact and stick have not converged, raise periods or slider.contact.damping",
+    "shares": "the fractions of contact and stick have not converged, raise periods or slider.contact.damping",
     "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
-    "efficiency": "no power passes from the surface to the load, choose a speed between zero and no load",
+    "efficiency": "no power flows from the surface to the load, choose a speed between zero and the no-load speed",
     "no load": "mean friction has one sign at all speeds up to twice the crest speed, raise slider.preload",
-    "free speed": "the free run has no steady end, raise periods or slider.preload",
-    "start": "the free run does not change its speed by more than its error, choose another slider.speed",
+    "free speed": "the free run has not reached a steady state, raise periods or slider.preload",
+    "start": "the change of speed in the free run is within its error, choose another slider.speed",
     "stop": "the speed does not fall to 1/e after the drive is switched off, raise periods",
     "reversal": "the speed does not change after the phases are reversed, raise periods",
-    "ringing": "a two-way coupled beam rings on after the drive is switched off, choose one-way coupling for stopping",
+    "ringing": "a two-way coupled beam vibrates after the drive is switched off, choose one-way coupling for stopping",
     "left": "the slider leaves the beam, lower periods or change slider.position",
 }
-"""Why a figure is not available."""
+"""Reasons why a result is not available."""
 
 
 def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
-    """Steady state at the prescribed speed at which the mean friction force vanishes, up to twice the crest speed.
+    """Steady state at the speed, up to twice the crest speed, at which the mean friction force vanishes.
 
-    Raises InputError where the force has one sign up to that, or has not converged at the root.
+    Raises InputError if the force has one sign in that range, or has not converged at the root.
     """
     from scipy.optimize import brentq
 
@@ -72,12 +72,12 @@ def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
 
 
 class Transient(Struct, frozen=True, eq=False, kw_only=True):
-    """A free run from one speed towards another."""
+    """A free run from an initial speed."""
 
     run: Motion
-    """All of it, or what follows the first 32 periods."""
+    """The motion, in long runs without the first 32 periods."""
     start_speed: float
-    """Before the run, m/s along +x."""
+    """Speed before the run, m/s along +x."""
     times: Array
     """(n,), middles of the sliding periods, s from the start of the run; the first is half a period."""
     speeds: Array
@@ -85,17 +85,17 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
     speed: float
     """Mean of `speeds` over the last quarter, m/s."""
     error: float
-    """Of that mean: `batch_error`, m/s."""
+    """Error of `speed`, m/s (`batch_error`)."""
     last: int
-    """Samples of `run` in the last quarter, a multiple of 16."""
+    """Number of samples of `run` in the last quarter, a multiple of 16."""
     converged: bool
-    """Whether the run reaches its end, with an error up to 5 % of the crest speed, a residual acceleration up to 1 % of
-    mu N / mass and a mean normal force within 10 % of the load."""
+    """Whether the run reached its end with `error` up to 5 % of the crest speed, mean acceleration up to 1 % of
+    mu N / mass and mean normal force within 10 % of the load."""
 
     def time_constant(self, target: float | None = None) -> float | None:
-        """Time until 1 - 1/e of the change to `target` (m/s, default the final speed) is made, s.
+        """Time constant, s: 1 - 1/e of the change to `target` (m/s, default: the final speed).
 
-        At least half a period of the drive, the middle of the first mean. None where it is not made, or of no size.
+        At least half a drive period, the middle of the first mean. None where it is not reached, or without change.
         """
         target = self.speed if target is None else target
         if abs(target - self.start_speed) <= self.error:
@@ -109,16 +109,16 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
 
 
 def transient(case: MotorCase, periods: int, before: Transient | None = None) -> Transient:
-    """The free slider for so many periods, from its own speed or from the end of another run.
+    """The free slider over `periods` drive periods, from `slider.speed` or from the end of another run.
 
-    Raises InputError where it leaves the beam before the first period has passed.
+    Raises InputError where the slider leaves the beam in the first period.
     """
     fine = max(FINE, ceil(case.soft_start_periods))
     fine = periods if periods < 2 * fine else fine
     run = case.run(fine, fine * case.steps_per_period + 1, before.run if before else None)
     times, slider = run.times - run.times[0], case.slider
     if times[-1] <= case.period:
-        raise InputError(f"slider.position = {slider.start_on(case.beam):.6g} m: {REASONS['left']}")
+        raise InputError(f"slider.position = {slider.initial_position(case.beam):.6g} m: {REASONS['left']}")
     times = times[times <= (1.0 + 1e-9) * (times[-1] - case.period)]
     ends = np.interp(times + case.period, run.times - run.times[0], run.travelled)
     times, speeds = times + 0.5 * case.period, (ends - run.travelled[: len(times)]) / case.period
@@ -146,21 +146,21 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
 
 
 def stop(case: MotorCase, before: Transient, periods: int) -> Transient:
-    """After a run, with the drive switched off: the forced field of a one-way coupled steady beam ends at once."""
+    """Continue a run with the drive switched off; the field of a one-way coupled steady beam vanishes immediately."""
     forces = tuple(replace(one, amplitude=1e-12 * one.amplitude) for one in case.forces)
     return transient(replace(case, forces=forces), periods, before)
 
 
 def reversal(case: MotorCase, before: Transient, periods: int) -> Transient:
-    """After a run, with the phases of all forces negated at once."""
+    """Continue a run with the phases of all forces negated."""
     forces = tuple(replace(one, phase_deg=-one.phase_deg) for one in case.forces)
     return transient(replace(case, forces=forces), periods, before)
 
 
 def phase_portrait(case: MotorCase, before: Motion, speed: float = 0.0) -> tuple[Array, Array]:
-    """(heights, m, their rates, m/s) of the feet over the period after a run at a prescribed speed, (49, feet) each.
+    """(heights, m, their rates, m/s) of the feet in the period after a run at a prescribed speed, (49, feet) each.
 
-    The rates are the state of the feet, not differences of heights.
+    The rates are state variables of the feet, not difference quotients.
     """
     states = [before.end.feet]
     for _ in range(PORTRAIT):

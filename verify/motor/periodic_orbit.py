@@ -1,4 +1,4 @@
-"""Periodic orbit of a motor by shooting: the state that a period of the drive reproduces, by Newton's method.
+"""Periodic orbit of a motor by shooting: fixed point of the period map, by Newton's method.
 
 A. H. Nayfeh and B. Balachandran, Applied Nonlinear Dynamics, Wiley 1995, sec. 7.1.2 (shooting) and 3.2 (multipliers).
 """
@@ -16,16 +16,16 @@ from verify.motor.steady_state import MotorCase
 
 ROUNDS = 12
 DIFFERENCE = 1e-4
-"""Step of the difference quotients over the scale of a coordinate."""
+"""Step of the difference quotients, over the scale of a coordinate."""
 REPEATS = 1e-3
-"""Largest residual over the scale of a coordinate: landings on dashpots jump by steps."""
+"""Largest residual, over the scale of a coordinate; impacts on dashpots are discontinuous in the time step."""
 
 
 class PeriodicOrbit(Struct, frozen=True, eq=False, kw_only=True):
-    """A motion of the feet with the period of the drive."""
+    """Motion of the feet with the period of the drive."""
 
     run: Motion
-    """The period."""
+    """Motion over the period."""
     residual: float
     """Largest change of a coordinate over the period, relative to its scale."""
     multipliers: ComplexArray
@@ -42,23 +42,23 @@ def periodic_orbit(
 ) -> PeriodicOrbit:
     """Periodic orbit of a slider at a prescribed speed, m/s, one-way coupled to a steady beam.
 
-    Newton's method begins after `settle` periods. The scales are the heights' range h, h / foot length for pitches, and
-    these times the drive's omega for their rates. Raises InputError where no orbit is found.
+    Newton's method starts after `settle` periods. Scales: the range h of the heights, h / foot length for pitches, and
+    these times omega for rates. Raises InputError where Newton's method does not converge.
     """
     slider = case.slider
     if slider.coupling != "one-way" or case.start != "steady":
-        raise InputError(f"slider.coupling = {slider.coupling!r}: a periodic orbit is of one-way coupling, choose it")
+        raise InputError(f"slider.coupling = {slider.coupling!r}: a periodic orbit needs one-way coupling, choose it")
     run = case.run(settle, 61 * settle + 1, None, speed)
     height = float(np.ptp(run.height[-61:]) + np.abs(run.end.feet[:, 0]).max()) + 1e-12
     arm = float(np.abs(run.point_offsets).max()) or 1.0
     scale = np.multiply.outer([height, height / arm], [1.0, 2.0 * np.pi * case.frequency_hz]).ravel()
-    feet = assemble(case.beam, (slider,), (slider.start_on(case.beam),), (speed,), (True,)).feet
+    feet = assemble(case.beam, (slider,), (slider.initial_position(case.beam),), (speed,), (True,)).feet
     moves = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]] > 0.0
     free = np.flatnonzero(np.repeat(moves, 2, axis=1).ravel())
     size = np.tile(scale, len(moves))[free]
 
     def shifted(state: EndState, feet: Array, by: Array) -> EndState:
-        """A state with these feet, their free coordinates shifted."""
+        """A state with feet whose free coordinates are shifted."""
         assert state.contact is not None
         feet = feet.copy()
         feet.flat[free] += by * size

@@ -1,15 +1,14 @@
 """Steady state of a motor at a prescribed speed: means over whole periods of the drive, with their standard errors.
 
-The slider has the prescribed speed and a fixed position, so that its motion across the beam can be periodic. Windows of
-whole periods follow each other, each as long as all before it, and are cut into 16 batches, whose means give the
-standard error (batch means: G. S. Fishman, Discrete-Event Simulation, Springer 2001, sec. 6.6). The preload less the
-mean normal force is the momentum gained across the beam over the time of the mean: this balance is the error of the
-normal force, as two windows of a slider in flight agree.
+The slider has the prescribed speed and a fixed position, so that its transverse motion can be periodic. Consecutive
+windows of whole periods, each as long as all before it, are divided into 16 batches, whose means give the standard
+error (batch means: G. S. Fishman, Discrete-Event Simulation, Springer 2001, sec. 6.6). The error of the normal force is
+the momentum balance: preload less mean normal force is the transverse momentum gained over the window.
 
-A point with tangential stiffness follows the slider elastically until it slips: at a small speed that takes any number
-of periods, in which the mean friction grows too slowly for any comparison of windows. A point that has slipped has
-forgotten its start (play operator: M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with Hysteresis, Springer 1989,
-ch. 2), so that the first window is run at a speed at which all points slip.
+A point with tangential stiffness follows the slider elastically until it slips, at low speed for any number of periods,
+in which mean friction grows too slowly for a comparison of windows. The state of a point that has slipped is
+independent of its start (play operator: M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with Hysteresis, Springer
+1989, ch. 2): in the first window the speed is so high that all points slip.
 """
 
 from functools import lru_cache
@@ -34,11 +33,11 @@ from verify.problem.slider import Slider
 Figure = Literal["force", "normal force", "shares", "powers"]
 BATCHES = 16
 FIRST = 48
-"""Periods of the first two windows: batches of 3, then of 6, in which subharmonics of order 2 and 3 repeat."""
+"""Periods of the first two windows: batches of 3, then of 6 periods, multiples of subharmonics of order 2 and 3."""
 PERIODS = 12_500
-"""Default limit of the periods until the means converge."""
+"""Default for the largest number of periods until the means converge."""
 CHAOTIC = 768
-"""Periods from which on the tolerance is that of a motion that is not periodic: earlier its batches are correlated."""
+"""Periods above which the tolerance is that of a nonperiodic motion; in shorter windows its batches are correlated."""
 TOLERANCES: "dict[Figure, tuple[float, float]]" = {
     "force": (3e-4, 1e-2),
     "normal force": (3e-3, 1e-2),
@@ -47,7 +46,7 @@ TOLERANCES: "dict[Figure, tuple[float, float]]" = {
 }
 """Largest error over full scale (mu N, N, 1, mu N times the largest slip speed), before and from `CHAOTIC` on."""
 SLIPS = 8.0
-"""Distance of the first window over mu N / (stiffness of the softest point): all points slip, whatever their share."""
+"""Slider displacement in the first window over mu N / (stiffness of the softest point), at which all points slip."""
 
 
 class MotorCase(Struct, frozen=True, kw_only=True):
@@ -67,13 +66,13 @@ class MotorCase(Struct, frozen=True, kw_only=True):
 
     @property
     def period(self) -> float:
-        """Of the drive, s."""
+        """Drive period, s."""
         return 1.0 / self.frequency_hz
 
     def run(
         self, periods: float, samples: int, before: Motion | None = None, prescribed_speed: float | None = None
     ) -> Motion:
-        """A run of so many periods after another; a prescribed speed, m/s, has a fixed position. Raises InputError."""
+        """A run of `periods` drive periods, fixed in position if the speed (m/s) is prescribed. Raises InputError."""
         run = simulate(
             **asdict(self), duration=periods * self.period, samples=samples, continue_from=before,
             prescribed_speed=prescribed_speed, fixed_position=prescribed_speed is not None,
@@ -83,29 +82,29 @@ class MotorCase(Struct, frozen=True, kw_only=True):
 
 @lru_cache(maxsize=16)
 def surface_motion(case: MotorCase) -> tuple[float, float]:
-    """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) of the beam alone, under the slider."""
+    """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) at the slider's position, without slider."""
     field = damped_field(case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping)
-    x = case.slider.start_on(case.beam)
+    x = case.slider.initial_position(case.beam)
     tangential = section_at(case.beam, x).surface_distance * field.omega
     return float(abs(field.deflection([x]))[0]), tangential * float(abs(field.slope([x]))[0])
 
 
 def crest_speed(case: MotorCase) -> float:
-    """First-order amplitude of the tangential surface velocity under the slider, m/s."""
+    """Amplitude of the tangential surface velocity under the slider, first order, m/s."""
     return surface_motion(case)[1]
 
 
 class Means(NamedTuple):
-    """Means over a window, or their errors; of all points together."""
+    """Means over a window and all points, or their errors."""
 
     force: float
     """Friction on the slider along +x, N."""
     normal_force: float
     """N."""
     contact_share: float
-    """Share of points and time in contact."""
+    """Fraction of points and time in contact."""
     stuck_share: float
-    """Share of points and time that stick."""
+    """Fraction of points and time in stick."""
     surface_power: float
     """Power of the surface's tangential motion on the slider, W."""
     friction_power: float
@@ -118,53 +117,53 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
     speed: float
     """m/s along +x."""
     means: Means
-    """Over the last window."""
+    """Means over the last window."""
     errors: Means
-    """Of the means: twice the standard error of the batch means or the difference of the window's halves, where that
-    is larger; of the normal force that of the momentum balance; of the powers the change from the window before."""
+    """Errors of the means: the larger of twice the standard error of the batch means and the difference of the window's
+    halves; for the normal force the momentum balance; for the powers the change from the previous window."""
     periods: int
-    """Of all windows."""
+    """Number of periods of all windows."""
     not_converged: tuple[Figure, ...]
     run: Motion
-    """The last window, from the end of which another can continue."""
+    """The last window, which another run can continue."""
 
     @property
     def power(self) -> float:
         """Mechanical power on the slider, force times speed, W."""
-        return self.means.force * self.speed + 0.0  # never a negative zero
+        return self.means.force * self.speed + 0.0  # no negative zero
 
     @property
     def efficiency(self) -> float | None:
-        """Power over surface power; None where one of the two is negative or the surface power zero."""
-        given = self.means.surface_power
-        return self.power / given if given > 0.0 and self.power >= 0.0 else None
+        """Power over surface power; None if one is negative or the surface power is zero."""
+        supplied = self.means.surface_power
+        return self.power / supplied if supplied > 0.0 and self.power >= 0.0 else None
 
     def converged(self, *figures: Figure) -> bool:
-        """Whether these figures, or all, have converged."""
+        """Whether `figures` (default: all) have converged."""
         return not set(figures or TOLERANCES) & set(self.not_converged)
 
 
 def steady_state(
     case: MotorCase, speed: float, periods: int = PERIODS, before: Motion | None = None, relative: float = 0.0
 ) -> SteadyState:
-    """Means of a motor at a prescribed speed, m/s, after at most so many periods; `before` is a run to continue.
+    """Means of a motor at a prescribed speed, m/s, within `periods` drive periods; `before` is a run to continue.
 
-    A force whose error is a smaller share of it than `relative` is enough. Raises InputError where the motion diverges.
+    A force with a relative error below `relative` counts as converged. Raises InputError where the motion diverges.
     """
     first = copysign(max(abs(speed), presliding_speed(case.slider, FIRST * case.period)), speed) if speed else 0.0
-    found = _window(case, first, FIRST, before, None)
-    found = _window(case, speed, FIRST, found.run, found)
-    while found.not_converged and 2 * found.periods <= periods:
-        if found.errors.force < relative * abs(found.means.force):
+    state = _window(case, first, FIRST, before, None)
+    state = _window(case, speed, FIRST, state.run, state)
+    while state.not_converged and 2 * state.periods <= periods:
+        if state.errors.force < relative * abs(state.means.force):
             break
-        found = _window(case, speed, found.periods, found.run, found)
-    return found
+        state = _window(case, speed, state.periods, state.run, state)
+    return state
 
 
 def _window(
     case: MotorCase, speed: float, periods: int, before: Motion | None, last: SteadyState | None
 ) -> SteadyState:
-    """The next window, with the errors of its means; the first has none that count. Raises InputError."""
+    """The next window, with the errors of its means; those of the first window are not valid. Raises InputError."""
     run = case.run(periods, BATCHES + 1, before, speed)
     if not run.statistics.finished:
         raise InputError(
@@ -192,21 +191,21 @@ def _window(
 
 
 def batch_error(batches: Array) -> Array:
-    """Error of the mean of batch means (n, k): twice its standard error, or the difference of halves where larger."""
+    """Error of the mean of batch means (n, k): the larger of twice its standard error and the difference of halves."""
     half = len(batches) // 2
     error = 2.0 * batches.std(axis=0, ddof=1) / np.sqrt(len(batches))
     return np.asarray(np.maximum(error, np.abs(batches[:half].mean(axis=0) - batches[half:].mean(axis=0))))
 
 
 def balanced(slider: Slider) -> bool:
-    """Whether the mean normal force is the load: no spring preloads a foot, and no second beam."""
+    """Whether the mean normal force equals the load: neither preload springs nor a second beam."""
     return not slider.preload_stiffness and not any(foot.mirrored for foot in slider.feet)
 
 
 def presliding_speed(slider: Slider, seconds: float) -> float:
-    """Speed at which all points slip within so many seconds, m/s; 0 of a contact that is rigid along the surface.
+    """Speed at which all points slip within `seconds`, m/s; 0 for tangentially rigid contact.
 
-    The softest point is displaced by 8 times what the friction limit of the whole slider stretches it by.
+    The displacement is 8 times the deformation of the softest point under the friction limit of the whole slider.
     """
     contact = slider.contact
     stiffnesses = [contact.along(foot.length) / foot.points for foot in slider.feet] if contact else []

@@ -1,4 +1,4 @@
-"""Sliders on a pure travelling wave w = A cos(omega t - k x), integrated in time: the closed forms' own conditions."""
+"""Sliders on a pure travelling wave w = A cos(omega t - k x) by time integration, for comparison with closed forms."""
 
 from math import cos, isfinite, pi
 
@@ -17,11 +17,11 @@ from verify.problem.beam import Beam
 from verify.problem.slider import Contact, Foot, Slider
 
 STEPS = 1024
-"""Steps of a point in a period."""
+"""Time steps of a point slider per period."""
 
 
 def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 0.0) -> Stage:
-    """One period of the wave as a slider of mean speed `mean`, m/s, meets it. Raises InputError for a stepped beam."""
+    """One wave period (Doppler shifted) for a slider of mean speed `mean`, m/s. Raises InputError for a step."""
     check_uniform(beam)
     omega = 2.0 * pi * frequency_hz
     k = float(np.sqrt(omega / beam.wave_constant))
@@ -35,14 +35,14 @@ def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 
 
 
 def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: float) -> float:
-    """Mean speed along +x, m/s, of the periodic motion of a slider that never loses contact, tanh friction.
+    """Mean speed along +x, m/s, of the periodic motion of a slider in bilateral contact with tanh friction.
 
-    Root of the change of its speed over a period of the wave as the slider meets it. Raises InputError without one.
+    Root of the change of speed over a Doppler-shifted wave period. Raises InputError without a root.
     """
     from scipy.optimize import brentq
 
-    slider.check_stays()
-    slider, start, mean = replace(slider, coupling="one-way"), slider.start_on(beam), 0.0
+    slider.check_bilateral()
+    slider, start, mean = replace(slider, coupling="one-way"), slider.initial_position(beam), 0.0
     no_rows: ComplexArray = np.empty(0, dtype=complex)
 
     def period(speed: float, stage: Stage) -> tuple[float, float]:
@@ -52,7 +52,7 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
         run_stages([stage], no_rows, contacts, np.empty(0))
         travelled, reached = contacts.sliders[0, [lay.X, lay.V]]
         if not isfinite(reached):
-            raise InputError(f"amplitude = {amplitude!r} m: the slider leaves so steep a wave, lower it")
+            raise InputError(f"amplitude = {amplitude!r} m: the slider leaves the steep wave, lower it")
         return float(travelled), float(reached) - speed
 
     for _ in range(3):
@@ -80,10 +80,10 @@ def foot_on_wave(
 ) -> tuple[Means, float]:
     """(means over the third period, crest speed, m/s) of a rigid foot, one wavelength long, on a layer of springs.
 
-    It moves against the wave at `speed_ratio` times the crest speed, at the height at which a half angle of every crest
-    is in contact. `epsilon` = 2 mu kappa/(kappa_t k h) is its tangential compliance; Coulomb's law. Raises InputError.
+    It moves against the wave at `speed_ratio` times the crest speed, at a height with half angle `contact_half_angle`
+    of contact at each crest. `epsilon` = 2 mu kappa/(kappa_t k h): tangential compliance. Coulomb's law.
     """
-    wave, periods = wave_stage(beam, amplitude, frequency_hz), 3  # compliance forgets its start within two
+    wave, periods = wave_stage(beam, amplitude, frequency_hz), 3  # with compliance the start has no influence after two
     k = float(np.sqrt(wave.omega / beam.wave_constant))
     length, thickness = 2.0 * pi / k, 2.0 * beam.surface_distance
     steps = cut(periods * wave.duration, wave.duration / steps_per_period * (1.0 + 1e-9), periods)

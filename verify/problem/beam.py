@@ -9,21 +9,21 @@ from msgspec.structs import asdict, replace
 
 from verify.errors import InputError, written
 from verify.options import Support
-from verify.problem.cross_section import CrossSection, Piece, Section, given, merged, piece_of
+from verify.problem.cross_section import CrossSection, Piece, Section, merged, piece_of, set_fields
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.problem.supports import HOLDS, check_moves
+from verify.problem.supports import FIXED, check_free
 from verify.validation import Relative, check_number, check_position, unit, validate
 
 SHORTEST_SECTION = 1e-6
-"""Relative to the beam's length: a shorter section may be a rounding residue."""
+"""Shortest section relative to the beam's length; a shorter one may be a rounding residue."""
 
 
 class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
     """A straight beam, uniform or stepped, vibrating across its thickness, with attached masses and springs.
 
-    The section is given by shape, sizes, E and rho, or by `bending_stiffness` and `mass_per_length`, which are defined
-    for every beam. SI units. Raises InputError for a size that is not finite and positive, an incomplete or
-    contradictory section, an unknown support, and an attachment off the beam.
+    The section is defined by shape, sizes, E and rho, or directly by `bending_stiffness` and `mass_per_length`. SI
+    units. Raises InputError for a size that is not finite and positive, an incomplete or contradictory section, an
+    unknown support, and an attachment off the beam.
     """
 
     length: Annotated[float, unit("m", gt=0)]
@@ -33,8 +33,8 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
     poissons_ratio: Annotated[float, unit("dimensionless", gt=-1, le=0.5)] = 0.33
     """nu, for Timoshenko theory and plate theory only."""
     loss_factor: Annotated[Relative, unit("0 means undamped", ge=0, lt=10)] = 0.0
-    """eta of the harmonic field, E (1 + i eta). At a resonance it equals a modal damping ratio eta/2, times the share
-    of bending and shear in the mode's stiffness where springs, a foundation or an axial force contribute."""
+    """eta of the harmonic field, E (1 + i eta). At a resonance it equals a modal damping ratio of eta/2 times the
+    fraction of the modal stiffness that is due to bending and shear."""
     section: tuple[Section, ...] = ()
     """Sections of a stepped beam from left to right; their lengths add up to `length`."""
     mass: tuple[PointMass, ...] = ()
@@ -71,16 +71,16 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
             for i, one in enumerate(getattr(self, kind)):
                 (_, position), across, turning = asdict(one).items()
                 check_position(f"beam.{kind}[{i}].position", position, self.length)
-                check_moves(f"beam.{kind}[{i}]", position, self.length, self.supports, dict([across]), dict([turning]))
+                check_free(f"beam.{kind}[{i}]", position, self.length, self.supports, dict([across]), dict([turning]))
 
     @cached_property
     def own(self) -> Piece:
         """The beam's own section over its whole length."""
-        return piece_of(given(self), self.length, "beam", self.poissons_ratio)
+        return piece_of(set_fields(self), self.length, "beam", self.poissons_ratio)
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """The stretches of constant section from left to right; one for a uniform beam."""
+        """Pieces of constant section from left to right; a uniform beam has one."""
         return tuple(
             piece_of(merged(section, self), section.length, f"beam.section[{i}]", self.poissons_ratio, self.own)
             for i, section in enumerate(self.section)
@@ -88,7 +88,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
 
     @property  # type: ignore[misc]
     def bending_stiffness(self) -> float:
-        """EI of the beam's own section, N m^2: as given, or from the shape."""
+        """EI of the beam's own section, N m^2."""
         return self.own.bending_stiffness
 
     @property  # type: ignore[misc]
@@ -98,12 +98,12 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
 
     @property
     def stepped(self) -> bool:
-        """Whether any piece differs from the beam's own section."""
+        """Whether a piece differs from the beam's own section."""
         return any(replace(piece, length=self.length) != self.own for piece in self.pieces)
 
     @property
-    def added(self) -> tuple[str, ...]:
-        """Names of the fields that a uniform beam between two supports does not have."""
+    def features(self) -> tuple[str, ...]:
+        """Names of the fields beyond a uniform beam on two supports: section, mass, spring, tension, foundation."""
         others = tuple(name for name in ("mass", "spring", "tension", "foundation") if getattr(self, name))
         return ("section",) * self.stepped + others
 
@@ -114,27 +114,27 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
 
     @property
     def uniform(self) -> bool:
-        """Whether it has one section and no attachments, as closed forms assume."""
-        return not self.added
+        """Whether the beam has one section and no attachments, as closed forms assume."""
+        return not self.features
 
     @property
     def lossless(self) -> tuple[str, ...]:
-        """Names of the fields with stiffness and no loss factor: springs, tension, foundation."""
-        return tuple(name for name in self.added if name in ("spring", "tension", "foundation"))
+        """Names of the stiffness fields to which the loss factor does not apply: springs, tension, foundation."""
+        return tuple(name for name in self.features if name in ("spring", "tension", "foundation"))
 
-    def check_added(self, who: str, takes: tuple[str, ...] = (), instead: str = "ask for something else") -> None:
-        """Raise InputError for added fields other than `takes`; `who` is the subject of the message."""
-        for name in self.added:
-            if name not in takes:
-                raise InputError(f"beam.{name}: {who} takes none, leave it out or {instead}")
+    def check_features(self, model: str, allowed: tuple[str, ...] = (), remedy: str = "use another model") -> None:
+        """Raise InputError for features that are not `allowed`; `model` is the subject of the message."""
+        for name in self.features:
+            if name not in allowed:
+                raise InputError(f"beam.{name}: {model} does not model it, leave it out or {remedy}")
 
     @property
     def rigid_lines(self) -> tuple[tuple[float, float], ...]:
-        """Rigid motions w = a + b x without stiffness, as (a, b) with x in m: none, one or two."""
+        """Rigid-body motions w = a + b x, as (a, b) with x in m: none, one or two."""
         ends = zip((0.0, self.length), self.supports, strict=True)
-        places = {at for at, support in ends if HOLDS[support].deflection}
+        places = {at for at, support in ends if FIXED[support].deflection}
         places |= {spring.position for spring in self.spring if spring.stiffness}
-        turned = any(HOLDS[support].rotation for support in self.supports) or bool(self.tension)
+        turned = any(FIXED[support].rotation for support in self.supports) or bool(self.tension)
         turned |= any(spring.rotational for spring in self.spring)
         if self.foundation or len(places) > 1 or (places and turned):
             return ()
@@ -144,7 +144,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
 
     @property
     def rigid_motions(self) -> int:
-        """Number of rigid motions: 0, 1 or 2."""
+        """Number of rigid-body motions: 0, 1 or 2."""
         return len(self.rigid_lines)
 
     def mirrored(self) -> "Beam":
@@ -193,8 +193,8 @@ def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
 class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A transverse harmonic point force, amplitude cos(omega t + phase).
 
-    Raises InputError where a value is not finite or the position is negative; a position off the beam is refused by
-    the functions that take both.
+    Raises InputError for a value that is not finite and a negative position. Functions that take a beam and a force
+    check that the position is on the beam.
     """
 
     position: Annotated[float, unit("m from the left end", ge=0)]

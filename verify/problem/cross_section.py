@@ -21,7 +21,7 @@ Metres = Annotated[float, unit("m", gt=0)]
 
 
 class CrossSection(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A cross-section as given: shape, sizes and material, or its properties directly. SI."""
+    """Input of a cross-section: shape, sizes and material, or its stiffness and mass. SI."""
 
     shape: Shape | None = None
     """rectangle (default), round or tube."""
@@ -42,17 +42,17 @@ class CrossSection(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     mass_per_length: Annotated[float, unit("kg/m", gt=0)] | None = None
     """rho A, kg/m, in place of sizes and rho."""
     extreme_fibre: Metres | None = None
-    """Distance of the surface from the neutral line, m; by default from the shape."""
+    """Distance of the surface from the neutral line, m; default: that of the shape."""
     shear_stiffness: Annotated[float, unit("N", gt=0)] | None = None
-    """kappa G A, N, for Timoshenko theory; by default from the shape."""
+    """kappa G A, N, for Timoshenko theory; default: that of the shape."""
     shear_coefficient: Annotated[float, unit("dimensionless", gt=0)] | None = None
     """kappa, for Timoshenko theory; default 5/6 for a rectangle, Cowper (1966) for round sections."""
     rotary_inertia: Annotated[float, unit("kg m", gt=0)] | None = None
-    """rho I, kg m, for Rayleigh and Timoshenko theory; by default from the shape."""
+    """rho I, kg m, for Rayleigh and Timoshenko theory; default: that of the shape."""
 
 
 class Section(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A section of a stepped beam; what it leaves out is inherited from the beam. SI."""
+    """A section of a stepped beam; it inherits missing fields from the beam. SI."""
 
     length: Metres
     """m."""
@@ -62,7 +62,7 @@ class Section(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Piece(msgspec.Struct, frozen=True, kw_only=True):
-    """A stretch of constant section with all its properties. SI."""
+    """A piece of constant section with all its properties. SI."""
 
     length: float
     """Metres."""
@@ -71,13 +71,13 @@ class Piece(msgspec.Struct, frozen=True, kw_only=True):
     mass_per_length: float
     """Rho A, kg/m."""
     youngs_modulus: float | None = None
-    """E, Pa; None where the stiffness is given directly, as are the next two."""
+    """E, Pa. This, `second_moment` and `area` are None for a section defined by its stiffness."""
     second_moment: float | None = None
     """I, m^4."""
     area: float | None = None
     """A, m^2."""
     extreme_fibre: float | None = None
-    """From the neutral line to the surface, m."""
+    """Distance of the surface from the neutral line, m."""
     shear_stiffness: float | None = None
     """kappa G A, N."""
     rotary_inertia: float | None = None
@@ -88,14 +88,14 @@ class Piece(msgspec.Struct, frozen=True, kw_only=True):
         """EA, N. Raises InputError where unknown."""
         if self.youngs_modulus is None or self.area is None:
             raise InputError(
-                "beam.bending_stiffness: a section given by its stiffness has no axial one, give its shape, sizes and "
+                "beam.bending_stiffness: a section defined by it has no axial stiffness, give its shape, sizes and "
                 "youngs_modulus instead"
             )
         return self.youngs_modulus * self.area
 
 
-def given(section: CrossSection) -> dict[str, Any]:
-    """The fields of a cross-section that are given, by name."""
+def set_fields(section: CrossSection) -> dict[str, Any]:
+    """The fields of a cross-section that are not None, by name."""
     fields = asdict(section)  # not by attributes, which are the derived values on a beam
     return {name: fields[name] for name in CrossSection.__struct_fields__ if fields[name] is not None}
 
@@ -103,9 +103,9 @@ def given(section: CrossSection) -> dict[str, Any]:
 def merged(section: Section, beam: CrossSection) -> dict[str, Any]:
     """The fields of a section and those inherited from its beam: shape, sizes of the same shape, material.
 
-    Where it gives stiffness or mass directly, the beam's modulus or density is not inherited.
+    A section defined by stiffness or mass does not inherit the beam's modulus or density.
     """
-    own, whole = given(section), given(beam)
+    own, whole = set_fields(section), set_fields(beam)
     names = ["shape"]
     if own.get("shape", whole.get("shape", "rectangle")) == whole.get("shape", "rectangle"):
         names += [*SIZES[whole.get("shape", "rectangle")], "shear_coefficient"]
@@ -117,8 +117,8 @@ def merged(section: Section, beam: CrossSection) -> dict[str, Any]:
 def piece_of(fields: dict[str, Any], length: float, where: str, nu: float, base: Piece | None = None) -> Piece:
     """Properties of a section from its fields; `length` in m, `nu` is Poisson's ratio.
 
-    `base` is the beam's own piece, from which a section inherits what it neither gives nor derives. Raises InputError
-    where something is missing, does not fit the shape, or contradicts itself.
+    `base` is the beam's own piece, from which a section inherits properties that it neither sets nor derives. Raises
+    InputError for a field that is missing, does not belong to the shape, or contradicts another.
     """
     shape = fields.get("shape", "rectangle")
     made = _derived(fields, shape, nu, where)
@@ -131,8 +131,8 @@ def piece_of(fields: dict[str, Any], length: float, where: str, nu: float, base:
     for name, material in (("bending_stiffness", "youngs_modulus"), ("mass_per_length", "density")):
         if name in own and name in made and abs(own[name] - made[name]) > 1e-12 * made[name]:
             raise InputError(
-                f"{where}.{name} = {own[name]!r} beside a shape and a material that make {made[name]!r}: give one of "
-                "them, and extreme_fibre for where the surface lies"
+                f"{where}.{name} = {own[name]!r} contradicts the shape and material, which make {made[name]!r}: give "
+                "one of the two, and extreme_fibre for the position of the surface"
             )
         if name not in inherited | made | own:
             missing = next((field for field in (*SIZES[shape], material) if field not in fields), name)
@@ -144,11 +144,11 @@ def piece_of(fields: dict[str, Any], length: float, where: str, nu: float, base:
 
 
 def _derived(fields: dict[str, Any], shape: str, nu: float, where: str) -> dict[str, float]:
-    """The properties that follow from all sizes of a shape and from the material. Raises InputError."""
+    """The properties that follow from the sizes of a shape and the material. Raises InputError."""
     for size in (field for field in fields if field in ALL_SIZES and field not in SIZES[shape]):
         owner = next(name for name, sizes in SIZES.items() if size in sizes)
         raise InputError(
-            f"{where}.{size} = {fields[size]!r} is no size of a {shape}: leave it out, or give shape = {owner!r}"
+            f"{where}.{size} = {fields[size]!r} does not belong to a {shape}: leave it out or give shape = {owner!r}"
         )
     if not set(SIZES[shape]) <= set(fields):
         return {}
@@ -163,7 +163,7 @@ def _derived(fields: dict[str, Any], shape: str, nu: float, where: str) -> dict[
             check_number(f"{where}.wall_thickness", wall, "m", above=0, below=0.5 * diameter)
         area, square = pi * (diameter - wall) * wall, (1.0 - 2.0 * wall / diameter) ** 2
         moment, fibre = area * diameter * diameter * (1.0 + square) / 16.0, 0.5 * diameter
-        # Cowper, J. Appl. Mech. 33 (1966), of a hollow circle; `square` is that of the inner over the outer diameter
+        # hollow circle, Cowper, J. Appl. Mech. 33 (1966); `square` is (inner over outer diameter)^2
         whole = 6.0 * (1.0 + nu) * (1.0 + square) ** 2
         kappa = whole / ((7.0 + 6.0 * nu) * (1.0 + square) ** 2 + (20.0 + 12.0 * nu) * square)
     made = {"area": area, "extreme_fibre": fibre}

@@ -1,4 +1,4 @@
-"""A device on a driven beam: an impedance against deflection and rotation, and a force of its own. Values."""
+"""A device on a driven beam: an impedance against deflection and rotation, and a blocked force. Values, no numerics."""
 
 from collections.abc import Sequence
 from typing import Annotated
@@ -7,7 +7,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
-from verify.problem.supports import check_moves
+from verify.problem.supports import check_free
 from verify.validation import check_position, unit, validate
 
 ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
@@ -17,8 +17,8 @@ TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")
 class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An actuator or absorber on a beam in its steady state: an impedance to the ground, and a force.
 
-    Part of the drive, not of the beam: harmonic fields model it; modes, motion in time and the nonlinear chain do not.
-    Raises InputError where a value is negative or invalid, or all are zero.
+    It is part of the drive: harmonic fields model it; modes, motion in time and the nonlinear chain do not. Raises
+    InputError for a negative or invalid value, or where all are zero.
     """
 
     position: Annotated[float, unit("m", ge=0)]
@@ -38,23 +38,23 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     amplitude: Annotated[float, unit("N")] = 0.0
     """Blocked force of an actuator, N."""
     phase_deg: Annotated[float, unit("degrees")] = 0.0
-    """Phase of that force, degrees (e^{+i omega t})."""
+    """Phase of the blocked force, degrees (e^{+i omega t})."""
 
     def __post_init__(self) -> None:
         validate(self, "device")
         if not (self.across or self.turning):
             raise InputError(
-                f"device at position = {self.position!r} does nothing: give it one of {', '.join((*ACROSS, *TURNING))}"
+                f"device at position = {self.position!r} has no effect: give one of {', '.join((*ACROSS, *TURNING))}"
             )
 
     @property
     def across(self) -> bool:
-        """Whether it acts on the deflection."""
+        """Whether the device acts on the deflection."""
         return any(getattr(self, name) for name in ACROSS)
 
     @property
     def turning(self) -> bool:
-        """Whether it acts on the rotation."""
+        """Whether the device acts on the rotation."""
         return any(getattr(self, name) for name in TURNING)
 
     @property
@@ -75,26 +75,26 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         return complex(self.dashpot, omega * self.mass - self.stiffness / omega)
 
     def check_on(self, beam: Beam) -> None:
-        """Raise InputError off the beam, and on a support where it has no effect."""
+        """Raise InputError for a position off the beam, or on a support where the device has no effect."""
         check_position("device.position", self.position, beam.length)
         across, turning = ({name: getattr(self, name) for name in names} for names in (ACROSS, TURNING))
-        check_moves("device", self.position, beam.length, beam.supports, across, turning)
+        check_free("device", self.position, beam.length, beam.supports, across, turning)
 
 
-def check_moved(forces: Sequence[PointForce], beam: Beam) -> None:
+def check_drives(forces: Sequence[PointForce], beam: Beam) -> None:
     """Raise InputError for a driving force on a support without deflection."""
     for force in forces:
-        check_moves("drive.force", force.position, beam.length, beam.supports, {"amplitude": force.amplitude})
+        check_free("drive.force", force.position, beam.length, beam.supports, {"amplitude": force.amplitude})
 
 
 def of_impedance(position: float, impedance: complex, omega: float, *, turning: bool = False) -> Device:
-    """The device of dashpot and spring, or of dashpot and mass, with a given impedance at one frequency.
+    """The device of dashpot and spring, or of dashpot and mass, that has an impedance (kg/s) at omega (rad/s).
 
     Raises InputError for an active impedance.
     """
     if impedance.real < 0.0:
         raise InputError(
-            f"impedance = {impedance!r} gives energy, which no dashpot does: give one whose real part is at least 0"
+            f"impedance = {impedance!r} is active, a dashpot is not: give one whose real part is at least 0"
         )
     spring, mass, dashpot = TURNING if turning else ("stiffness", "mass", "dashpot")
     reactive = {spring: -impedance.imag * omega} if impedance.imag < 0.0 else {mass: impedance.imag / omega}

@@ -9,23 +9,23 @@ from verify.validation import unit, validate
 
 
 class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A rigid body fixed to the beam at a point. Raises InputError for an invalid value, or where all are zero."""
+    """A rigid body fixed to the beam at a point. Raises InputError for an invalid value or without inertia."""
 
     position: Annotated[float, unit("m", ge=0)]
-    """x of its fixing, m from the left end."""
+    """x of the fixing, m from the left end."""
     mass: Annotated[float, unit("kg", ge=0)] = 0.0
     """kg."""
     rotary_inertia: Annotated[float, unit("kg m^2", ge=0)] = 0.0
-    """About the fixing, kg m^2; it rotates with the slope of the beam."""
+    """Rotary inertia about the fixing, kg m^2; the body rotates with the beam's section."""
 
     def __post_init__(self) -> None:
         validate(self, "beam.mass")
         if not (self.mass or self.rotary_inertia):
-            raise InputError(f"beam.mass at position = {self.position!r} weighs nothing: give mass or rotary_inertia")
+            raise InputError(f"beam.mass at position = {self.position!r} has no inertia: give mass or rotary_inertia")
 
 
 class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A spring from the beam to the ground at a point. Raises InputError for an invalid value, or all zero."""
+    """A spring from the beam to the ground at a point. Raises InputError for an invalid value or no stiffness."""
 
     position: Annotated[float, unit("m", ge=0)]
     """x, m from the left end."""
@@ -37,4 +37,4 @@ class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     def __post_init__(self) -> None:
         validate(self, "beam.spring")
         if not (self.stiffness or self.rotational):
-            raise InputError(f"beam.spring at position = {self.position!r} is slack: give stiffness or rotational")
+            raise InputError(f"beam.spring at position = {self.position!r} has none: give stiffness or rotational")

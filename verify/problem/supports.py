@@ -1,4 +1,4 @@
-"""The four supports of a beam's end by what they prevent: deflection w, rotation w'."""
+"""The four supports of a beam's end by the motions that they prevent: deflection w, rotation w'."""
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -6,22 +6,22 @@ from typing import NamedTuple
 from verify.errors import InputError
 
 
-class Holds(NamedTuple):
-    """What a support prevents; where it prevents w, a shear force is free, where it prevents w', a moment is."""
+class Fixity(NamedTuple):
+    """Motions that a support prevents; its reaction is a shear force against w, a moment against w'."""
 
     deflection: bool
     rotation: bool
 
 
-HOLDS = {
-    "pinned": Holds(deflection=True, rotation=False),
-    "clamped": Holds(deflection=True, rotation=True),
-    "guided": Holds(deflection=False, rotation=True),
-    "free": Holds(deflection=False, rotation=False),
+FIXED = {
+    "pinned": Fixity(deflection=True, rotation=False),
+    "clamped": Fixity(deflection=True, rotation=True),
+    "guided": Fixity(deflection=False, rotation=True),
+    "free": Fixity(deflection=False, rotation=False),
 }
 
 
-def check_moves(
+def check_free(
     where: str,
     position: float,
     length: float,
@@ -29,15 +29,15 @@ def check_moves(
     across: Mapping[str, float],
     turning: Mapping[str, float] | None = None,
 ) -> None:
-    """Raise InputError for a value, not 0, at a support of the beam that prevents the motion on which it acts.
+    """Raise InputError for a nonzero value at a support of the beam that prevents the motion on which it acts.
 
     `across` are values by name that act on the deflection at `position`, m, `turning` those on the rotation.
     """
     for end, support in zip((0.0, length), supports, strict=True):
-        acts = ((across, HOLDS[support].deflection, "moves across"), (turning or {}, HOLDS[support].rotation, "turns"))
-        for values, held, moves in acts if abs(position - end) <= 1e-9 * length else ():
-            if held and (name := next((name for name, value in values.items() if value), None)):
+        acts = ((across, FIXED[support].deflection, "moves across"), (turning or {}, FIXED[support].rotation, "turns"))
+        for values, prevented, moves in acts if abs(position - end) <= 1e-9 * length else ():
+            if prevented and (name := next((name for name, value in values.items() if value), None)):
                 raise InputError(
-                    f"{where}.position = {position!r} m stands on a {support} support, where nothing {moves} and "
-                    f"{where}.{name} = {values[name]!r} does nothing: move it, or leave that out"
+                    f"{where}.position = {position!r} m is on a {support} support, where nothing {moves} and "
+                    f"{where}.{name} = {values[name]!r} has no effect: move it or leave that out"
                 )

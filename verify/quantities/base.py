@@ -1,8 +1,8 @@
 """Named quantities of interest: the `@quantity` decorator, the registry, evaluation, arguments and their listing.
 
-A quantity is a function whose signature is its schema: an annotation carries type, limits and description, a default
-value makes an argument optional, and a parameter annotated with a `msgspec.Struct` is an option group whose fields
-become arguments of the quantity. Parameters named `scene` and `cache` are supplied where the function has them.
+The signature of the function is the schema of the quantity: an annotation carries type, limits and description, a
+default value makes an argument optional, and a parameter annotated with a `msgspec.Struct` is an option group whose
+fields become arguments of the quantity. `evaluate` supplies parameters named `scene` and `cache`.
 
     @quantity("drive.rule_frequency", unit="Hz", reads=("beam",))
     def rule_frequency(scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two")] = 22):
@@ -23,26 +23,26 @@ from verify.analysis.solution_cache import Bracket
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
 from verify.registry import Registry
-from verify.validation import plain
+from verify.validation import python_scalar
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.scene.model import Scene as Scene  # noqa: PLC0414
 else:
     Scene = Any
-    """Of annotations, which `@quantity` evaluates; scenes import quantities."""
+    """Stand-in for annotations, which `@quantity` evaluates; scenes import quantities."""
 
 Value: TypeAlias = float | complex | Bracket
 """Type of an evaluated quantity."""
 MODEL_NAME = "model name"
-"""Key of the annotation of an argument that names a model (`options.model_name`)."""
+"""Annotation key of an argument that names a model (`options.model_name`)."""
 PLACE = "place"
 Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True, "unit": "m"})]
 """A position on the beam: `evaluate` raises InputError for one off the beam."""
 TABLES = ("beam", "drive", "slider", "motion")
 """Tables of a scene that a quantity may depend on."""
 ROUNDING = 1e-12
-"""Tolerance of a position at an end, relative to the length (as `linear.positions`)."""
+"""Tolerance of a position at an end of the beam, relative to its length (as in `linear.positions`)."""
 
 
 class Quantity:
@@ -57,7 +57,7 @@ class Quantity:
         reads: Sequence[str] = TABLES,
         devices: bool = False,
     ) -> None:
-        """`reads` are the tables of a scene that the value depends on; `devices`: whether it models drive.device.
+        """`reads`: tables of a scene on which the value depends; `devices`: whether the quantity models drive.device.
 
         `summary` replaces the first paragraph of the function's docstring.
         """
@@ -82,13 +82,13 @@ class Quantity:
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     def __call__(self, *values: Any, **arguments: Any) -> Value:
-        """The function itself, with option groups as values."""
+        """Call the function, with option groups as values."""
         return self.function(*values, **arguments)
 
     @property
     def arguments(self) -> list[dict[str, Any]]:
         """The arguments as plain data: name, type, whether required, default, description."""
-        found = []
+        entries = []
         for field in msgspec.structs.fields(self.schema):
             among = extra_of(field.type, MODEL_NAME)
             one: dict[str, Any] = {
@@ -96,8 +96,8 @@ class Quantity:
                 "type": " | ".join(among.names()) if among else type_name(field.type),
             }
             one |= {"required": field.required, "default": None if field.required else field.default}
-            found.append(one | {"description": description_of(field.type)})
-        return found
+            entries.append(one | {"description": description_of(field.type)})
+        return entries
 
     def bind(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Keyword arguments of the function: checked, with defaults, option groups built. Raises InputError."""
@@ -124,7 +124,7 @@ class Quantity:
         bound = self.bind(arguments)
         if not self.devices and "beam" in self.reads and scene.devices:
             raise InputError(
-                f"quantity = {self.name!r} does not model drive.device, and one stands at "
+                f"quantity = {self.name!r} does not model drive.device, and the scene has one at "
                 f"{scene.devices[0].position:g} m: leave drive.device out, or use a quantity of the steady wave"
             )
         length = scene.beam.length
@@ -136,7 +136,7 @@ class Quantity:
             ):
                 raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
         supplied = {"scene": scene, "cache": cache}
-        value = plain(self.function(**{name: supplied[name] for name in self._supplied}, **bound))
+        value = python_scalar(self.function(**{name: supplied[name] for name in self._supplied}, **bound))
         if not isinstance(value, float | int | complex | Bracket):
             raise InputError(f"quantity = {self.name!r} returns {shown(value)}: return a number or a Bracket")
         return value
@@ -159,43 +159,43 @@ def evaluate(name: str, arguments: Mapping[str, Any], scene: Scene, cache: "Solu
 
 
 def parse_arguments(name: str, words: Iterable[str]) -> dict[str, Any]:
-    """'key=value' words as arguments of a quantity, read by their types. Raises InputError.
+    """Convert KEY=VALUE arguments of a command line by their types. Raises InputError.
 
     Lists are 20,40,80 or a range 10-50:10; a relative number may be in per cent.
     """
-    wanted = QUANTITIES.named(name)
-    found: dict[str, Any] = {}
+    chosen = QUANTITIES.named(name)
+    arguments: dict[str, Any] = {}
     for word in words:
         key, equals, text = (part.strip() for part in word.partition("="))
         if not equals:
             raise InputError(f"argument = {word!r}: write it as KEY=VALUE")
-        if key in found:
-            raise InputError(f"{key} = {text!r} is a second value: give one")
-        kind = wanted.types.get(key)
+        if key in arguments:
+            raise InputError(f"{key} = {text!r} repeats an argument: give it once")
+        kind = chosen.types.get(key)
         if kind is None:
-            raise InputError(f"{key} is not a known key: {near_name(key, tuple(wanted.types))}")
-        found[key] = typed(text, kind, key)
-    wanted.bind(found)
-    return found
+            raise InputError(f"{key} is not a known key: {near_name(key, tuple(chosen.types))}")
+        arguments[key] = typed(text, kind, key)
+    chosen.bind(arguments)
+    return arguments
 
 
 def describe(*words: str) -> list[dict[str, Any]]:
-    """Every quantity as plain data: name, unit, summary, arguments; of `words` each occurs in one of these.
+    """Quantities as plain data: name, unit, summary, arguments; only those in which all `words` occur.
 
     Raises InputError where no quantity matches.
     """
-    found = []
+    quantities = []
     for one in QUANTITIES.values():
         text = " ".join((one.name, one.summary, one.unit, *one.schema.__struct_fields__)).casefold()
         if all(word.casefold() in text for word in words):
-            found.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": one.arguments})
-    if not found:
+            quantities.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": one.arguments})
+    if not quantities:
         raise InputError(f"words = {shown(' '.join(words))}: no quantity matches, leave a word out")
-    return found
+    return quantities
 
 
 def as_plain(value: Value | None) -> Any:
-    """A value for JSON: a number, {"re", "im"} or {"lower", "upper"}."""
+    """A value as JSON data: a number, {"re", "im"} or {"lower", "upper"}."""
     if isinstance(value, complex):
         return {"re": value.real, "im": value.imag}
     if isinstance(value, Bracket):
@@ -204,7 +204,7 @@ def as_plain(value: Value | None) -> Any:
 
 
 def as_text(value: Value, digits: int = 12) -> str:
-    """A value for a terminal: '1.5', '1 +2i', '0.9 .. 1.1'."""
+    """A value as text: '1.5', '1 +2i', '0.9 .. 1.1'."""
     if isinstance(value, complex):
         return f"{value.real:.{digits}g} {value.imag:+.{digits}g}i"
     if isinstance(value, Bracket):
@@ -213,10 +213,10 @@ def as_text(value: Value, digits: int = 12) -> str:
 
 
 def _native(value: Any, name: str) -> Any:
-    """A value with Python's numbers for numpy's. Raises InputError for one that is not finite."""
+    """Convert numpy's numbers to Python's. Raises InputError for a value that is not finite."""
     if isinstance(value, list | tuple | range):
         return [_native(one, name) for one in value]
-    value = plain(value)
+    value = python_scalar(value)
     if isinstance(value, float) and not isfinite(value):
         raise InputError(f"{name} = {value!r}: give a finite number")
     return value

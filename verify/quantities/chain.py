@@ -1,4 +1,4 @@
-"""Quantities of the nonlinear chain: benchmark problems, its motion from rest, a slider on it."""
+"""Quantities of the nonlinear chain: benchmark problems, motion from rest, a slider on the chain."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.dynamics.result import Motion
 
-Links = Annotated[int, Meta(ge=1, description="N, links of the chain")]
-Seconds = Annotated[float, unit("s"), Meta(gt=0, description="s, from rest")]
+Links = Annotated[int, Meta(ge=1, description="N, number of links")]
+Seconds = Annotated[float, unit("s"), Meta(gt=0, description="duration from rest, s")]
 TipLoad = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]
 TipComponent = Annotated[Literal["deflection", "shortening"], Meta(description="w/L, or 1 - x/L")]
-HubSpeed = Annotated[float, Meta(ge=0, le=1e3, description="of the hub, in sqrt(EI / (rho A L^4))")]
-Gyrations = Annotated[float, Meta(gt=0, description="at mid-span, in radii of gyration sqrt(I / A)")]
+HubSpeed = Annotated[float, Meta(ge=0, le=1e3, description="rotation rate of the hub over sqrt(EI / (rho A L^4))")]
+Gyrations = Annotated[float, Meta(gt=0, description="amplitude at mid-span over the radius of gyration sqrt(I / A)")]
 Step = Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive")]
 Inertia = Annotated[
-    options.Inertia, Meta(description="transverse: rigid, none along x; elastic: links stretch by EA / l")
+    options.Inertia, Meta(description="axial inertia: rigid links with or without it, or links that stretch by EA / l")
 ]
 Reading = Annotated[
     Literal["end", "rms", "beam"],
@@ -45,7 +45,7 @@ def cantilever_tip(*, segments: Links, load: TipLoad, component: TipComponent = 
 
 @quantity("chain.rollup_gap", unit="1", reads=())
 def rollup_gap(*, segments: Links, wall: Wall = "half") -> float:
-    """Distance of the ends over L of a cantilever under an end moment 2 pi EI/L."""
+    """Distance between the ends over L of a cantilever rolled up by an end moment 2 pi EI/L."""
     from verify.chain.benchmarks import rollup_gap
 
     return rollup_gap(segments, wall)
@@ -53,15 +53,15 @@ def rollup_gap(*, segments: Links, wall: Wall = "half") -> float:
 
 @quantity("chain.hanging_frequency", unit="1", reads=())
 def hanging_frequency(*, segments: Links, mode: Mode) -> float:
-    """Omega sqrt(L/g) of a hanging chain of uniform links."""
+    """Natural frequency of a hanging chain of uniform links, omega sqrt(L/g)."""
     from verify.chain.benchmarks import hanging_frequency
 
     return hanging_frequency(mode, segments)
 
 
-@quantity("chain.turning_frequency", unit="1", reads=())
-def turning_frequency(*, segments: Links, mode: Mode, speed: HubSpeed) -> float:
-    """Omega sqrt(rho A L^4/EI) of the lead-lag modes of a rotating cantilever."""
+@quantity("chain.rotating_frequency", unit="1", reads=())
+def rotating_frequency(*, segments: Links, mode: Mode, speed: HubSpeed) -> float:
+    """Lead-lag natural frequency of a rotating cantilever, omega sqrt(rho A L^4/EI)."""
     from verify.chain.benchmarks import rotating_frequency
 
     return rotating_frequency(mode, segments, speed)
@@ -69,7 +69,7 @@ def turning_frequency(*, segments: Links, mode: Mode, speed: HubSpeed) -> float:
 
 @quantity("chain.large_amplitude_frequency", unit="1", reads=BEAM)
 def large_amplitude_frequency(scene: Scene, cache: "SolutionCache", *, segments: Links, amplitude: Gyrations) -> float:
-    """First frequency between immovable hinges over the linear one."""
+    """First frequency of a beam between immovable hinges at finite amplitude over the linear frequency."""
     from verify.chain.benchmarks import large_amplitude_frequency
 
     return large_amplitude_frequency(scene.beam, amplitude, segments, cache.progress)
@@ -77,7 +77,7 @@ def large_amplitude_frequency(scene: Scene, cache: "SolutionCache", *, segments:
 
 @quantity("chain.energy_drift", unit="1", reads=BEAM)
 def energy_drift(scene: Scene, cache: "SolutionCache", *, segments: Links, step: Step | None = None) -> float:
-    """Energy drift of an undamped roller-ended chain over its energy: a period of mode 1, released from 0.05 L."""
+    """Relative energy drift of an undamped roller-ended chain in a period of mode 1, released from 0.05 L."""
     from verify.chain.benchmarks import energy_drift
 
     return energy_drift(scene.beam, segments, step, progress=cache.progress)
@@ -85,7 +85,7 @@ def energy_drift(scene: Scene, cache: "SolutionCache", *, segments: Links, step:
 
 @quantity("chain.imbalance", unit="1", reads=())
 def imbalance(cache: "SolutionCache", *, segments: Links) -> float:
-    """Residual of the energy balance of a chain under hub motion and an eccentric load, over its damping loss."""
+    """Residual of the chain's energy balance under hub motion and an eccentric load, over the damping loss."""
     from verify.chain.benchmarks import energy_balance_error
 
     return energy_balance_error(segments, "free", 1e-9, cache.progress)
@@ -93,14 +93,14 @@ def imbalance(cache: "SolutionCache", *, segments: Links) -> float:
 
 @quantity("chain.contact_line_error", unit="1", reads=BEAM)
 def contact_line_error(scene: Scene, *, segments: Links, mode: Mode, x: Place) -> float:
-    """Slope of the chain's contact line at x in a mode less the beam's, over the largest slope."""
+    """Slope error of the chain's contact line at x in a mode, relative to the largest slope."""
     from verify.chain.benchmarks import contact_line_error
 
     return contact_line_error(scene.beam, mode, segments, x)
 
 
 def _drive(scene: Scene, time: TimeOptions) -> tuple[tuple[PointForce, ...], float, float]:
-    """(forces, Hz, s) of a motion from rest, undamped, without soft start. Raises InputError for another [motion]."""
+    """(forces, Hz, s) of an undamped motion from rest without soft start. Raises InputError for any other [motion]."""
     if scene.motion is None and time.soft_start_periods is None:
         time = replace(time, soft_start_periods=0.0)
     request = motion_arguments(scene, time)
@@ -120,7 +120,7 @@ class FromRest(msgspec.Struct, frozen=True, kw_only=True):
 
 @quantity("chain.transient_deflection", unit="m")
 def transient_deflection(scene: Scene, cache: "SolutionCache", run: FromRest, *, x: Place) -> float:
-    """Deflection of the chain at x after a time from rest under the scene's forces."""
+    """Deflection of the nonlinear chain at x after `time` from rest under the scene's forces."""
     from verify.chain.benchmarks import transient
 
     forces, hertz, time = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
@@ -132,7 +132,7 @@ def transient_deflection(scene: Scene, cache: "SolutionCache", run: FromRest, *,
 def axial_departure(
     scene: Scene, cache: "SolutionCache", run: FromRest, *, inertia: Inertia = "full", of: Reading = "end"
 ) -> float:
-    """Deflection of the nonlinear chain less the linear one's from rest, at mid-span or all joints, over the latter."""
+    """Deflection of the nonlinear chain less that of the linear one from rest, at mid-span or all joints, relative."""
     from verify.chain.benchmarks import departure, departure_over_beam
 
     drive = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
@@ -146,11 +146,11 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
     """Time integration of the scene's slider, with or without feet, on the nonlinear chain from rest."""
 
     segments: Links
-    links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
+    links: Annotated[options.Links, Meta(description="stretching: axial stiffness EA / l")] = "rigid"
     load: Annotated[options.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")] = (
         "reciprocal"
     )
-    joint_dashpot: Annotated[float, Meta(ge=0, description="of every joint with a spring, N m s")] = 0.0
+    joint_dashpot: Annotated[float, Meta(ge=0, description="dashpot of every joint with a spring, N m s")] = 0.0
     force: ForceAmplitude | None = None
     soft_start_periods: SoftStart | None = None
 
@@ -159,7 +159,7 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
         from verify.chain.slider_on_chain import slide_on_chain
 
         if scene.motion is None:
-            raise InputError("motion is missing: a slider on a chain takes [motion] with its duration")
+            raise InputError("motion is missing: add [motion] with a duration for a slider on a chain")
         time = TimeOptions(model="analytic", force=self.force, soft_start_periods=self.soft_start_periods)
         case: dict[str, Any] = {"slider": options.of(scene), "count": self.segments, "links": self.links}
         case["load"] = self.load
@@ -181,19 +181,19 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
 
 @quantity("chain.slider_displacement", unit="m")
 def slider_displacement(scene: Scene, cache: "SolutionCache", by: OnChain, slider: SliderOptions) -> float:
-    """Displacement of the scene's slider along +x on the chain."""
+    """Displacement of the scene's slider along +x on the nonlinear chain."""
     return by.run(scene, cache, slider).displacement
 
 
 @quantity("chain.slider_mean_speed", unit="m/s")
 def slider_mean_speed(scene: Scene, cache: "SolutionCache", by: OnChain, slider: SliderOptions) -> float:
-    """Displacement of the slider on the chain over time."""
+    """Mean speed of the scene's slider along +x on the nonlinear chain."""
     return by.run(scene, cache, slider).mean_speed
 
 
 @quantity("chain.slider_imbalance", unit="1")
 def slider_imbalance(scene: Scene, cache: "SolutionCache", by: OnChain, slider: SliderOptions) -> float:
-    """Residual of the slider's energy balance on the chain over its friction loss."""
+    """Residual of the slider's energy balance on the nonlinear chain, over the friction loss."""
     energy = by.run(scene, cache, slider).energy
     assert energy is not None
     return abs(energy.slider_residual) / energy.friction_loss

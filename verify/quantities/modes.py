@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 BEAM = ("beam",)
 Reading = Annotated[
-    str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default: the model's first")
+    str, Meta(description="nodal values. segment: corrected (default, y + delta^2 y / 12) or raw; fem: nodal")
 ]
 
 
@@ -32,7 +32,7 @@ def frequency(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
 
 @quantity("mode.frequency_error", unit="1", reads=BEAM)
 def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
-    """Signed error relative to the exact frequency by the same theory; of the exact beam, to Euler-Bernoulli theory."""
+    """Signed frequency error relative to the exact beam of the same theory; model = analytic: to Euler-Bernoulli."""
     if of.count is not None:
         return cache.frequency_error(of.model, of.count, of.mode, of.settings)
     exact = cache.exact_hz(of.mode)
@@ -41,7 +41,7 @@ def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
 
 @quantity("mode.plate_error", unit="1", reads=BEAM)
 def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
-    """Frequency as a thin plate with free long edges, relative to Euler-Bernoulli theory, less 1."""
+    """Relative frequency difference of a thin plate with free long edges from Euler-Bernoulli theory."""
     from verify.exact.plate import plate_error
 
     return plate_error(scene.beam, mode)
@@ -51,7 +51,7 @@ def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
 def law_ratio(
     scene: Scene, cache: "SolutionCache", *, model: opt.DiscreteModel, mode: opt.Mode, count: opt.Size
 ) -> float:
-    """Frequency error over its leading term, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), mu = beta l."""
+    """Frequency error over its leading term: fem mu^4/1440, segment mu^4 (-1/1440 + c/(12 N)); mu = beta l."""
     from verify.exact.error_laws import law_of, leading_error
 
     law_of(model)
@@ -76,7 +76,7 @@ def node_position(
     cache: "SolutionCache",
     of: opt.OneMode,
     *,
-    node: Annotated[int, Meta(ge=1, description="number of the node from the left, ends not counted")] = 1,
+    node: Annotated[int, Meta(ge=1, description="number of the node from the left, without the ends")] = 1,
 ) -> float:
     """Position of a node of a mode, from the left end."""
     positions = cache.node_positions(of.model, of.count, of.mode, of.settings)
@@ -101,12 +101,12 @@ class Orders(opt.ModelOptions, frozen=True, kw_only=True):
 class OrdersOrMean(Orders, frozen=True, kw_only=True):
     """One mode of one discrete model, or of the mean of segment and fem, at several sizes."""
 
-    model: Annotated[str, opt.model_name("mean: middle of segment and fem", "modes", sized=True, mean=True)]
+    model: Annotated[str, opt.model_name("discrete model, or mean of segment and fem", "modes", sized=True, mean=True)]
 
 
 @quantity("mode.order", unit="1", reads=BEAM)
 def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
-    """Observed order of the frequency error over N; outside the asymptotic range an InputError."""
+    """Observed order of the frequency error in N; an error outside the asymptotic range."""
     from verify.analysis.comparison import asymptotic_order
 
     expected = None
@@ -118,7 +118,7 @@ def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
 
 @quantity("mode.shape_order", unit="1", reads=BEAM)
 def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None = None) -> float:
-    """Observed order of the shape error over N; outside the asymptotic range an InputError."""
+    """Observed order of the shape error in N; an error outside the asymptotic range."""
     from verify.analysis.comparison import asymptotic_order
 
     return asymptotic_order(
@@ -141,7 +141,7 @@ def count_needed(
     mode: opt.Mode,
     error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
 ) -> float:
-    """Number of segments or elements from which on the frequency error is at most `error`."""
+    """Sufficient number of segments or elements: for this and every larger number the error is at most `error`."""
     from verify.analysis.sizing import sufficient_size
 
     return sufficient_size(cache, model, mode, error, opt.check_settings(model, options.settings)).count
@@ -149,7 +149,7 @@ def count_needed(
 
 @quantity("mode.stock_difference", unit="1", reads=BEAM)
 def stock_difference(scene: Scene, cache: "SolutionCache", *, mode: opt.Mode, count: opt.Size) -> float:
-    """Frequency by scikit-fem's own Hermite element and solver relative to that of our elements, less 1."""
+    """Relative frequency difference of scikit-fem's own Hermite element and solver from model = fem."""
     from verify.elements.stock import stock_frequency_hz
 
     return stock_frequency_hz(scene.beam, mode, count) / cache.frequency_hz("fem", count, mode) - 1.0
@@ -157,15 +157,15 @@ def stock_difference(scene: Scene, cache: "SolutionCache", *, mode: opt.Mode, co
 
 @quantity("drive.rule_frequency", unit="Hz", reads=BEAM)
 def rule_frequency(
-    scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
+    scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="upper mode number of the pair")] = 22
 ) -> float:
-    """Root mean square of two neighbouring natural frequencies, where both respond equally."""
+    """Drive frequency at which two neighbouring modes respond equally: rms of their natural frequencies."""
     return sqrt(sum(closed_forms.frequency_hz(scene.beam, n) ** 2 for n in (mode - 1, mode)) / 2.0)
 
 
 @quantity("drive.quarter_wavelength", unit="m", reads=("beam", "drive"))
 def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
-    """A quarter of the bending wavelength: the distance of a force from its end of the beam."""
+    """Quarter of the bending wavelength, the paper's distance of a force from its end of the beam."""
     closed_forms.check_uniform(scene.beam)
     return sqrt(0.125 * pi * scene.beam.wave_constant / opt.drive_frequency(scene, frequency_hz))
 
@@ -174,9 +174,9 @@ def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = Non
 def buckling_load(
     scene: Scene,
     *,
-    model: Annotated[str, opt.model_name("which model", "buckling_load")],
+    model: Annotated[str, opt.model_name("model of the beam", "buckling_load")],
     count: opt.Size | None = None,
 ) -> float:
-    """Compression at first buckling, whatever axial force the beam itself has."""
+    """Lowest buckling load of the beam in compression; its own axial force is ignored."""
     opt.check_count(model, count)
     return MODELS.named(model).build(scene.beam, count).buckling_load()

@@ -1,4 +1,4 @@
-"""Quantities of a motor: a slider that may lose contact, at a prescribed speed or free."""
+"""Quantities of a motor: a slider with unilateral contact, at a prescribed speed or free."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from verify.motor.curves import Transient
     from verify.motor.steady_state import Figure, MotorCase, SteadyState
 
-Speed = Annotated[float, unit("m/s"), Meta(description="of the slider along +x, m/s")]
+Speed = Annotated[float, unit("m/s"), Meta(description="prescribed speed of the slider along +x, m/s")]
 
 
 class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
-    """Model of a motor's beam, and its time steps."""
+    """Beam model and time steps of a motor."""
 
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
     modal_damping: opt.ModalDamping | None = None
-    steps_per_period: Annotated[int, Meta(ge=4, description="at least; more where the contact is stiff")] = 61
+    steps_per_period: Annotated[int, Meta(ge=4, description="least number; stiff contact takes more")] = 61
 
     def case(self, scene: Scene) -> "MotorCase":
         """The motor of a scene. Raises InputError where the scene has none."""
@@ -41,7 +41,7 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def cached(cache: "SolutionCache", function: Callable[..., Any], *arguments: Any) -> Any:
-    """The value of a function, computed once for the same arguments."""
+    """The value of a function, computed once for equal arguments."""
     key = (function, *arguments)
     if key not in cache.motors:
         cache.motors[key] = function(*arguments)
@@ -51,17 +51,17 @@ def cached(cache: "SolutionCache", function: Callable[..., Any], *arguments: Any
 class Prescribed(MotorOptions, frozen=True, kw_only=True):
     """A slider at a prescribed speed and a fixed position."""
 
-    periods: Annotated[int, Meta(ge=96, description="of the drive, at most, until the means converge")] = 12_500
+    periods: Annotated[int, Meta(ge=96, description="most drive periods until the means converge")] = 12_500
 
     def state(self, scene: Scene, cache: "SolutionCache", speed: float, *figures: "Figure") -> "SteadyState":
-        """Means at a speed, m/s. Raises InputError where one of these figures has not converged."""
+        """Steady state at a speed, m/s. Raises InputError where one of `figures` has not converged."""
         from verify.motor.curves import REASONS
         from verify.motor.steady_state import steady_state
 
-        found: SteadyState = cached(cache, steady_state, self.case(scene), speed, self.periods)
-        if missing := next((name for name in figures if not found.converged(name)), None):
+        state: SteadyState = cached(cache, steady_state, self.case(scene), speed, self.periods)
+        if missing := next((name for name in figures if not state.converged(name)), None):
             raise InputError(f"periods = {self.periods!r}: {REASONS[missing]}")
-        return found
+        return state
 
 
 def _at_speed(
@@ -83,8 +83,8 @@ _at_speed("force_speed", "N", "Mean friction force on the slider", lambda at: at
 _at_speed("power", "W", "Mean mechanical power on the slider", lambda at: at.power, "force")
 _at_speed("efficiency", "1", "Power over tangential surface power", lambda at: at.efficiency, "force", "powers")
 _at_speed("normal_mean", "N", "Mean normal force on the slider", lambda at: at.means.normal_force, "normal force")
-_at_speed("contact_share", "1", "Share of points and time in contact", lambda at: at.means.contact_share, "shares")
-_at_speed("stuck_share", "1", "Share of points and time that stick", lambda at: at.means.stuck_share, "shares")
+_at_speed("contact_share", "1", "Fraction of points and time in contact", lambda at: at.means.contact_share, "shares")
+_at_speed("stuck_share", "1", "Fraction of points and time in stick", lambda at: at.means.stuck_share, "shares")
 _at_speed("friction_power", "W", "Power lost in friction and compliance", lambda at: at.means.friction_power, "powers")
 
 
@@ -96,38 +96,38 @@ def stall_force(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> floa
 
 @quantity("motor.no_load_speed", unit="m/s")
 def no_load_speed(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> float:
-    """Prescribed speed along +x at which the mean friction force vanishes: the free speed of a heavy slider."""
+    """No-load speed along +x of a heavy slider: the prescribed speed at which the mean friction force vanishes."""
     from verify.motor.curves import no_load
 
-    found: SteadyState = cached(cache, no_load, motor.case(scene), motor.periods)
-    return found.speed
+    state: SteadyState = cached(cache, no_load, motor.case(scene), motor.periods)
+    return state.speed
 
 
 class FreeRun(MotorOptions, frozen=True, kw_only=True):
-    """The free slider, from its own speed on a steady beam."""
+    """A free slider that starts with `slider.speed` on the steady beam."""
 
-    periods: Annotated[int, Meta(ge=2, description="of the drive")] = 2000
+    periods: Annotated[int, Meta(ge=2, description="number of drive periods")] = 2000
 
     def run(self, scene: Scene, cache: "SolutionCache") -> "Transient":
-        """The run. Raises InputError where it leaves the beam, or has no steady end."""
+        """The free run. Raises InputError where the slider leaves the beam or reaches no steady state."""
         from verify.motor.curves import REASONS, transient
 
-        found: Transient = cached(cache, transient, self.case(scene), self.periods)
-        if not found.converged:
-            reason = "free speed" if found.run.statistics.finished else "left"
+        free: Transient = cached(cache, transient, self.case(scene), self.periods)
+        if not free.converged:
+            reason = "free speed" if free.run.statistics.finished else "left"
             raise InputError(f"periods = {self.periods!r}: {REASONS[reason]}")
-        return found
+        return free
 
 
 @quantity("motor.free_speed", unit="m/s")
 def free_speed(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
-    """Mean speed of the free slider of its own mass, which follows the drive within a period; last quarter of a run."""
+    """Mean speed of the free slider over the last quarter of a run; a light slider varies within a drive period."""
     return free.run(scene, cache).speed
 
 
 @quantity("motor.start_time", unit="s")
 def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
-    """Time until the free slider's mean over a sliding period has made 1 - 1/e of the change to its final speed."""
+    """Time constant of the free slider's start: 1 - 1/e of the change to its final mean speed."""
     from verify.motor.curves import REASONS
 
     if (time := free.run(scene, cache).time_constant()) is None:
@@ -137,7 +137,7 @@ def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
 
 @quantity("motor.multiplier", unit="1")
 def multiplier(scene: Scene, cache: "SolutionCache", motor: MotorOptions, *, speed: Speed = 0.0) -> float:
-    """Largest Floquet multiplier of the periodic motion at a prescribed speed: below 1 disturbances decay."""
+    """Largest Floquet multiplier of the periodic motion at a prescribed speed; stable below 1."""
     from verify.motor.periodic_orbit import periodic_orbit
 
     return float(max(abs(cached(cache, periodic_orbit, motor.case(scene), speed).multipliers)))
@@ -145,7 +145,7 @@ def multiplier(scene: Scene, cache: "SolutionCache", motor: MotorOptions, *, spe
 
 @quantity("motor.contact_imbalance", unit="1")
 def contact_imbalance(scene: Scene, motor: FreeRun) -> float:
-    """Residual of the free run's energy balance over the work of the surface."""
+    """Residual of the free slider's energy balance, over the work of the surface."""
     balance = motor.case(scene).run(motor.periods, 2).energy
     assert balance is not None
     return float(abs(balance.residual) / (abs(balance.normal_work) + abs(balance.tangential_work)))

@@ -20,22 +20,22 @@ if TYPE_CHECKING:
 
 
 class ModelName(msgspec.Struct, frozen=True):
-    """Models that an argument may name."""
+    """The models that an argument accepts."""
 
     verb: str
-    """That they have, of `BeamModel`."""
+    """Method of `BeamModel` that the models implement."""
     sized: bool = False
-    """Whether they have parts."""
+    """Whether only discrete models are accepted."""
     mean: bool = False
-    """Whether the mean of the models below and above is one."""
+    """Whether "mean", the middle of the models below and above, is accepted."""
 
     def names(self) -> tuple[str, ...]:
-        """All of them, in alphabetical order."""
+        """Accepted names in alphabetical order."""
         models = [m for m in MODELS.values() if m.can(self.verb) and (m.sized or not self.sized)]
         return (*sorted(m.name for m in models), *([MEAN] if self.mean else []))
 
     def check(self, name: str, field: str = "model") -> None:
-        """Raise InputError, with the nearest one, for another name."""
+        """Raise InputError, which suggests the nearest name, for a name that is not accepted."""
         if not (self.mean and name == MEAN):
             model = MODELS.get(name)
             if model is None or not model.can(self.verb) or (self.sized and not model.sized):
@@ -43,34 +43,36 @@ class ModelName(msgspec.Struct, frozen=True):
 
 
 def model_name(description: str, verb: str, *, sized: bool = False, mean: bool = False) -> Meta:
-    """The annotation of an argument that names a model."""
+    """Annotation of an argument that names a model."""
     return Meta(description=description, extra={MODEL_NAME: ModelName(verb, sized, mean)})
 
 
-Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]
-Size = Annotated[int, Meta(ge=1, description="N, segments or elements; not for model = analytic")]
-Sizes = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(description="three or more N, 20,40,80")]
-AnyModel = Annotated[str, model_name("mean: middle of segment and fem", "modes", mean=True)]
-ModesModel = Annotated[str, model_name("which model", "modes")]
-DiscreteModel = Annotated[str, model_name("which discrete model", "modes", sized=True)]
-FieldModel = Annotated[str, model_name("which model", "harmonic")]
-DiscreteField = Annotated[str, model_name("which discrete model", "harmonic", sized=True)]
-TimeModel = Annotated[str, model_name("which model", "time_basis")]
-Frequency = Annotated[float, unit("Hz"), Meta(gt=0, description="Hz; default: the scene's drive")]
+Mode = Annotated[int, Meta(ge=1, description="mode number, from 1, elastic modes only")]
+Size = Annotated[int, Meta(ge=1, description="N, number of segments or elements; not for model = analytic")]
+Sizes = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(description="three or more N, for instance 20,40,80")]
+AnyModel = Annotated[str, model_name("model of the beam; mean: middle of segment and fem", "modes", mean=True)]
+ModesModel = Annotated[str, model_name("model of the beam", "modes")]
+DiscreteModel = Annotated[str, model_name("discrete model of the beam", "modes", sized=True)]
+FieldModel = Annotated[str, model_name("model of the beam", "harmonic")]
+DiscreteField = Annotated[str, model_name("discrete model of the beam", "harmonic", sized=True)]
+TimeModel = Annotated[str, model_name("model of the beam", "time_basis")]
+Frequency = Annotated[float, unit("Hz"), Meta(gt=0, description="drive frequency, Hz; default: the scene's")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
 Theory = Annotated[options.Theory, Meta(description="beam theory")]
-Wall = Annotated[options.Wall, Meta(description="joint at a clamped end; half: k = 2EI/l")]
-Joints = Annotated[options.Joints, Meta(description="joint stiffness of Eq. (1)")]
-Attachment = Annotated[options.Attachment, Meta(description="point masses and springs on segments")]
-SoftStart = Annotated[float, Meta(ge=0, description="periods over which the forces grow; default: the scene's")]
-ForceAmplitude = Annotated[float, unit("N"), Meta(ge=0, description="of every force, N; default: the scene's")]
+Wall = Annotated[options.Wall, Meta(description="joints at a clamped end; half: k = 2EI/l")]
+Joints = Annotated[options.Joints, Meta(description="joint stiffness, Eq. (1)")]
+Attachment = Annotated[options.Attachment, Meta(description="distribution of point masses and springs on segments")]
+SoftStart = Annotated[float, Meta(ge=0, description="growth of the forces, in drive periods; default: the scene's")]
+ForceAmplitude = Annotated[
+    float, unit("N"), Meta(ge=0, description="amplitude of every force, N; default: the scene's")
+]
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
-Mass = Annotated[float, unit("kg"), Meta(gt=0, description="kg")]
+Mass = Annotated[float, unit("kg"), Meta(gt=0, description="mass, kg")]
 
 
 def check_count(model: str, count: int | None) -> None:
-    """Raise InputError for a discrete model without `count`, or the exact beam with one."""
+    """Raise InputError for a discrete model without `count`, or the exact beam with `count`."""
     if model != MEAN:
         registry.check_count(model, count)
     elif count is None:
@@ -78,7 +80,7 @@ def check_count(model: str, count: int | None) -> None:
 
 
 def check_settings(model: str, chosen: "Settings") -> "Settings":
-    """The settings. Raises InputError for one that the model lacks."""
+    """The settings. Raises InputError for a setting that the model does not have."""
     for name, value in chosen:
         if name not in MODELS.named(model).settings():
             able = [m.name for m in MODELS.values() if name in m.settings()]
@@ -97,7 +99,7 @@ class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def settings(self) -> "Settings":
-        """Those other than their defaults."""
+        """Settings that differ from their defaults."""
         return not_default(self, without=("model", "mode", "count", "counts"))
 
 
@@ -131,8 +133,8 @@ class DriveOptions(msgspec.Struct, frozen=True, kw_only=True):
     """The drive, by default the scene's."""
 
     frequency_hz: Frequency | None = None
-    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
-    position: Annotated[Place, Meta(description="m, d of the first force, L - d of the second")] | None = None
+    phase_deg: Annotated[float, Meta(description="phase of the second force; default: the scene's")] | None = None
+    position: Annotated[Place, Meta(description="d, m: forces at d and L - d; default: the scene's")] | None = None
 
     def forces(self, scene: Scene, amplitude: float | None = None) -> tuple[PointForce, ...]:
         """The scene's forces with these positions, phase and amplitude (N). Raises InputError."""
@@ -153,21 +155,21 @@ class DriveOptions(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def drive_frequency(scene: Scene, frequency_hz: float | None = None) -> float:
-    """`frequency_hz`, else the drive's, Hz. Raises InputError where neither has it, or beyond beam theory."""
-    found = frequency_hz if frequency_hz is not None else scene.drive.frequency_hz if scene.drive else None
-    if found is None:
+    """`frequency_hz`, by default that of the drive, Hz. Raises InputError where it is missing or too high."""
+    hertz = frequency_hz if frequency_hz is not None else scene.drive.frequency_hz if scene.drive else None
+    if hertz is None:
         raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")
-    check_frequency("frequency_hz", float(found), scene.beam)
-    return float(found)
+    check_frequency("frequency_hz", float(hertz), scene.beam)
+    return float(hertz)
 
 
-def check_forces(scene: Scene, what: str) -> None:
-    """Raise InputError for a drive by displacements, where `what` takes forces."""
+def check_forces(scene: Scene, subject: str) -> None:
+    """Raise InputError for a drive by displacements; `subject` is the subject of the message."""
     if scene.drive is not None and scene.drive.kind != "force":
-        raise InputError(f"drive.kind = {scene.drive.kind!r}: {what} takes imposed forces, give kind = 'force'")
+        raise InputError(f"drive.kind = {scene.drive.kind!r}: {subject} takes imposed forces, give kind = 'force'")
 
 
 def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> "Settings":
-    """(name, value) of the fields of an option group that differ from their defaults, but for those of `without`."""
+    """(name, value) of the fields of an option group that differ from their defaults, except those in `without`."""
     fields = [field for field in msgspec.structs.fields(type(group)) if field.name not in without]
     return tuple((f.name, getattr(group, f.name)) for f in fields if getattr(group, f.name) != f.default)

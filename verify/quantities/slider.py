@@ -1,4 +1,4 @@
-"""Quantities in time: a slider on the driven beam, its energy balance and coupling, and the beam alone."""
+"""Quantities in time: a slider on the driven beam, energy balance and coupling, and the beam without slider."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.dynamics.result import EnergyBalance, Motion
 
-Time = Annotated[float, unit("s"), Meta(gt=0, description="s; default: the scene's motion.duration")]
-Window = Annotated[tuple[float, float], Meta(description="m, start and end")]
+Time = Annotated[float, unit("s"), Meta(gt=0, description="duration, s; default: the scene's motion.duration")]
+Window = Annotated[tuple[float, float], Meta(description="start and end, m")]
 SAMPLES_PER_PERIOD, POINTS = 32, 40
-"""Instants and positions of a motion in which waves are measured."""
+"""Samples per period, and positions, at which the wave of a motion is measured."""
 SOFT_START_PERIODS = 2.0
 """From rest: forces that act at once excite all modes, under which a slider's path does not converge."""
 
@@ -35,29 +35,29 @@ class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
     start: Annotated[options.Start, Meta(description="default: the scene's motion.start")] | None = None
     soft_start_periods: opt.SoftStart | None = None
     modal_damping: opt.ModalDamping | None = None
-    modes: Annotated[int, Meta(ge=1, description="of model = analytic from rest; default 400")] | None = None
+    modes: Annotated[int, Meta(ge=1, description="number, for model = analytic from rest; default: 400")] | None = None
     force: opt.ForceAmplitude | None = None
 
 
 class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
-    """Values that replace those of the scene's slider."""
+    """Parameters that replace those of the scene's slider."""
 
     mu: opt.Mu | None = None
     slope: opt.Slope | None = None
     mass: opt.Mass | None = None
-    law: Annotated[options.Law, Meta(description="tanh of Eq. (3), or coulomb with sticking")] | None = None
-    kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] | None = None
-    coupling: Annotated[options.CouplingChoice, Meta(description="of slider and beam")] | None = None
-    normal: Annotated[options.NormalChoice, Meta(description="held: weight and inertia act on the beam")] | None = None
-    slider_position: Annotated[Place, Meta(description="m, at the start")] | None = None
-    slider_speed: Annotated[float, Meta(description="m/s, at the start")] | None = None
-    step: Annotated[float, Meta(gt=0, description="of the slider, s; default: by drive and start")] | None = None
+    law: Annotated[options.Law, Meta(description="friction law; tanh: Eq. (3), coulomb: with stiction")] | None = None
+    kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] | None = None
+    coupling: Annotated[options.CouplingChoice, Meta(description="coupling of slider and beam")] | None = None
+    normal: Annotated[options.NormalChoice, Meta(description="bilateral: with weight and inertia")] | None = None
+    slider_position: Annotated[Place, Meta(description="initial position, m")] | None = None
+    slider_speed: Annotated[float, Meta(description="initial speed, m/s")] | None = None
+    step: Annotated[float, Meta(gt=0, description="time step of the slider, s; default: automatic")] | None = None
 
     def of(self, scene: Scene) -> Slider:
-        """The scene's slider with these values. Raises InputError where there is none that stays on the surface."""
+        """The scene's slider with these parameters. Raises InputError for no slider, or one with [slider.contact]."""
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
-        scene.slider.check_stays()
+        scene.slider.check_bilateral()
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
@@ -70,7 +70,7 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
     opt.check_count(by.model, by.count)
     if by.modes is not None and by.count is not None:
-        raise InputError(f"modes = {by.modes!r} is for model = analytic: {by.model} keeps all it has, leave it out")
+        raise InputError(f"modes = {by.modes!r} is for model = analytic: {by.model} uses all its modes, leave it out")
     opt.check_forces(scene, "motion in time")
     start = by.start or (motion.start if motion else "rest")
     if soft is None:
@@ -84,7 +84,7 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
 
 
 def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -> "Motion":
-    """A simulation, from the cache where it is there."""
+    """A simulation, computed once for equal arguments."""
     from verify.dynamics.simulate import simulate
 
     arguments = arguments | {"samples": 2} | more
@@ -97,7 +97,7 @@ def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -
 def slider_run(
     scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, reverse: bool = False, **more: Any
 ) -> "Motion":
-    """The run of the scene's slider. Raises InputError where it stops before its end or its step is too long."""
+    """The run of the scene's slider. Raises InputError where it stops early or its step has not converged."""
     from verify.dynamics.step_control import CONVERGED
 
     arguments = motion_arguments(scene, by)
@@ -114,23 +114,23 @@ def slider_run(
 
 
 def _of_run(name: str, unit: str, summary: str) -> None:
-    """Register an attribute of the run."""
+    """Register an attribute of the motion as a quantity."""
 
     @quantity(f"slider.{name}", unit=unit, summary=summary)
     def of_run(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
         return float(getattr(slider_run(scene, cache, by, slider), name))
 
 
-_of_run("displacement", "m", "Displacement of the scene's slider along +x after a time.")
-_of_run("mean_speed", "m/s", "Displacement of the slider over time.")
+_of_run("displacement", "m", "Displacement of the scene's slider along +x at the end of the run.")
+_of_run("mean_speed", "m/s", "Mean speed of the slider along +x: displacement over duration.")
 _of_run("largest_friction", "N", "Largest friction force on the slider.")
-_of_run("mean_friction", "N", "Friction force on the slider along +x, mean over time.")
-_of_run("mean_surface_speed", "m/s", "Tangential velocity of the surface under the slider, mean over time.")
+_of_run("mean_friction", "N", "Mean friction force on the slider along +x.")
+_of_run("mean_surface_speed", "m/s", "Mean tangential velocity of the surface under the slider.")
 
 
 @quantity("slider.reversal", unit="1")
 def reversal(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
-    """Displacement with all phases reversed over the displacement; below 0 it reverses."""
+    """Displacement with reversed drive phases over displacement; negative where the slider reverses."""
     there = slider_run(scene, cache, by, slider).displacement
     back = slider_run(scene, cache, by, slider, reverse=True).displacement
     return back / there if there else float("nan")
@@ -146,7 +146,7 @@ def order(
     counts: opt.Sizes | None = None,
     steps: Annotated[tuple[Annotated[float, Meta(gt=0)], ...], Meta(description="three or more, s")] | None = None,
 ) -> float:
-    """Observed order of the slider's displacement in N, against the exact beam, or in the step, against a 16th."""
+    """Observed order of the slider's displacement: in N (reference: exact beam) or in the step (a sixteenth of it)."""
     from verify.analysis.comparison import asymptotic_order, relative_error
 
     def displacement(by: TimeOptions, step: float | None = None) -> float:
@@ -157,14 +157,14 @@ def order(
     if steps is not None:
         check_sizes("steps", steps)
         if slider.step is not None:
-            raise InputError(f"step = {slider.step!r}: an order over steps takes those, leave it out")
+            raise InputError(f"step = {slider.step!r} contradicts steps: leave it out")
         exact = displacement(by, min(steps) / 16.0)
         errors = [relative_error(displacement(by, step), exact) for step in steps]
-        return asymptotic_order([1.0 / step for step in steps], errors, given=f"steps = {list(steps)}")
+        return asymptotic_order([1.0 / step for step in steps], errors, label=f"steps = {list(steps)}")
     assert counts is not None
     check_sizes("counts", counts)
     if by.count is not None or not MODELS.named(by.model).sized:
-        raise InputError(f"counts = {list(counts)}: an order over counts is of a discrete model without count")
+        raise InputError(f"counts = {list(counts)}: give a discrete model and leave count out")
     exact = displacement(replace(by, model="analytic"))
     return asymptotic_order(
         counts, [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
@@ -173,14 +173,14 @@ def order(
 
 @quantity("slider.deflection", unit="m")
 def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
-    """Deflection of the beam at x after a time, with the slider on it."""
+    """Deflection of the beam at x at the end of the run, with the slider in contact."""
     return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
 
 
 def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "EnergyBalance":
     run = slider_run(scene, cache, by, slider)
     if run.energy is None or run.end.steady:
-        raise InputError("start = 'steady': the energy balance is of a run from rest, give start = 'rest'")
+        raise InputError("start = 'steady': the energy balance needs a run from rest, give start = 'rest'")
     return run.energy
 
 
@@ -193,17 +193,17 @@ def energy(
     *,
     of: Annotated[
         Literal["external_work", "damping_loss", "friction_loss", "slider", "friction_on_beam", "normal_on_beam"],
-        Meta(description="of the forces; lost in the beam; lost in friction; gained by the slider; work on the beam"),
+        Meta(description="work of the forces, losses, kinetic energy of the slider, or work of contact on the beam"),
     ],
 ) -> float:
-    """A term of the energy balance of beam and slider from rest."""
+    """A term of the energy balance of beam and slider in a run from rest."""
     balance = _energy_balance(scene, cache, by, slider)
     return float(getattr(balance, "drive_work" if of == "external_work" else of))
 
 
 @quantity("slider.imbalance", unit="1")
 def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
-    """Residual of the energy balance of beam and slider over the work of the forces, from rest."""
+    """Residual of the energy balance of beam and slider in a run from rest, over the work of the forces."""
     balance = _energy_balance(scene, cache, by, slider)
     return abs(balance.residual) / balance.drive_work
 
@@ -213,15 +213,15 @@ def coupling_size(
     scene: Scene,
     cache: "SolutionCache",
     *,
-    of: Annotated[Literal["friction", "normal"], Meta(description="full friction, or m omega^2 |G| of the inertia")],
+    of: Annotated[Literal["friction", "normal"], Meta(description="friction mu N, or the inertia: m omega^2 |G|")],
 ) -> float:
-    """Reaction of the slider on the steady exact beam relative to the wave: size of the two-way coupling."""
+    """Size of two-way coupling: surface motion due to the slider relative to that of the wave, exact beam."""
     by = TimeOptions(model="analytic", start="steady", time=1.0 / opt.drive_frequency(scene))
     coupling = slider_run(scene, cache, by, SliderOptions()).coupling
     assert coupling is not None
     size = coupling.normal_size if of == "normal" else coupling.friction_size
     if size is None:
-        raise InputError("slider.position: the drive does not move the surface there, choose another")
+        raise InputError("slider.position: the drive does not move the surface at this position, choose another")
     return size
 
 
@@ -229,12 +229,12 @@ def coupling_size(
 def terminal_speed(
     scene: Scene,
     *,
-    amplitude: Annotated[float, Meta(gt=0, description="of the wave, m")],
+    amplitude: Annotated[float, Meta(gt=0, description="amplitude of the wave, m")],
     slope: opt.Slope,
     mu: opt.Mu,
-    kinematics: Annotated[options.Kinematics, Meta(description="of the slider on the surface")] = "tangential",
+    kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] = "tangential",
 ) -> float:
-    """Steady mean speed along +x of a slider on a pure wave towards +x, tanh friction."""
+    """Steady mean speed along +x of a slider with tanh friction on a travelling wave towards +x."""
     from verify.motor.travelling_wave import terminal_speed
 
     slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
@@ -243,7 +243,7 @@ def terminal_speed(
 
 @quantity("motion.reflection", unit="1", reads=("beam", "drive", "motion"))
 def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window: Window) -> float:
-    """Gamma of two waves fitted to the phasors of the driven beam's motion in a window, without slider."""
+    """Reflection Gamma in a window of the driven beam in time, without slider: two waves fitted to its phasors."""
     import numpy as np
 
     from verify.linear.positions import positions_on

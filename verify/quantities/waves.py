@@ -1,4 +1,4 @@
-"""Quantities of the driven beam in its steady state: field, wave measures, sensitivities, power, absorbing devices."""
+"""Quantities of the driven beam in its steady state: field, wave measures, best drive, power, absorbing devices."""
 
 from collections.abc import Callable
 from math import pi
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from verify.travelling_wave import BestDrive, DrivenCase, WaveMeasures
     from verify.waves.impedance_matching import Ending
 
-Window = Annotated[tuple[float, float], Meta(description="m, start and end; default L/4 to 3L/4")]
+Window = Annotated[tuple[float, float], Meta(description="start and end, m; default: L/4 to 3L/4")]
 DRIVEN = ("beam", "drive")
 
 
 class FieldSettings(opt.DriveOptions, frozen=True, kw_only=True):
     """Drive, losses and settings of a harmonic field."""
 
-    loss_factor: Annotated[Relative, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
-    drive: Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")] | None = None
+    loss_factor: Annotated[Relative, Meta(description="eta in E (1 + i eta); default: the beam's")] | None = None
+    drive: Annotated[options.DriveKind, Meta(description="kind of drive; default: the scene's")] | None = None
     theory: opt.Theory = "euler-bernoulli"
-    load: Annotated[options.Load, Meta(description="distribution of a force over joints; segment")] = "reciprocal"
-    reading: Annotated[options.Reading, Meta(description="interpolation between joints; segment")] = "corrected"
+    load: Annotated[options.Load, Meta(description="segment: distribution of a force over joints")] = "reciprocal"
+    reading: Annotated[options.Reading, Meta(description="segment: interpolation between joints")] = "corrected"
     wall: opt.Wall = "gregory"
     joints: opt.Joints = "series"
     attachment: opt.Attachment = "reciprocal"
@@ -45,7 +45,7 @@ class FieldOptions(FieldSettings, frozen=True, kw_only=True):
 
 
 def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: int | None = None) -> "DrivenCase":
-    """The driven beam of a scene with these options, by their own model if they have one. Raises InputError."""
+    """The driven beam of a scene with these options; `FieldOptions` include the model. Raises InputError."""
     from verify.waves.driven_case import DrivenCase
 
     if isinstance(options, FieldOptions):
@@ -71,7 +71,7 @@ def driven_field(scene: Scene, cache: "SolutionCache", options: FieldOptions) ->
 
 
 def measured(case: "DrivenCase", cache: "SolutionCache", window: tuple[float, float] | None = None) -> "WaveMeasures":
-    """The wave of a case in a window, the middle half by default, with its model's wavenumber. Raises InputError."""
+    """The wave of a case in a window (default: middle half) with the model's wavenumber. Raises InputError."""
     from verify.travelling_wave import measure, middle_half
     from verify.waves.driven_case import driven
 
@@ -81,7 +81,7 @@ def measured(case: "DrivenCase", cache: "SolutionCache", window: tuple[float, fl
 
 @quantity("wave.deflection", unit="m", reads=DRIVEN, devices=True)
 def deflection(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x: Place) -> complex:
-    """Complex deflection, e^{+i omega t}."""
+    """Complex deflection amplitude at x, convention e^{+i omega t}."""
     return complex(driven_field(scene, cache, options).deflection(x)[0])
 
 
@@ -93,15 +93,15 @@ def _measure(figure: str) -> Callable[..., float]:
 
 
 MEASURES = {
-    "standing_wave_ratio": ("1", "(1 + Gamma)/(1 - Gamma) of two waves fitted by least squares over the window."),
-    "reflection": ("1", "Gamma, weaker over stronger wave, at the middle of the window."),
-    "envelope": ("1", "(max - min)/(max + min) of |w| over the window; Gamma for two waves."),
+    "standing_wave_ratio": ("1", "Standing-wave ratio (1 + Gamma)/(1 - Gamma) of two waves fitted in the window."),
+    "reflection": ("1", "Reflection Gamma: weaker over stronger wave amplitude at the middle of the window."),
+    "envelope": ("1", "Envelope ratio (max - min)/(max + min) of |w| over the window; Gamma for two waves."),
     "travelling_index": (
         "1",
-        "1/cond([Re w, Im w]) over whole half wavelengths; (1 - Gamma)/(1 + Gamma) for two waves.",
+        "Feeny's index 1/cond([Re w, Im w]) over whole half wavelengths; (1 - Gamma)/(1 + Gamma) for two waves.",
     ),
-    "signed_area_spread": ("1", "(max - min)/|mean| of the signed area of the surface ellipses over the window."),
-    "crest_speed": ("m/s", "Surface speed at the wave crests along +x."),
+    "signed_area_spread": ("1", "Spread (max - min)/|mean| of the signed area of the surface ellipses in the window."),
+    "crest_speed": ("m/s", "Surface velocity along +x at the wave crests."),
     "energy_flux": ("W", "Power transmitted towards +x at the middle of the window by the two fitted waves."),
 }
 for _name, (_unit, _text) in MEASURES.items():
@@ -112,7 +112,7 @@ for _name, (_unit, _text) in MEASURES.items():
 def axis_ratio(
     scene: Scene, cache: "SolutionCache", options: FieldOptions, *, x: Place | None = None, window: Window | None = None
 ) -> float:
-    """Signed axis ratio of the surface ellipse at x, or its mean over whole half wavelengths; below 0 towards +x."""
+    """Signed axis ratio of the surface ellipse at x, or its mean in the window; negative for a wave towards +x."""
     from verify.travelling_wave import ellipse, surface_motion
 
     if x is not None and window is not None:
@@ -127,11 +127,11 @@ def axis_ratio(
 def power_imbalance(
     scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
 ) -> float:
-    """Power of the left force less losses up to the window's middle less flux there, over that flux."""
+    """Relative residual of the power balance: left force - losses up to the middle of the window - energy flux."""
     from verify.travelling_wave import power_imbalance
 
     if any(device.turning for device in scene.devices):
-        raise InputError("drive.device: a power balance takes transverse devices alone, leave its rotational terms out")
+        raise InputError("drive.device: a power balance takes transverse devices, leave rotational terms out")
     case = driven_case(scene, options)
     return power_imbalance(driven_field(scene, cache, options), measured(case, cache, window))
 
@@ -145,13 +145,13 @@ def best_frequency(
     window: Window | None = None,
     span: Annotated[Relative, Meta(gt=0, lt=0.5, description="search range relative to the drive's frequency")] = 0.015,
 ) -> float:
-    """Frequency of least reflection near the drive's."""
+    """Drive frequency of least reflection near the scene's drive frequency."""
     from verify.travelling_wave import best_frequency
 
     return best_frequency(driven_case(scene, options), span, window)
 
 
-Direction = Annotated[Literal["+x", "-x"], Meta(description="of the wave")]
+Direction = Annotated[Literal["+x", "-x"], Meta(description="direction of the wave")]
 
 
 def _best_drive(scene: Scene, options: FieldOptions, window: Window | None, direction: Direction) -> "BestDrive":
@@ -166,7 +166,7 @@ def _best_drive(scene: Scene, options: FieldOptions, window: Window | None, dire
 def best_ratio(
     scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
 ) -> float:
-    """Amplitude of the second actuator over the first that leaves no reflection."""
+    """Amplitude ratio of the second to the first actuator that leaves no reflection."""
     return _best_drive(scene, options, window, direction).ratio
 
 
@@ -174,7 +174,7 @@ def best_ratio(
 def best_ratio_phase(
     scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
 ) -> float:
-    """Phase by which the second actuator leads the first in that drive, above -180 up to 180 degrees."""
+    """Phase lead of the second actuator that leaves no reflection, in (-180, 180] degrees."""
     return _best_drive(scene, options, window, direction).phase_deg
 
 
@@ -188,11 +188,11 @@ def order(
     counts: opt.Sizes,
     of: Annotated[
         Literal["standing_wave_ratio", "axis_ratio", "deflection"],
-        Meta(description="whose error; deflection at the middle of the window"),
+        Meta(description="measure whose error is observed; deflection: at the middle of the window"),
     ] = "standing_wave_ratio",
     window: Window | None = None,
 ) -> float:
-    """Observed order of a wave measure's error against the exact field; outside the asymptotic range an InputError."""
+    """Observed order of a wave measure in N, reference: exact field; an error outside the asymptotic range."""
     from verify.analysis.comparison import asymptotic_order, relative_error
     from verify.travelling_wave import middle_half
     from verify.waves.driven_case import driven
@@ -216,9 +216,9 @@ def lumped_swr(
     scene: Scene,
     *,
     x: Place,
-    modes: Annotated[tuple[opt.Mode, opt.Mode], Meta(description="mode numbers of the two")] = (21, 22),
+    modes: Annotated[tuple[opt.Mode, opt.Mode], Meta(description="numbers of the two modes")] = (21, 22),
 ) -> float:
-    """Local standing-wave ratio of two equal modes in quadrature, the lumped-parameter model of the wave."""
+    """Local standing-wave ratio of two equal modes in quadrature (lumped-parameter model)."""
     from verify.waves.two_modes import lumped_swr
 
     return float(lumped_swr(scene.beam, x, modes)[0])
@@ -228,13 +228,13 @@ def lumped_swr(
 def fastest_crests(
     scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
-    """Largest crest speed of the exact beam up to a reflection, within 1.5 % of the frequency and 5 to 175 deg."""
+    """Largest crest speed of the exact beam with reflection <= `limit`, frequency within 1.5 %, phase 5 to 175 deg."""
     from verify.travelling_wave import maximum_crest_speed
 
     return maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed
 
 
-FromRightEnd = Annotated[float, Meta(ge=0, description="m from the right end")]
+FromRightEnd = Annotated[float, Meta(ge=0, description="distance from the right end, m")]
 
 
 def _ending(scene: Scene, position: float, frequency_hz: float | None, turning: bool = False) -> "Ending":
@@ -248,7 +248,7 @@ def _ending(scene: Scene, position: float, frequency_hz: float | None, turning: 
 
 @quantity("wave.absorber_impedance", unit="kg/s", reads=DRIVEN, devices=True)
 def absorber_impedance(scene: Scene, *, position: FromRightEnd, frequency_hz: opt.Frequency | None = None) -> complex:
-    """Impedance, force over velocity, of a transverse device near the right end that reflects nothing."""
+    """Matched impedance (force over velocity) of a transverse device near the right end: no reflection."""
     return _ending(scene, position, frequency_hz).matched
 
 
@@ -258,19 +258,19 @@ def absorber_reflection(
     *,
     position: FromRightEnd,
     frequency_hz: opt.Frequency | None = None,
-    turning: Annotated[bool, Meta(description="rotational device, else transverse")] = False,
-    ratio: Annotated[float, Meta(ge=0, description="resistance over the matched one, spring matched")] | None = None,
-    resistance: Annotated[float, Meta(ge=0, description="of the dashpot, kg/s; rotational N m s")] | None = None,
-    stiffness: Annotated[float, Meta(ge=0, description="with resistance, N/m; rotational N m/rad")] = 0.0,
-    model: Annotated[Literal["analytic"], Meta(description="whole beam; default: a half-infinite one")] | None = None,
+    turning: Annotated[bool, Meta(description="rotational device instead of a transverse one")] = False,
+    ratio: Annotated[float, Meta(ge=0, description="resistance over matched resistance; matched spring")] | None = None,
+    resistance: Annotated[float, Meta(ge=0, description="dashpot, kg/s; rotational: N m s")] | None = None,
+    stiffness: Annotated[float, Meta(ge=0, description="spring beside resistance, N/m; rotational: N m/rad")] = 0.0,
+    model: Annotated[Literal["analytic"], Meta(description="finite beam; default: half-infinite beam")] | None = None,
 ) -> float:
-    """Gamma behind an absorbing device: of a half-infinite beam, or of the scene's exact beam in its middle half."""
+    """Reflection Gamma at an absorbing device on a half-infinite beam, or in the middle half of the scene's beam."""
     from verify.waves.impedance_matching import reflection
 
     if (ratio is None) == (resistance is None):
         raise InputError(f"ratio = {ratio!r} and resistance = {resistance!r}: give one of the two")
     if ratio is not None and stiffness:
-        raise InputError(f"stiffness = {stiffness!r}: with ratio the spring is the matched one, leave it out")
+        raise InputError(f"stiffness = {stiffness!r}: ratio implies the matched spring, leave it out")
     hertz, end = opt.drive_frequency(scene, frequency_hz), _ending(scene, position, frequency_hz, turning)
     if ratio is not None:
         impedance = complex(ratio * end.matched.real, end.matched.imag)
@@ -282,7 +282,7 @@ def absorber_reflection(
 
 
 def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float, turning: bool) -> float:
-    """Gamma in the middle half between the other forces and a device at x, which replaces what acts there."""
+    """Gamma in the middle half of the beam with a device at x, which replaces forces and devices at x."""
     from verify.problem.device import of_impedance
     from verify.travelling_wave import measure, middle_half
 
@@ -291,7 +291,7 @@ def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float
     forces = [force for force in scene.forces if abs(force.position - x) > tolerance]
     devices = [one for one in scene.devices if abs(one.position - x) > tolerance]
     if not forces:
-        raise InputError("drive.force: none is left beside the device, add one elsewhere")
+        raise InputError("drive.force: the only force is at the device, add another at a distance")
     if impedance:
         devices.append(of_impedance(x, impedance, 2.0 * pi * hertz, turning=turning))
     field = MODELS[EXACT].build(scene.beam).harmonic(forces, hertz, devices=devices)

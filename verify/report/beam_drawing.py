@@ -102,7 +102,7 @@ class _Sketch:
         near = 0.25 * self.beam.length / (WIDTH - 2 * EDGE)
         if any(abs(mass.position - x) < near for mass in self.beam.mass):
             return 0.24
-        return 0.22 if scene.slider and abs(scene.slider.start_on(self.beam) - x) < near else 0.0
+        return 0.22 if scene.slider and abs(scene.slider.initial_position(self.beam) - x) < near else 0.0
 
     def line(self, *points: tuple[float, float], color: str = INK, width: float = 1.3, **more: Any) -> None:
         self.ax.plot(*zip(*points, strict=True), color=color, linewidth=width, **more)
@@ -197,7 +197,7 @@ class _Sketch:
     def slider(self, slider: Any) -> None:
         if slider is None:
             return
-        start = slider.start_on(self.beam)
+        start = slider.initial_position(self.beam)
         if not slider.foot:
             x, y = self.at(start), self.half(start)
             self.box(x - 0.2, y + 0.02, 0.4, 0.2, SLIDER)

@@ -10,7 +10,7 @@ from msgspec import Meta
 from verify.errors import InputError, raise_all
 from verify.options import DriveKind, Reference
 from verify.problem.beam import Beam, PointForce, check_frequency
-from verify.problem.device import Device, check_moved
+from verify.problem.device import Device, check_drives
 from verify.problem.slider import Slider
 from verify.validation import check_number, unit
 
@@ -241,9 +241,9 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
         forces, _ = self.forces, self.devices
         if self.drive is not None and self.drive.kind == "force":
-            check_moved(forces, self.beam)
+            check_drives(forces, self.beam)
         if self.slider is not None:
-            self.slider.start_on(self.beam)
+            self.slider.initial_position(self.beam)
 
     @property
     def motion(self) -> Any:

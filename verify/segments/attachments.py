@@ -1,8 +1,8 @@
-"""Weights by which forces, couples, bodies and springs act on a chain's joint positions and link rotations.
+"""Weights of joint positions and link rotations for forces, couples, bodies and springs on a chain.
 
-The lever rule takes the rigid link as it is: order 2 for a force, 1 for a couple. The reciprocal rule weighs the four
-joints around with L_j + L_j''/12 (cubic Lagrange polynomials), for load and reading alike: order 4 at a distance. An
-attachment also acts on itself; its weights are corrected for that (`docs/theory.md`, "Finite segments").
+Lever rule: kinematics of the rigid link, order 2 for a force, 1 for a couple. Reciprocal rule: weights L_j + L_j''/12
+(cubic Lagrange polynomials) of the four nearest joints for loads and readings, order 4 at a distance. The weights of an
+attachment are corrected for its compliance at its own position (`docs/theory.md`, "Finite segments").
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,29 +13,29 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.linear.factored import sparse_rows
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 from verify.segments.chain import Chain
 
 _BEFORE, _AFTER = 2, 4
-"""Joints before and from an attachment's link on whose weights are corrected."""
+"""Numbers of joints before and after the start of an attachment's link whose weights are corrected."""
 _FEWEST = 6
 _WALL = 5
-"""Joints that a wall's corrections reach over, at most."""
+"""Largest number of joints with a wall correction."""
 _SHORTEST = 8
-"""Links of the shortest chain with corrected weights."""
+"""Smallest number of links with corrected weights."""
 _UNEQUAL = 0.05
-"""Relative difference of neighbouring links from which weights stay uncorrected: such chains are of order 2 anyway."""
+"""Relative difference of neighbouring links above which weights are not corrected: such chains are of order 2."""
 _PARABOLA = (0, 1, 2)
 _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
-"""Powers of the distance from an end in the moments that loads far away cause there."""
+"""Powers of the distance from an end in the moments due to distant loads."""
 _FOUR_JOINTS = np.array([[-2, 6, -6, 2], [12, -30, 24, -6], [-23, 39, -21, 5], [14, -5, 4, -1]]) / 12.0
-"""Cubic Lagrange polynomials L_j of four joints plus L_j''/12, by the powers s^3, s^2, s, 1 (rows) of each joint."""
+"""L_j + L_j''/12 of four joints (columns), L_j cubic Lagrange polynomials: coefficients of s^3, s^2, s, 1 (rows)."""
 _TIE = 1e-10
-"""Added to what the weights are aligned with; decides where two solutions are equally near."""
+"""Added to the target of the alignment; selects one of two equally near solutions."""
 
 
 def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
-    """(links, 0 to 1 along them) of positions (m), (p,) both; a position on a joint to rounding is that joint."""
+    """(link indices, 0 to 1 along them) of positions (m), both (p,); a position within rounding of a joint is on it."""
     nodes, n = chain.nodes / chain.unit, chain.n_segments
     places = np.clip(positions / chain.unit, nodes[0], nodes[-1])
     links = np.clip(np.searchsorted(nodes, places + 1e-9, side="right") - 1, 0, n - 1)
@@ -46,16 +46,16 @@ def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
 
 
 def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
-    """Weights of joints 0..N for a force or a reading at positions (m), sparse (p, N + 1).
+    """Weights of joints 0..N for a force or a reading at positions (m), sparse (p, N + 1); assumes equal links.
 
-    A joint beyond a pinned end is its odd reflection, beyond a guided end its even one; at free and clamped ends the
-    four joints move inward. Meant for equal links.
+    The chain continues by odd reflection at a pinned end and by even reflection at a guided one; at free and clamped
+    ends the four joints move inward.
     """
     (links, s), n = link_at(chain, positions), chain.n_segments
     if rule == "lever" or n < 3:
         columns, weights = links[:, None] + np.arange(2), np.stack([1.0 - s, s], axis=1)
     else:
-        reflects = [HOLDS[support] in (HOLDS["pinned"], HOLDS["guided"]) for support in chain.supports]
+        reflects = [FIXED[support] in (FIXED["pinned"], FIXED["guided"]) for support in chain.supports]
         first = np.clip(links - 1, -int(reflects[0]), n - 3 + reflects[1])
         s = s + links - first
         columns, weights = first[:, None] + np.arange(4), np.vander(s, 4) @ _FOUR_JOINTS
@@ -66,9 +66,9 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
 
 
 def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
-    """Weights of the links' rotations for a couple or a reading at positions (m), sparse (p, N): no end correction.
+    """Weights of link rotations for a couple or a reading at positions (m), sparse (p, N), without end correction.
 
-    The link itself, on a joint the mean of both; by the reciprocal rule linear between the links' middles.
+    Lever rule: the link, at a joint the mean of both links. Reciprocal rule: linear between the links' middles.
     """
     n = chain.n_segments
     if rule == "lever" or n < 3:
@@ -85,8 +85,8 @@ def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
 def attachment_weights(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Any, Any]:
     """Weights of joint positions, sparse (p, N + 1), and link rotations, (p, N), for attachments at distinct positions.
 
-    By the reciprocal rule with the compliances that attachments have by themselves and to each other on the beam.
-    Uncorrected between unequal links and on chains too short for them. At a free end: the end joint itself.
+    The reciprocal rule reproduces the self and mutual compliances of attachments on the beam, except between unequal
+    links and on short chains. An attachment at a free end has the weights of the end joint.
     """
     from scipy.sparse import csr_array
 
@@ -95,20 +95,20 @@ def attachment_weights(chain: Chain, positions: Sequence[float], rule: str) -> t
     if rule == "lever" or chain.n_segments < 3 or not len(at):
         return across, rotations
     n, (links, along) = chain.n_segments, link_at(chain, at)
-    places, felt, turned = links + along, across.toarray(), rotations.toarray()
+    places, lateral, turned = links + along, across.toarray(), rotations.toarray()
     for end, support in zip((0, n), chain.supports, strict=True):
         if support == "free":
-            felt[places == end] = np.eye(1, n + 1, end)
+            lateral[places == end] = np.eye(1, n + 1, end)
     if n >= _SHORTEST and not chain.start:
         for rows in _groups(chain, places):
-            _correct(chain, places[rows], rows, felt, turned)
-    return csr_array(felt), csr_array(turned)
+            _correct(chain, places[rows], rows, lateral, turned)
+    return csr_array(lateral), csr_array(turned)
 
 
 def _groups(chain: Chain, places: Array) -> Iterator[list[int]]:
-    """Rows of attachments whose corrections overlap, without those at ends, from left to right.
+    """Row groups of attachments with overlapping corrections, without those at ends, from left to right.
 
-    One on a joint is on both its links, so that distances are the same from either end.
+    An attachment at a joint counts on both links, so that distances from either end agree.
     """
     n = chain.n_segments
     ends = [end for end, support in zip((0, n), chain.supports, strict=True) if support != "guided"]
@@ -127,20 +127,19 @@ def _groups(chain: Chain, places: Array) -> Iterator[list[int]]:
         yield group
 
 
-def _correct(chain: Chain, places: Array, rows: list[int], felt: Array, turned: Array) -> None:
-    """Correct some rows of the weights (p, N + 1), (p, N) in place, counting in links from the nearer end.
+def _correct(chain: Chain, places: Array, rows: list[int], lateral: Array, turned: Array) -> None:
+    """Correct rows of the weights (p, N + 1), (p, N) in place; positions count in links from the nearer end.
 
-    The moments m that a unit force (M = x' - x, x' > x) or couple (M = 1) causes in the joints have to satisfy
-    sum c_k m_k q(k) = integral M q for the moments q of loads far away, and sum c_k m_k n_k = integral M N for each
-    other. The nearest such m to those of the uncorrected weights are an orthogonal Procrustes problem (Schoenemann,
-    Psychometrika 31 (1966)).
+    The joint moments m due to a unit force (M = x' - x, x' > x) or couple (M = 1) satisfy sum c_k m_k q(k) = integral
+    M q for moments q of distant loads, and sum c_k m_k n_k = integral M N for loads of the group. The m nearest to
+    those of the uncorrected weights solve an orthogonal Procrustes problem (Schoenemann, Psychometrika 31 (1966)).
     """
     n, count, from_right = chain.n_segments, len(places), bool(places.mean() > 0.5 * chain.n_segments)
-    order, there = (-1, n - places) if from_right else (1, places)
+    order, from_end = (-1, n - places) if from_right else (1, places)
     support, elastic = chain.supports[from_right], chain.elastic[from_right]
-    start = int(there.min()) - _BEFORE
-    first = max(start, 0 if HOLDS[support].rotation and not elastic else 1)
-    beyond = max(int(there.max()) + _AFTER, first + max(_FEWEST, 3 + 2 * count))
+    start = int(from_end.min()) - _BEFORE
+    first = max(start, 0 if FIXED[support].rotation and not elastic else 1)
+    beyond = max(int(from_end.max()) + _AFTER, first + max(_FEWEST, 3 + 2 * count))
     if beyond > n - 3:
         return
     lengths, compliances = chain.lengths[::order][max(first - 1, 0) : beyond + 1], chain.compliances[::order]
@@ -151,15 +150,15 @@ def _correct(chain: Chain, places: Array, rows: list[int], felt: Array, turned: 
     at_end = first <= 1 and start <= first
     origin = 0 if at_end else first
     powers = np.array(_PARABOLA if not at_end or elastic else _POWERS.get(support, _PARABOLA))
-    joints, edge, x = np.arange(first, beyond) - float(origin), float(beyond - origin), there - origin
+    joints, edge, x = np.arange(first, beyond) - float(origin), float(beyond - origin), from_end - origin
     roots, before = np.sqrt(weights)[:, None], int(first > 0)
     columns = slice(first - before, beyond + 1)
-    # moments of the uncorrected weights
-    forces, couples = felt[rows][:, ::order], turned[rows][:, ::order]
+    # joint moments of the uncorrected weights
+    forces, couples = lateral[rows][:, ::order], turned[rows][:, ::order]
     ahead = np.arange(first, n + 1)[:, None] - np.arange(first, beyond)
     of_forces = joints[:, None] - x + (forces[:, first:] @ np.maximum(ahead, 0)).T
     alone = roots * np.hstack([of_forces, 1.0 - (couples[:, first:] @ (ahead[:-1] >= 0)).T])
-    # the least moments that are right far away, and the rest that is right for each other
+    # least moments exact for distant loads, and the remainder exact for mutual compliances
     basis, triangle = np.linalg.qr(roots * joints[:, None] ** powers, mode="complete")
     far = len(powers)
     least = basis[:, :far] @ np.linalg.solve(triangle[:far].T, _far_integrals(x, edge, powers[:, None]))
@@ -169,7 +168,7 @@ def _correct(chain: Chain, places: Array, rows: list[int], felt: Array, turned: 
     aligned += _TIE * abs(aligned).max() * np.eye(*aligned.shape)
     left, _, right = np.linalg.svd(aligned, full_matrices=False)
     moments = (least + basis[:, far:] @ (left @ right) @ lacking) / roots
-    # back to weights: changes of the links' forces, and of moments
+    # weights from the changes of link forces and of moments
     every = np.zeros((2 * count, before + beyond - first + 2))
     every[:, before:-2] = moments.T
     every[:count, -2:] = np.arange(2.0) + edge - x[:, None]
@@ -178,13 +177,13 @@ def _correct(chain: Chain, places: Array, rows: list[int], felt: Array, turned: 
     forces, couples = np.zeros_like(forces), np.zeros_like(couples)
     forces[:, columns] = np.diff(changes[:count], prepend=0.0)
     couples[:, columns.start : columns.stop - 1] = changes[count:, :-1]
-    felt[rows], turned[rows] = forces[:, ::order], couples[:, ::order]
+    lateral[rows], turned[rows] = forces[:, ::order], couples[:, ::order]
 
 
 def _far_integrals(x: Array, edge: float, p: Array) -> Array:
-    """Integrals of M s^p less the joints' from `edge` on, (powers, 2 n) of n forces, then couples at x.
+    """Integrals of M s^p less the joint sums from `edge` on, (powers, 2 n), for n forces, then n couples at x.
 
-    The sum over those joints is that of Euler and Maclaurin, exact up to p = 4.
+    The joint sums are Euler-Maclaurin sums, exact up to p = 4.
     """
 
     def joints(p: Array) -> Array:
@@ -197,7 +196,7 @@ def _far_integrals(x: Array, edge: float, p: Array) -> Array:
 
 
 def _mutual_integrals(to_edge: Array) -> Array:
-    """Integrals of M N less the joints' from the edge on, (2 n, 2 n) of n forces, then couples so far before it."""
+    """Integrals of M N less the joint sums from the edge on, (2 n, 2 n): n forces, n couples at `to_edge` before it."""
     one, other = to_edge[:, None], to_edge
     cut, product, total = np.minimum(one, other), one * other, one + other
     forces = product * cut - total * cut**2 / 2.0 + cut**3 / 3.0 - product / 2.0 + total / 12.0

@@ -1,4 +1,4 @@
-"""Bodies and springs on a chain: inside by weights of joints and links, at an end beyond a joint of its own."""
+"""Bodies and springs on a chain: by weights of joints and links inside, behind an elastic joint at an end."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,11 +13,11 @@ from verify.segments.chain import Chain, Motions, selection
 
 
 class Body(NamedTuple):
-    """Everything attached at one position (m), dimensionless."""
+    """Sum of the attachments at one position (m), dimensionless."""
 
     position: float
     end: int | None = None
-    """The end, 0 or 1, whose joint it is beyond."""
+    """The end, 0 or 1, behind whose joint the body is."""
     mass: float = 0.0
     rotary_inertia: float = 0.0
     stiffness: float = 0.0
@@ -26,7 +26,7 @@ class Body(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Attached:
-    """What is attached to a beam, in lengths of `unit` (m), by the "reciprocal" rule or the "lever"."""
+    """Attachments of a beam in lengths of `unit` (m), with `rule` "reciprocal" or "lever"."""
 
     beam: Beam
     unit: float
@@ -34,47 +34,47 @@ class Attached:
 
     @cached_property
     def bodies(self) -> tuple[Body, ...]:
-        """Attached masses and springs, those at one position together."""
+        """Attached masses and springs, summed at equal positions."""
         mass, stiffness = self.beam.mass_per_length * self.unit, self.beam.bending_stiffness / self.unit**3
-        square, found = self.unit**2, dict[float, Body]()
+        square, bodies = self.unit**2, dict[float, Body]()
         each = [(m.position, (m.mass / mass, m.rotary_inertia / (mass * square), 0.0, 0.0)) for m in self.beam.mass]
         each += [
             (s.position, (0.0, 0.0, s.stiffness / stiffness, s.rotational / (stiffness * square)))
             for s in self.beam.spring
         ]
         for at, values in each:
-            before = found.get(at, Body(at, {0.0: 0, self.beam.length: 1}.get(at) if self.rule != "lever" else None))
-            found[at] = Body(*before[:2], *(a + b for a, b in zip(before[2:], values, strict=True)))
-        return tuple(found.values())
+            before = bodies.get(at, Body(at, {0.0: 0, self.beam.length: 1}.get(at) if self.rule != "lever" else None))
+            bodies[at] = Body(*before[:2], *(a + b for a, b in zip(before[2:], values, strict=True)))
+        return tuple(bodies.values())
 
     @cached_property
     def at_ends(self) -> tuple[Body, Body]:
-        """Beyond the left and the right end's joint."""
+        """Bodies behind the joints of the left and the right end."""
         left, right = (next((b for b in self.bodies if b.end == end), Body(0.0)) for end in (0, 1))
         return left, right
 
     @property
     def elastic(self) -> tuple[bool, bool]:
-        """Ends with a joint of their own, and a rotational spring or a rotary inertia beyond it."""
+        """Whether each end has an elastic joint, with a rotational spring or a rotary inertia behind it."""
         left, right = (body.rotational + body.rotary_inertia > 0.0 for body in self.at_ends)
         return left, right
 
     @property
     def end_springs(self) -> Array:
-        """Compliances of rotational springs in series with an end joint, (2,): those without an inertia between."""
+        """Compliances of rotational springs in series with an end joint (no inertia between them), (2,)."""
         return np.array([b.rotational and not b.rotary_inertia and 1.0 / b.rotational for b in self.at_ends], float)
 
     @property
     def massive(self) -> BoolArray:
-        """Which of the bodies have a mass, (bodies,)."""
+        """Whether each body has a mass, (bodies,)."""
         return np.array([body.mass > 0.0 for body in self.bodies], dtype=bool)
 
     def weights(self, chain: Chain) -> tuple[Any, Any]:
-        """Of joint positions, sparse (bodies, N + 1), and link rotations, (bodies, N)."""
+        """Weights of joint positions, sparse (bodies, N + 1), and link rotations, (bodies, N)."""
         return attachment_weights(chain, [body.position for body in self.bodies], self.rule)
 
     def rotations(self, weights: Any, motions: Motions) -> Any:
-        """Rotations of the bodies over (rotations of the links, unknowns), sparse (bodies, N + n)."""
+        """Rotations of the bodies as rows over (link rotations, unknowns), sparse (bodies, N + n)."""
         from scipy.sparse import diags_array, hstack
 
         beyond = np.array([body.end is not None and self.elastic[body.end] for body in self.bodies], dtype=bool)
@@ -82,21 +82,21 @@ class Attached:
         ends = selection(at, [self.bodies[i].end for i in at], (len(beyond), 2))
         return hstack([diags_array(1.0 - beyond) @ weights, ends @ motions.end_rotations], format="csr")
 
-    def deflections(self, weights: Any, motions: Motions, gives: Array) -> Any:
-        """Deflections of the bodies, with their own slips (compliances `gives`, (bodies,)), sparse (bodies, n)."""
-        slipping = np.flatnonzero((gives > 0.0) & self.massive)
-        own = selection(slipping, np.arange(len(slipping)), (len(gives), len(slipping))) @ motions.body_slips
+    def deflections(self, weights: Any, motions: Motions, compliances: Array) -> Any:
+        """Deflections of the bodies including slip (compliances `compliances`, (bodies,)), sparse (bodies, n)."""
+        slipping = np.flatnonzero((compliances > 0.0) & self.massive)
+        own = selection(slipping, np.arange(len(slipping)), (len(compliances), len(slipping))) @ motions.body_slips
         return weights @ motions.positions + own
 
-    def energies(self, deflections: Any, rotations: Any, motions: Motions, gives: Array) -> tuple[list[Any], Any]:
-        """Strains over (rotations of the links, unknowns) their stiffnesses, and rows whose squares are the masses.
+    def energies(self, deflections: Any, rotations: Any, motions: Motions, compliances: Array) -> tuple[list[Any], Any]:
+        """(strain rows over (link rotations, unknowns) with stiffnesses, rows R with R^T R the mass of the bodies).
 
-        A spring without a mass is in series with its slip, and at an end with the joint: no unknown is without mass.
+        A massless spring is in series with its slip, at an end with the joint, so that no unknown is massless.
         """
         from scipy.sparse import diags_array, hstack, vstack
 
         masses, rotary, lateral, rotational = np.array([body[2:] for body in self.bodies]).T
-        lateral = lateral / (1.0 + lateral * np.where(self.massive, 0.0, gives))
+        lateral = lateral / (1.0 + lateral * np.where(self.massive, 0.0, compliances))
         rotational[[b.end is not None and self.end_springs[b.end] > 0.0 for b in self.bodies]] = 0.0
         across = hstack([selection([], [], (len(masses), motions.chain.n_segments)), deflections], format="csr")
         strains = [(across[lateral > 0.0], lateral[lateral > 0.0])]

@@ -1,6 +1,6 @@
-"""A straight chain of rigid links: its geometry, compliances and masses, and the maps of its small motions.
+"""A straight chain of rigid links: geometry, compliances, masses, and linear maps of its small motions.
 
-Lengths are in mean link lengths, stiffnesses and masses in those of the beam: equal links have length 1 exactly.
+Lengths are in mean link lengths (equal links have length 1 exactly), stiffnesses and masses in those of the beam.
 """
 
 from collections.abc import Sequence
@@ -12,18 +12,18 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.linear.factored import sparse_rows
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Chain:
-    """N rigid links and N + 1 joints, of which those at pinned and free ends have no spring."""
+    """N rigid links and N + 1 joints; joints at pinned and free ends have no spring."""
 
     supports: tuple[str, str]
     unit: float
     """Unit of length, m."""
     lengths: Array
-    """(N,), of the links."""
+    """(N,), lengths of the links."""
     compliances: Array
     """(N + 1,), 1/k of joints 0..N; infinite without a spring."""
     masses: Array
@@ -31,11 +31,11 @@ class Chain:
     inertias: Array
     """(N,), about the middle of each link."""
     start: float = 0.0
-    """Position of joint 0: 1/2 behind a half segment that is welded to the wall."""
+    """Position of joint 0: 1/2 with a half segment welded to the wall."""
     elastic: tuple[bool, bool] = (False, False)
-    """Ends that rotate in a joint of their own, with a spring or a body beyond it."""
+    """Whether each end has an elastic joint, with a spring or a body behind it."""
     reading_factors: Array | None = None
-    """(N + 1,), on the corrections of the joints' reading beside elastic ends (`walls`); None: all one."""
+    """(N + 1,), factors on the reading corrections near elastic ends (`walls`); None: all 1."""
 
     @property
     def n_segments(self) -> int:
@@ -48,18 +48,18 @@ class Chain:
         return np.asarray(np.cumsum(np.append(self.start, self.lengths)) * self.unit)
 
     @property
-    def held(self) -> tuple[bool, bool]:
-        """Ends without deflection."""
-        return HOLDS[self.supports[0]].deflection, HOLDS[self.supports[1]].deflection
+    def supported(self) -> tuple[bool, bool]:
+        """Whether each end has no deflection."""
+        return FIXED[self.supports[0]].deflection, FIXED[self.supports[1]].deflection
 
     @property
     def walls(self) -> tuple[bool, bool]:
-        """Ends without rotation, which have a joint at the wall."""
-        return HOLDS[self.supports[0]].rotation, HOLDS[self.supports[1]].rotation
+        """Whether each end has no rotation, and a joint at the wall."""
+        return FIXED[self.supports[0]].rotation, FIXED[self.supports[1]].rotation
 
     @property
     def spans(self) -> Array:
-        """Length of beam that each joint represents, the whole end link's at an end, (N + 1,)."""
+        """Length of beam that each joint represents, at an end that of the end link, (N + 1,)."""
         return at_joints(self.lengths)
 
 
@@ -69,17 +69,17 @@ def link_inertia(mass: Any, length: Any) -> Any:
 
 
 def at_joints(links: Array) -> Array:
-    """Means of a property (N,) of adjoining links at joints 0..N, (N + 1,); the end link's at an end."""
+    """Mean of a property (N,) of the adjoining links at joints 0..N, (N + 1,); at an end that of the end link."""
     return np.concatenate([links[:1], 0.5 * (links[1:] + links[:-1]), links[-1:]])
 
 
 def right_of(links: Array) -> Array:
-    """A property (N,) of the links at joints 0..N, (N + 1,): on a step the right one, at the end the last."""
+    """A property (N,) of the link to the right of joints 0..N, (N + 1,); at the right end of the last link."""
     return np.append(links, links[-1])
 
 
 def joint_masses(masses: Array, inertias: Array, lengths: Array) -> tuple[Array, Array]:
-    """Mass of links over the positions of joints 0..N, tridiagonal: diagonal (N + 1,) and off-diagonal (N,).
+    """Mass matrix of links over the positions of joints 0..N: diagonal (N + 1,) and off-diagonal (N,).
 
     The kinetic energy of a link is half of m/4 (y_i + y_j)^2 + J/l^2 (y_j - y_i)^2.
     """
@@ -89,7 +89,7 @@ def joint_masses(masses: Array, inertias: Array, lengths: Array) -> tuple[Array,
 
 
 def banded(shape: tuple[int, int], offset: int, *diagonals: Any) -> Any:
-    """Sparse by rows: row i has the i-th value of each diagonal in columns i + offset, i + offset + 1, ...
+    """Sparse matrix; row i has the i-th value of each diagonal in columns i + offset, i + offset + 1, ...
 
     Columns outside the shape are dropped.
     """
@@ -98,7 +98,7 @@ def banded(shape: tuple[int, int], offset: int, *diagonals: Any) -> Any:
 
 
 def selection(rows: Any, columns: Any, shape: tuple[int, int], values: Any = 1.0) -> Any:
-    """Sparse with one value in each of the rows, which ascend."""
+    """Sparse matrix with one value in each of the ascending rows."""
     from scipy.sparse import csr_array
 
     starts = np.searchsorted(rows, np.arange(shape[0] + 1))
@@ -114,33 +114,33 @@ def squares(rows: Any, weights: Array) -> Any:
 class Motions:
     """Small motions of a chain, linear in its unknowns v.
 
-    v: free joint positions, rotations of bodies beyond elastic ends, and slips over the root of their compliance, of
-    joints and then of bodies. A joint that slips has the mean position of both links' ends there; at an end, its own.
+    v: free joint positions, rotations of bodies behind elastic ends, and slips of joints, then of bodies, over the root
+    of their compliance. The position of a slipping joint is the mean of both link ends; at an end that of the link.
     """
 
     chain: Chain
     rotating: Sequence[int] = ()
-    """Ends (0, 1) with a body beyond their joint."""
+    """Ends (0, 1) with a body behind their joint."""
     slips: Array = field(default_factory=lambda: np.zeros(0))
-    """(N + 1,), compliances of the joints against slip, infinite without; empty where nothing slips."""
-    gives: Array = field(default_factory=lambda: np.zeros(0))
-    """(bodies that slip,), their compliances."""
+    """(N + 1,), slip compliances of the joints, infinite without slip; empty in theories without shear."""
+    body_compliances: Array = field(default_factory=lambda: np.zeros(0))
+    """(bodies that slip,), slip compliances of the bodies."""
 
     @property
     def free(self) -> Indices:
-        """Joints whose positions are unknowns."""
-        left, right = self.chain.held
+        """Indices of joints whose positions are unknowns."""
+        left, right = self.chain.supported
         return np.arange(int(left), self.chain.n_segments + 1 - right)
 
     @property
     def sliding(self) -> Indices:
-        """Joints that slip."""
+        """Indices of joints that slip."""
         return np.flatnonzero(np.isfinite(self.slips))
 
     @property
     def n_slips(self) -> int:
         """Number of slips."""
-        return len(self.sliding) + len(self.gives)
+        return len(self.sliding) + len(self.body_compliances)
 
     @property
     def n(self) -> int:
@@ -149,18 +149,18 @@ class Motions:
 
     @cached_property
     def positions(self) -> Any:
-        """Of joints 0..N, sparse (N + 1, n)."""
+        """Positions of joints 0..N, sparse (N + 1, n)."""
         return selection(self.free, np.arange(len(self.free)), (self.chain.n_segments + 1, self.n))
 
     @cached_property
     def end_rotations(self) -> Any:
-        """Beyond the end joints, sparse (2, n): zero where nothing rotates."""
+        """Rotations behind the end joints, sparse (2, n); zero without a body."""
         first = len(self.free)
         return selection(self.rotating, first + np.arange(len(self.rotating)), (2, self.n))
 
     @cached_property
     def joint_slips(self) -> Any:
-        """The link after each joint above the link before, sparse (N + 1, n)."""
+        """Offset of the right link from the left link at each joint, sparse (N + 1, n)."""
         first = len(self.free) + len(self.rotating)
         columns = first + np.arange(len(self.sliding))
         shape = (self.chain.n_segments + 1, self.n)
@@ -168,15 +168,15 @@ class Motions:
 
     @cached_property
     def body_slips(self) -> Any:
-        """Of bodies that slip, sparse (bodies, n)."""
-        count = len(self.gives)
-        return selection(np.arange(count), self.n - count + np.arange(count), (count, self.n), np.sqrt(self.gives))
+        """Slips of the bodies that slip, sparse (bodies, n)."""
+        i, roots = np.arange(len(self.body_compliances)), np.sqrt(self.body_compliances)
+        return selection(i, self.n - len(i) + i, (len(i), self.n), roots)
 
     @cached_property
     def factors(self) -> tuple[Any, Any]:
-        """Sparse factors v -> (differences of positions, v) -> (rotations of the links, v).
+        """Sparse factors v -> (position differences, v) -> (link rotations, v).
 
-        The first takes plain differences, which are exact.
+        The first factor has entries 1 and -1: differences are exact.
         """
         from scipy.sparse import block_array, vstack
 
@@ -188,31 +188,31 @@ class Motions:
 
     @property
     def _shares(self) -> Array:
-        """Part of a joint's slip on either side of its position, (N + 1,)."""
+        """Fraction of a joint's slip on either side of its position, (N + 1,)."""
         shares = np.full(self.chain.n_segments + 1, 0.5)
         shares[[0, -1]] = 1.0
         return shares
 
     @cached_property
     def both(self) -> Any:
-        """(rotations of the links, v) of v, sparse (N + n, n)."""
+        """The map v -> (link rotations, v), sparse (N + n, n)."""
         return self.factors[1] @ self.factors[0]
 
     @property
     def rotations(self) -> Any:
-        """Of the links, sparse (N, n)."""
+        """Rotations of the links, sparse (N, n)."""
         return self.both[: self.chain.n_segments]
 
     @cached_property
     def middles(self) -> Any:
         """Positions of the links' middles, sparse (N, n)."""
         n, shares = self.chain.n_segments, self._shares
-        found = banded((n, n + 1), 0, 0.5, 0.5) @ self.positions
-        return found + banded((n, n + 1), 0, 0.5 * shares[:-1], -0.5 * shares[1:]) @ self.joint_slips
+        middles = banded((n, n + 1), 0, 0.5, 0.5) @ self.positions
+        return middles + banded((n, n + 1), 0, 0.5 * shares[:-1], -0.5 * shares[1:]) @ self.joint_slips
 
     @cached_property
     def angles_of(self) -> Any:
-        """Angles at joints 0..N of (rotations of the links, v), sparse (N + 1, N + n): to the body beyond at an end."""
+        """Joint angles 0..N as rows over (link rotations, v), sparse (N + 1, N + n); at an end to the body behind."""
         from scipy.sparse import hstack
 
         n = self.chain.n_segments
@@ -221,23 +221,23 @@ class Motions:
 
 
 def link_mass(motions: Motions) -> Any:
-    """Mass matrix of the links: their masses at their middles, and their inertias, sparse (n, n)."""
-    chain, first, free = motions.chain, int(motions.chain.held[0]), len(motions.free)
+    """Mass matrix of the links, masses at the middles and inertias, sparse (n, n)."""
+    chain, first, free = motions.chain, int(motions.chain.supported[0]), len(motions.free)
     if len(motions.sliding):
         return squares(motions.middles, chain.masses) + squares(motions.rotations, chain.inertias)
     diagonal, off = joint_masses(chain.masses, chain.inertias, chain.lengths)
-    # zero for the unknowns that are no positions
-    values, beside = np.zeros(motions.n), np.zeros(motions.n + 1)
-    values[:free], beside[1:free] = diagonal[first : first + free], off[first : first + free - 1]
-    return banded((motions.n, motions.n), -1, beside[:-1], values, beside[1:]).T
+    # zero for unknowns that are not positions
+    values, coupled = np.zeros(motions.n), np.zeros(motions.n + 1)
+    values[:free], coupled[1:free] = diagonal[first : first + free], off[first : first + free - 1]
+    return banded((motions.n, motions.n), -1, coupled[:-1], values, coupled[1:]).T
 
 
 def plain_factors(chain: Chain) -> tuple[Any, Any]:
-    """Sparse factors v -> differences of positions -> angles of joints, of a chain with nothing but links and joints.
+    """Sparse factors v -> position differences -> joint angles of a chain without attachments and slip.
 
-    Those of `Motions` put together at once, which takes a tenth of the time.
+    Equal to the product of the factors of `Motions`, in a tenth of the time.
     """
-    n, (left, right) = chain.n_segments, chain.held
+    n, (left, right) = chain.n_segments, chain.supported
     first, last = (int(not wall) for wall in chain.walls)
     differences = banded((n, n + 1 - left - right), -int(left), -1.0, 1.0)
     turns = np.concatenate([[0.0], 1.0 / chain.lengths, [0.0]])[first : n + 2 - last]

@@ -1,7 +1,7 @@
-"""Waves along a chain of equal links: dispersion and cut-off. Dimensionless as the chain; l is the unit of length.
+"""Waves along a chain of equal links: dispersion and cut-off, dimensionless with l as unit of length.
 
-A wave e^{-i mu j} over links j has rotations theta and deflections w of the links' middles: joints bend by 2 i s theta
-and slip by 2 i s w + c theta with s = sin(mu/2), c = cos(mu/2).
+In a wave e^{-i mu j} over links j with rotation theta and deflection w of the middles, joints bend by 2 i s theta and
+slip by 2 i s w + c theta, s = sin(mu/2), c = cos(mu/2).
 """
 
 from typing import Any
@@ -23,9 +23,9 @@ def phase(
 ) -> complex:
     """Phase mu of a wave from one link to the next at omega^2.
 
-    `joint` is k of a joint with its losses, `slip` its compliance g against slip, `spin` rho I of the links. With
-    L = omega^2 - k_f, B = T + k_f/12 - (1/12 + rho I) omega^2 and S = s^2, vanishing determinant of both balances:
-    16 k S^2 + (4 B + L - 4 k g L) S = (1 + g B) L.
+    `joint` is k of a joint with its losses, `slip` its slip compliance g, `spin` rho I of the links. With
+    L = omega^2 - k_f, B = T + k_f/12 - (1/12 + rho I) omega^2 and S = s^2 the determinant of the force and moment
+    balances vanishes for 16 k S^2 + (4 B + L - 4 k g L) S = (1 + g B) L.
     """
     load, spun = omega2 - foundation, spin * omega2
     if tensioned:  # the corrections of these joints are axial force, rotary inertia and mass of a twelfth
@@ -39,9 +39,9 @@ def phase(
 def cut_off2(
     lengths: Array, stiffnesses: Array, masses: Array, inertias: Array, shears: Any, tension: float, foundation: float
 ) -> float:
-    """Omega^2 of the first half wave on a link, mu = pi, over links (N,) of EI, m, J and kappa G A (infinite: rigid).
+    """Squared cut-off frequency, mu = pi, the least over links (N,) of EI, m, J and kappa G A (infinite: no shear).
 
-    A plain one rotates there at 48 EI/(rho A l^4); the softer of rotation and slip limits the waves of bending.
+    48 EI/(rho A l^4) without tension, foundation and shear (links rotate); else the lower of rotation and slip.
     """
     turning = 4.0 * stiffnesses / lengths + tension * lengths + foundation * lengths**3 / 12.0
     slipping = 4.0 * shears / lengths + foundation * lengths

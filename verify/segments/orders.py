@@ -1,7 +1,7 @@
-"""Order in the number of links at which a chain's frequencies converge, by the beam and the settings of the chain.
+"""Order of convergence of a chain's frequencies in the number of links, by the beam and the settings of the chain.
 
-Derived in `docs/theory.md` and measured on 70 to 640 links: a body and a step leave terms of several orders, of which
-the lowest dominates at many links.
+Derived in `docs/theory.md` and measured on 70 to 640 links. Bodies and steps cause error terms of several orders; the
+lowest dominates for many links.
 """
 
 from itertools import accumulate, pairwise
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from verify.problem.beam import Beam
 
 _WALL_ORDERS = {"half": 2, "welded": 2, "third-order": 3}
-"""Of walls whose order is less than 4."""
+"""Order of the wall rules, where it is less than 4."""
 
 
 def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: str, attachment: str) -> int | None:
-    """The order of the frequencies of a chain of this beam; None where it depends on the number of links."""
+    """Order of the frequencies of a chain; None where it depends on the number of links."""
     graded, thick, sheared, lever = (
         grading != 1.0,
         theory != "euler-bernoulli",
@@ -30,20 +30,20 @@ def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: st
     elastic = not lever and any(x in ends for x in rotational)
     moments, steps = _steps(beam, "second_moment"), _steps(beam) if graded else _steps(beam, "bending_stiffness")
     lowers = (
-        (1, joints == "printed" and bool(moments) and (graded or _meet(moments, _steps(beam, "youngs_modulus")))),
+        (1, joints == "printed" and bool(moments) and (graded or _coincide(moments, _steps(beam, "youngs_modulus")))),
         (2, bool(beam.section) or graded),
         (2, bool(beam.tension or thick) and joints != "tensioned"),
         (2, sheared and bool(beam.foundation or inside)),
         (_WALL_ORDERS.get(wall, 4), "clamped" in beam.supports or elastic),
-        (1, _meet(rotational, steps)),  # a chain bends alike on both sides of it
-        (1, graded and not lever and _meet(lateral, steps)),
+        (1, _coincide(rotational, steps)),  # a chain bends equally on both sides of a step
+        (1, graded and not lever and _coincide(lateral, steps)),
         (1, lever and bool(rotational)),
         (2, lever and inside),
         (1, lever and sheared and any(x in tips for x in lateral)),
     )
     order = min([4, *(lower for lower, applies in lowers if applies)])
     lowest = order
-    if sheared and (_meet(lateral, _steps(beam, "bending_stiffness", "shear_stiffness")) or (lever and inside)):
+    if sheared and (_coincide(lateral, _steps(beam, "bending_stiffness", "shear_stiffness")) or (lever and inside)):
         lowest = 1
     if beam.tension and joints == "tensioned" and any(x not in ends for x in rotational):
         lowest = min(lowest, 3)
@@ -51,7 +51,7 @@ def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: st
 
 
 def _steps(beam: "Beam", *figures: str) -> list[float]:
-    """Positions, m, where sections meet that differ in one of these properties; all where none is named."""
+    """Positions, m, of steps in one of these properties; without names of all steps."""
     places = accumulate(piece.length for piece in beam.pieces)
     return [
         at
@@ -60,6 +60,6 @@ def _steps(beam: "Beam", *figures: str) -> list[float]:
     ]
 
 
-def _meet(places: list[float], others: list[float]) -> bool:
-    """Whether one of the positions is one of the others, to rounding."""
+def _coincide(places: list[float], others: list[float]) -> bool:
+    """Whether two lists have a common position, to rounding."""
     return any(abs(place - other) <= 1e-9 * max(place, other) for place in places for other in others)

@@ -1,4 +1,4 @@
-"""The beam's deflection from the joints of a chain: the corrected reading, and the contact line through it."""
+"""The beam's deflection from the joints of a chain: corrected reading and contact line."""
 
 from collections.abc import Callable
 from functools import cache
@@ -11,11 +11,11 @@ from verify.segments.chain import Chain, at_joints
 
 
 def corrected_reading(chain: Chain, joints: Any, rotations: Any = None, shear_change: Any = 0.0) -> Any:
-    """The beam's deflection y + l^2 y''/12 at joints 0..N, (k, N + 1), of their positions y: order 4.
+    """The beam's deflection y + l^2 y''/12 at joints 0..N, (k, N + 1), from joint positions y: order 4.
 
-    l^2 y'' is the angle of a joint, (l_i^2 + l_j^2)/2 over the mean length between unequal links. The angle is that of
-    the links' `rotations` (k, N) where joints slip; `shear_change` (k, N + 1) is gamma' there. Ends without deflection
-    need no correction; beyond a guided end the chain continues by reflection, at other free ends no moment acts.
+    l^2 y'' is the joint angle, times (l_i^2 + l_j^2)/2 over the mean length for unequal links. With shear the angle is
+    that of the links' `rotations` (k, N), and `shear_change` (k, N + 1) is gamma' at the joints. No correction at ends
+    without deflection and at free ends, where no moment acts; at guided ends the chain continues by reflection.
     """
     slopes = np.diff(joints, axis=1) / chain.lengths if rotations is None else rotations
     curvatures = np.zeros_like(joints)
@@ -24,17 +24,17 @@ def corrected_reading(chain: Chain, joints: Any, rotations: Any = None, shear_ch
     curvatures[:, 0] = left * 2.0 * slopes[:, 0] / chain.lengths[0]
     curvatures[:, -1] = right * -2.0 * slopes[:, -1] / chain.lengths[-1]
     squares = at_joints(chain.lengths**2) / 12.0
-    squares[[0, -1]] *= np.logical_not(chain.held)
+    squares[[0, -1]] *= np.logical_not(chain.supported)
     if chain.reading_factors is not None:
         squares = squares * chain.reading_factors
     return joints + squares * (curvatures - shear_change)
 
 
 def spline(chain: Chain, values: Any, *, slipping: bool = False) -> Any:
-    """Cubic C2 spline through a value at every joint, (k, N + 1), over metres.
+    """Cubic C2 spline through a value at every joint, (k, N + 1), over x in m.
 
-    No moment at pinned and free ends, no slope at walls; where neither is known, at elastic ends and where shear
-    bends the line as well, the last two pieces are one cubic.
+    End conditions: zero second derivative at pinned and free ends, zero slope at walls, not-a-knot at elastic ends and
+    with shear.
     """
     from scipy.interpolate import CubicSpline
 
@@ -47,17 +47,16 @@ def spline(chain: Chain, values: Any, *, slipping: bool = False) -> Any:
 
 
 def line_through(chain: Chain, values: Callable[[], Any], *, slipping: bool = False) -> Callable[[Array, int], Any]:
-    """(x in m, derivative) -> that spline or its derivative at x, (k, len(x)); made when it is first read."""
+    """(x in m, derivative) -> `spline` or its derivative at x, (k, len(x)); built on first use."""
     nodes, made = chain.nodes, cache(lambda: spline(chain, values(), slipping=slipping))
-    # nothing deflects in a half segment that is welded to a wall
+    # zero deflection of a half segment that is welded to a wall
     return lambda x, derivative: made()(np.clip(x, nodes[0], nodes[-1]), derivative)
 
 
 def rigid_links(chain: Chain, middles: Any, rotations: Any, *, both_sides: bool = True) -> Callable[[Array, int], Any]:
-    """(x in m, derivative) -> the straight links themselves at x, (k, len(x)).
+    """(x in m, derivative) -> deflection of the straight links at x, (k, len(x)).
 
-    Of positions of their middles and their rotations, (k, N) in m and rad; at a joint the mean of both links, or the
-    link on the right.
+    `middles` and `rotations` are (k, N), m and rad. At a joint the mean of both links, or the right link alone.
     """
     nodes, slack = chain.nodes, 1e-9 * chain.unit
     centres = 0.5 * (nodes[1:] + nodes[:-1])
@@ -74,12 +73,12 @@ def rigid_links(chain: Chain, middles: Any, rotations: Any, *, both_sides: bool 
 
 
 def contact_line(chain: Chain, joints: Array) -> Any:
-    """The paper's C2 line (Section II.B) through the corrected joints, (k, N + 1), as `spline` gives it."""
+    """The paper's C2 contact line (Section II.B) through corrected joint positions (k, N + 1), as a `spline`."""
     return spline(chain, corrected_reading(chain, joints))
 
 
 def contact_piece(chain: Chain, joints: Array, piece: int) -> Array:
-    """The contact line of joints (k, N + 1) on one piece, (k, 4): coefficients of the powers of xi, 0 to 1 along it."""
+    """Contact line of joints (k, N + 1) on one piece: coefficients of powers of xi, 0 to 1 on the piece, (k, 4)."""
     length = float(chain.lengths[piece]) * chain.unit
     powers = contact_line(chain, joints).c[::-1, piece]
     return np.asarray((powers * length ** np.arange(4)[:, None]).T)

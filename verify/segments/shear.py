@@ -1,8 +1,8 @@
-"""Joints that slip: chains under Timoshenko's theory, and the corrections of rotary inertia of thick beams.
+"""Shear and rotary inertia: joints that slip in Timoshenko theory, and corrections of the rotary inertia.
 
-A joint slips against kappa G A/l, the weights of a quadrature of Q^2/(kappa G A) as the angles' are of M^2/EI. The
-rotary inertia rho I l theta^2 of the links acts like an axial force -omega^2 rho I: order 2, unless the inertia that
-"tensioned" joints take off where they bend and slip restores order 4 (`docs/theory.md`, "Finite segments").
+A joint has the slip stiffness kappa G A/l; slip compliances are weights of a quadrature of Q^2/(kappa G A), as joint
+compliances are of M^2/EI. The links' rotary inertia rho I l theta^2 acts like an axial force -omega^2 rho I: order 2,
+unless "tensioned" joints subtract inertia where they bend and slip: order 4 (`docs/theory.md`, "Finite segments").
 """
 
 from collections.abc import Callable, Sequence
@@ -16,14 +16,14 @@ from verify.segments.chain import Chain, Motions, right_of
 from verify.segments.walls import tension_excess, wall_factors
 
 _LEAST = 1e-9
-"""Relative compliance of the slip of an attachment, so that no unknown is without mass."""
+"""Relative slip compliance of an attachment, so that no unknown is massless."""
 
 
 def shear_factors(chain: Chain, wall: str, loaded: tuple[bool, bool]) -> Array:
-    """Factors on the compliances of joints 0..N against slip, (N + 1,).
+    """Factors on the slip compliances of joints 0..N, (N + 1,).
 
-    A clamped wall has its correction; a pinned end half a joint, exact by reflection; guided and free ends carry no
-    shear force, but where they are `loaded` by an attachment.
+    Clamped end: the wall's correction; pinned end: 1/2, exact by reflection; guided and free ends transmit no shear
+    force unless `loaded` by an attachment.
     """
     left, right = ({"pinned": "guided", "guided": "free"}.get(support, support) for support in chain.supports)
     return wall_factors((left, right), chain.n_segments, wall, loaded)
@@ -32,84 +32,84 @@ def shear_factors(chain: Chain, wall: str, loaded: tuple[bool, bool]) -> Array:
 def slip_compliances(
     chain: Chain, softness: Array, bodies: Sequence[Body], weights: Array, wall: str
 ) -> tuple[Array, Array]:
-    """Compliances against slip of joints 0..N, (N + 1,), infinite without, and of bodies, (bodies,), 0 without.
+    """Slip compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without slip.
 
-    A body slips by itself, but at a free end, where the end joint is its slip; a spring alone is in series with that.
-    `weights` (bodies, N + 1) are those of the joints.
+    A body at a free end has the slip of the end joint; a massless spring is in series with its slip. `weights`
+    (bodies, N + 1) are those of the joints.
     """
     tips = [b for b in bodies if b.end is not None and chain.supports[b.end] == "free" and b.mass + b.stiffness > 0.0]
     loaded = {body.end for body in tips}
-    slips, gives = softness * shear_factors(chain, wall, (0 in loaded, 1 in loaded)), np.zeros(len(weights))
+    slips, at_bodies = softness * shear_factors(chain, wall, (0 in loaded, 1 in loaded)), np.zeros(len(weights))
     for i, body in enumerate(bodies):
         if body in tips:
             if not body.mass:
-                gives[i], slips[-(body.end or 0)] = slips[-(body.end or 0)], np.inf
+                at_bodies[i], slips[-(body.end or 0)] = slips[-(body.end or 0)], np.inf
         elif body.mass + body.stiffness > 0.0:
-            gives[i] = attachment_give(chain, softness, body.position, weights[i])
-    return slips, gives
+            at_bodies[i] = attachment_compliance(chain, softness, body.position, weights[i])
+    return slips, at_bodies
 
 
-def attachment_give(chain: Chain, softness: Array, position: float, weights: Array) -> float:
-    """Compliance of the slip of an attachment at a position (m) whose weights of the joints are (N + 1,).
+def attachment_compliance(chain: Chain, softness: Array, position: float, weights: Array) -> float:
+    """Slip compliance of an attachment at a position (m) with joint `weights` (N + 1,).
 
-    Where a force acts a chain slips less than the beam, by sum w_i w_j (|i - j|/2 + delta_ij/4) l/(kappa G A).
-    At a guided end the attachment represents both its sides.
+    At a force the chain slips less than the beam, by sum w_i w_j (|i - j|/2 + delta_ij/4) l/(kappa G A). At a guided
+    end the attachment includes its reflection.
     """
     nearest = int(abs(chain.nodes - position).argmin())
-    there, doubled = np.flatnonzero(weights), 1.0
-    near = weights[there]
+    joints, doubled = np.flatnonzero(weights), 1.0
+    near = weights[joints]
     if nearest in (0, chain.n_segments) and abs(chain.nodes[nearest] - position) < 1e-9 * chain.unit:
-        there = np.append(2 * nearest - there, there)
+        joints = np.append(2 * nearest - joints, joints)
         near, doubled = 0.5 * np.append(near, near), 2.0
-    apart = abs(np.subtract.outer(there, there))
+    apart = abs(np.subtract.outer(joints, joints))
     lacking = near @ (0.5 * apart + 0.25 * (apart == 0)) @ near
     return float(softness[nearest] * max(doubled * lacking, _LEAST))
 
 
 def joint_inertias(thick: Array, factors: Array, own: Array, wall: str) -> Array:
-    """Rho I l/12 to be taken off the links' rotary inertia `thick` (N,) where joints 0..N bend, (N + 1,).
+    """Rotary inertia rho I l/12 subtracted from that of the links, `thick` (N,), at bending joints 0..N, (N + 1,).
 
-    As T l/12 is off a tensioned joint. `factors` are those of the walls, `own` the part of a joint's angle that is the
-    beam's and not a spring's beyond it.
+    It corresponds to the correction T l/12 of a tensioned joint. `factors` are the wall factors, `own` the fraction of
+    a joint's angle that is in the beam and not in a spring behind the end.
     """
-    found, weights = _harmonic_means(thick) / 12.0, factors.copy()
+    inertias, weights = _harmonic_means(thick) / 12.0, factors.copy()
     weights[[0, -1]] += tension_excess(wall) * ~np.isin(factors[[0, -1]], (0.5, np.inf))
-    return np.divide(found * weights * own**2, factors**2, out=np.zeros(len(found)), where=np.isfinite(factors))
+    return np.divide(inertias * weights * own**2, factors**2, out=np.zeros(len(inertias)), where=np.isfinite(factors))
 
 
 def slip_masses(chain: Chain, slips: Array) -> Array:
-    """Rho A l/12 to be taken off the links' mass where joints 0..N slip, (N + 1,)."""
+    """Mass rho A l/12 subtracted from that of the links at slipping joints 0..N, (N + 1,)."""
     masses = _harmonic_means(chain.masses) / 12.0
-    masses[[0, -1]] *= 2.0 * np.array(chain.held)  # more would leave less than no mass at a wall
+    masses[[0, -1]] *= 2.0 * np.array(chain.supported)  # a larger factor makes the mass at a wall negative
     return np.where(np.isfinite(slips), masses, 0.0)
 
 
 def _harmonic_means(links: Array) -> Array:
-    """Harmonic means of adjoining links at joints 0..N, (N + 1,).
+    """Harmonic mean of a property of the adjoining links at joints 0..N, (N + 1,).
 
-    Links have m/6 of a square at either end to give; any other mean leaves less than no mass between unlike links.
+    Each link end has m/6 of a square to subtract from; other means make the mass between unequal links negative.
     """
     inner = 2.0 * links[1:] * links[:-1] / (links[1:] + links[:-1])
     return np.concatenate([links[:1], inner, links[-1:]])
 
 
 def shear_angles(motions: Motions, softness: Array, unknowns: Any) -> Any:
-    """Shear angles gamma of the beam at joints 0..N, (N + 1, k): of the force, whatever a wall's factor is."""
-    there, found = motions.sliding, motions.joint_slips @ unknowns
-    found[there] *= (softness[there] / motions.slips[there])[:, None]
-    return found / motions.chain.spans[:, None]
+    """Shear angle gamma of the beam at joints 0..N, (N + 1, k), from the shear force; independent of wall factors."""
+    slipping, angles = motions.sliding, motions.joint_slips @ unknowns
+    angles[slipping] *= (softness[slipping] / motions.slips[slipping])[:, None]
+    return angles / motions.chain.spans[:, None]
 
 
 def shear_change(motions: Motions, softness: Array, unknowns: Any) -> Any:
-    """Change gamma' of the shear angle at joints 0..N, (k, N + 1), per unit of length."""
+    """Derivative gamma' of the shear angle at joints 0..N, (k, N + 1), per unit length."""
     chain = motions.chain
     return np.gradient(shear_angles(motions, softness, unknowns), chain.nodes / chain.unit, axis=0, edge_order=2).T
 
 
 def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: Array, values: Array) -> Array:
-    """The same of modes of eigenvalues (k,) with deflections (k, N + 1) at the joints.
+    """Derivative gamma' of modes with eigenvalues `values` (k,) and deflections `joints` (k, N + 1), (k, N + 1).
 
-    By balance of forces, kappa G A gamma' = (k_f - rho A omega^2) w: at bodies and steps shear itself jumps.
+    From the balance of forces, kappa G A gamma' = (k_f - rho A omega^2) w: gamma jumps at bodies and steps.
     """
     force = foundation - values[:, None] * right_of(chain.masses / chain.lengths)
     return np.asarray(force * joints / right_of(shears))
@@ -118,11 +118,11 @@ def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: A
 def section_rotation(
     motions: Motions, factors: Array, own: Array, unknowns: Any, *, corrected: bool
 ) -> Callable[[Array, int], Any]:
-    """Rotation psi of the section of unknowns (n, k): (x in m, derivative) -> (k, len(x)), rad per m^derivative.
+    """Section rotation psi of unknowns (n, k): (x in m, derivative) -> (k, len(x)), rad per m^derivative.
 
     A C2 spline through the links' middles and the ends. A link's rotation is the mean of psi over its length,
-    psi = theta + l^2 psi''/24 at its middle; corrections of a wall's joints turn the links off that line. `own`
-    (N + 1,) is the part of a joint's angle that is the beam's, not a spring's beyond the end.
+    psi = theta + l^2 psi''/24 at its middle, plus the effect of wall corrections. `own` (N + 1,) is the fraction of a
+    joint's angle that is in the beam and not in a spring behind the end.
     """
     from scipy.interpolate import CubicSpline
 
@@ -130,18 +130,18 @@ def section_rotation(
     angles = motions.angles_of @ np.concatenate([links, unknowns])
     lengths = chain.lengths[:, None]
     jointed = [wall or elastic for wall, elastic in zip(chain.walls, chain.elastic, strict=True)]
-    # the end itself, beyond its joint: a body there, or the spring that has the rest of the angle
+    # rotation behind the end joint: of a body, or less the angle of the spring
     ends = motions.end_rotations @ unknowns + ([[1.0], [-1.0]] * angles[[0, -1]]) * (1.0 - own[[0, -1], None])
     if corrected:
         plain = (angles * own[:, None] / factors[:, None]) / chain.spans[:, None]
         off = np.cumsum((angles * (1.0 - 1.0 / factors[:, None]))[1:-1], axis=0)
         off = np.concatenate([np.zeros_like(off[:1]), off])
         links = links + off[len(off) // 2] - off + lengths / 24.0 * np.diff(plain, axis=0)
-    # without a moment psi is even in the distance from the end
+    # at an end without moment psi is even in the distance from it
     for end, (near, far) in enumerate(((0, 1), (-1, -2))):
         if not jointed[end]:
-            here, there = (0.5 * lengths[near]) ** 2, (lengths[near] + 0.5 * lengths[far]) ** 2
-            ends[-end] = links[near] - (links[far] - links[near]) * here / (there - here)
+            near_square, far_square = (0.5 * lengths[near]) ** 2, (lengths[near] + 0.5 * lengths[far]) ** 2
+            ends[-end] = links[near] - (links[far] - links[near]) * near_square / (far_square - near_square)
     nodes = chain.nodes
     x = np.concatenate([nodes[:1], 0.5 * (nodes[1:] + nodes[:-1]), nodes[-1:]])
     values = np.concatenate([ends[:1], links, ends[1:]]) / chain.unit

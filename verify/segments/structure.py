@@ -1,4 +1,4 @@
-"""Stiffness and mass of a chain with everything on it: the base of `SegmentModel`, which gives links and joints."""
+"""Stiffness and mass of a chain with attachments: the base of `SegmentModel`, which defines links and joints."""
 
 from abc import abstractmethod
 from functools import cached_property
@@ -11,14 +11,14 @@ from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts
 from verify.linear.system import StructuralSystem
 from verify.options import Attachment, Joints, Wall
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 from verify.segments import shear
 from verify.segments.bodies import Attached
 from verify.segments.chain import Chain, Motions, at_joints, link_mass, plain_factors, selection, squares
 
 
 class ChainStructure(DiscreteModel):
-    """A chain of links and joints with bodies and springs; rotary inertia and shear of thick beams."""
+    """A chain of links and joints with bodies and springs, and with rotary inertia and shear by theory."""
 
     n_segments: int
     wall: Wall
@@ -34,26 +34,26 @@ class ChainStructure(DiscreteModel):
     @property
     @abstractmethod
     def chain(self) -> Chain:
-        """The links and joints by themselves."""
+        """Links and joints without attachments."""
 
     @property
     @abstractmethod
     def _wall_factors(self) -> Array:
-        """Factors of walls on the compliances of joints 0..N, (N + 1,)."""
+        """Wall factors on the compliances of joints 0..N, (N + 1,)."""
 
     @property
     @abstractmethod
     def _beam_compliances(self) -> Array:
-        """1/k of the joints by the beam's bending stiffness, (N + 1,)."""
+        """1/k of the joints with the beam's bending stiffness, (N + 1,)."""
 
     @property
     @abstractmethod
-    def _own_compliances(self) -> Array:
-        """The same with the corrections of tensioned joints."""
+    def _corrected_compliances(self) -> Array:
+        """1/k with the corrections of tensioned joints, (N + 1,)."""
 
     @property
     def _thick(self) -> bool:
-        """Whether links have the rotary inertia of their thickness."""
+        """Whether the theory has rotary inertia of the sections."""
         return self.theory != "euler-bernoulli"
 
     @cached_property
@@ -69,12 +69,12 @@ class ChainStructure(DiscreteModel):
     @property
     def n_unknowns(self) -> int:
         """Free joint positions, rotations beyond elastic ends, slips of joints and of bodies."""
-        held = sum(HOLDS[support].deflection for support in self.beam.supports)
-        found = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self.attached.at_ends)
+        held = sum(FIXED[support].deflection for support in self.beam.supports)
+        count = self.n_segments + 1 - held + sum(body.rotary_inertia > 0.0 for body in self.attached.at_ends)
         if self.theory == "timoshenko":
             bodies = int(self.attached.massive.sum()) if self.attachment == "reciprocal" else 0
-            found += self.n_segments - 1 + held + bodies
-        return found
+            count += self.n_segments - 1 + held + bodies
+        return count
 
     @cached_property
     def _weights(self) -> tuple[Any, Any]:
@@ -93,12 +93,12 @@ class ChainStructure(DiscreteModel):
 
     @cached_property
     def _shear_compliances(self) -> Array:
-        """Compliances of joints 0..N against slip by Eq. (1), without walls, (N + 1,)."""
+        """Slip compliances of joints 0..N by Eq. (1), without wall factors, (N + 1,)."""
         return at_joints(self.links.lengths / self._shears)
 
     @cached_property
     def _slips(self) -> tuple[Array, Array]:
-        """Compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without."""
+        """Slip compliances of joints, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without slip."""
         if self.theory != "timoshenko":
             return np.zeros(0), np.zeros(len(self.attached.bodies))
         bodies = self.attached.bodies if self.attachment == "reciprocal" else ()
@@ -109,20 +109,20 @@ class ChainStructure(DiscreteModel):
     @cached_property
     def motions(self) -> Motions:
         """Positions, rotations and slips as linear maps of the unknowns."""
-        slips, gives = self._slips
+        slips, at_bodies = self._slips
         rotating = [end for end, body in enumerate(self.attached.at_ends) if body.rotary_inertia]
-        return Motions(self.chain, rotating, slips, gives[(gives > 0.0) & self.attached.massive])
+        return Motions(self.chain, rotating, slips, at_bodies[(at_bodies > 0.0) & self.attached.massive])
 
     @cached_property
     def system(self) -> StructuralSystem:
-        """Stiffness and mass of links, joints and what is attached."""
+        """Stiffness and mass of links, joints and attachments."""
         from scipy.sparse import csc_array, vstack
 
         beam, chain, motions, lengths, n = self.beam, self.chain, self.motions, self.links.lengths, self.n_segments
         if not (motions.n_slips or beam.foundation or beam.tension or self.attached.bodies) and self.joints == "series":
             stiffness = 1.0 / chain.compliances[self._springs]
             return StructuralSystem(plain_factors(chain), stiffness, link_mass(motions), self._rigid(None))
-        # strains over (rotations of the links, unknowns v), and what resists them
+        # strain rows over (link rotations, unknowns v), and their stiffnesses
         links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
         own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
         strains = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
@@ -137,14 +137,14 @@ class ChainStructure(DiscreteModel):
             strains.append((links, self._tension * lengths))
         mass, across, bodies = link_mass(motions), None, None
         if self.joints == "tensioned" and self._thick:
-            inertias = shear.joint_inertias(self._rotary_inertias, self._wall_factors, self._own_share, self.wall)
+            inertias = shear.joint_inertias(self._rotary_inertias, self._wall_factors, self._beam_fraction, self.wall)
             mass = mass - squares(motions.angles_of @ motions.both, inertias)
             if motions.n_slips:
                 mass = mass - squares(motions.joint_slips, shear.slip_masses(chain, motions.slips))
         if self.attached.bodies:
-            gives = self._slips[1]
-            across = self.attached.deflections(self._weights[0], motions, gives)
-            attached, bodies = self.attached.energies(across, self._rotations, motions, gives)
+            at_bodies = self._slips[1]
+            across = self.attached.deflections(self._weights[0], motions, at_bodies)
+            attached, bodies = self.attached.energies(across, self._rotations, motions, at_bodies)
             strains, mass = strains + attached, mass + bodies.T @ bodies
         rows, stiffnesses = zip(*strains, strict=True)
         factors = [*motions.factors, vstack(rows, format="csr")]
@@ -153,35 +153,35 @@ class ChainStructure(DiscreteModel):
 
     @cached_property
     def _springs(self) -> Any:
-        """Joints that have a spring."""
+        """Indices of joints with a spring."""
         return np.flatnonzero(np.isfinite(self.chain.compliances))
 
     @cached_property
-    def _own_share(self) -> Array:
-        """Part of each joint's angle that is the beam's and not a spring's beyond its end, (N + 1,)."""
-        own, whole = self._own_compliances, self.chain.compliances
+    def _beam_fraction(self) -> Array:
+        """Fraction of each joint's angle that is in the beam and not in a spring behind its end, (N + 1,)."""
+        own, whole = self._corrected_compliances, self.chain.compliances
         return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
 
     def _rigid(self, across: Any) -> Array:
         """Rigid-body modes, (n, 0 to 2)."""
         x, motions = self.chain.nodes / self.unit, self.motions
-        found = np.zeros((motions.n, self.beam.rigid_motions))
+        rigid = np.zeros((motions.n, self.beam.rigid_motions))
         for column, (start, tilt) in enumerate(self.beam.rigid_lines):
-            found[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
+            rigid[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
         springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
-        if springs and found.size:
-            # no strain of a single spring, whose interpolated position errs on unequal links
-            found[: len(motions.free)] -= (across[springs[:1]] @ found)[0]
-        return found
+        if springs and rigid.size:
+            # zero strain of a single spring, whose interpolated position has an error on unequal links
+            rigid[: len(motions.free)] -= (across[springs[:1]] @ rigid)[0]
+        return rigid
 
     def lossy_stiffness(self, omega: float) -> Any:
-        """D with the beam's loss factor and the dashpots of joints; springs, ground and tension have no loss."""
+        """Stiffness d with the beam's loss factor and joint dashpots; springs, foundation and tension are lossless."""
         d, dashpots = self.system.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
         if not (self.beam.loss_factor or dashpots):
             return d
-        there, series, found = self._springs, np.zeros(self.n_segments + 1), d.astype(complex)
+        sprung, series, lossy = self._springs, np.zeros(self.n_segments + 1), d.astype(complex)
         series[[0, -1]] = self.attached.end_springs
-        loss = self.beam.loss_factor / self._beam_compliances[there] + dashpots
-        found[: len(there)] = 1.0 / (1.0 / (1.0 / self._own_compliances[there] + 1j * loss) + series[there])
-        found[len(there) : len(there) + self.motions.n_slips] *= 1.0 + 1j * self.beam.loss_factor
-        return found
+        loss = self.beam.loss_factor / self._beam_compliances[sprung] + dashpots
+        lossy[: len(sprung)] = 1.0 / (1.0 / (1.0 / self._corrected_compliances[sprung] + 1j * loss) + series[sprung])
+        lossy[len(sprung) : len(sprung) + self.motions.n_slips] *= 1.0 + 1j * self.beam.loss_factor
+        return lossy

@@ -1,12 +1,12 @@
-"""Joints of a chain beside a clamped wall: compliances as the weights of a quadrature of M^2/EI along the beam.
+"""Joints of a chain near a clamped wall: compliances as the weights of a quadrature of M^2/EI along the beam.
 
-Inside, a joint has the weight 1 of the trapezoidal rule, a link length. At a wall that rule needs an end correction.
+Interior joints have weight 1 of the trapezoidal rule, in link lengths. At a wall the rule needs an end correction.
 """
 
 import numpy as np
 
 from verify.arrays import Array
-from verify.problem.supports import HOLDS
+from verify.problem.supports import FIXED
 
 WALLS: dict[str, tuple[float, ...]] = {
     # Gregory's end correction of the trapezoidal rule, weights 3/8, 7/6, 23/24: order 4
@@ -17,10 +17,10 @@ WALLS: dict[str, tuple[float, ...]] = {
     "welded": (),
     # weights 5/12, 13/12: order 3
     "third-order": (-7 / 12, 1 / 12),
-    # weights 95/288, 317/240, 23/30, 793/720, 157/160: order 4 and a little more for low modes
+    # weights 95/288, 317/240, 23/30, 793/720, 157/160: order 4, slightly better for low modes
     "five-joint": (95 / 288 - 1, 317 / 240 - 1, 23 / 30 - 1, 793 / 720 - 1, 157 / 160 - 1),
 }
-"""Corrections of the weights 1 by a clamped end, from the wall on, in l/EI."""
+"""Corrections of the weights 1 from a clamped end on, in l/EI."""
 
 
 def wall_factors(
@@ -28,8 +28,8 @@ def wall_factors(
 ) -> Array:
     """Factors on the compliances of joints 0..N, (N + 1,); infinite at an end without a joint.
 
-    A guided wall has half a joint, which is exact by reflection. An `elastic` end carries a moment and has the joint of
-    a clamped one. On short chains the corrections of both ends add up.
+    A guided wall has half a joint, exact by reflection. An `elastic` end transmits a moment and has the joints of a
+    clamped end. On short chains the corrections of both ends add up.
     """
     factors = np.ones(n_segments + 1)
     for end, support, turns in zip((0, n_segments), supports, elastic, strict=True):
@@ -37,24 +37,24 @@ def wall_factors(
             corrections = np.array(WALLS[wall][: n_segments + 1])
             factors[abs(end - np.arange(len(corrections)))] += corrections
         else:
-            factors[end] = np.inf if not HOLDS[support].rotation else factors[end] - 0.5
+            factors[end] = np.inf if not FIXED[support].rotation else factors[end] - 0.5
     return factors
 
 
 def tension_excess(wall: str) -> float:
-    """Weight beyond 1/c of T l/12 in the first tensioned joint of a clamped wall; 5/24 for Gregory's.
+    """Weight of T l/12 in the first tensioned joint of a clamped wall, in excess of 1/c; 5/24 for Gregory's weights.
 
-    Corrections a_k of the joints turn link i by -l kappa sum_{k>i} a_k off the smooth line; axial force acts on the
-    squares of these rotations.
+    Corrections a_k of the joints rotate link i by -l kappa sum_{k>i} a_k from the smooth line; the axial force acts on
+    the squares of these rotations.
     """
     return float(12.0 * (np.cumsum(np.array(WALLS[wall])[:0:-1]) ** 2).sum())
 
 
 def reading_factors(elastic: tuple[bool, bool], n_segments: int, wall: str) -> Array:
-    """Factors on the corrections of the joints' reading beside elastic ends, (N + 1,).
+    """Factors on the reading corrections of joints near elastic ends, (N + 1,).
 
-    Corrections a_k of the joints put joint j off the smooth line by l^2 kappa sum_{k>j} a_k (k - j), and its angle is
-    1 + a_j of the beam's.
+    Corrections a_k of the joints move joint j from the smooth line by l^2 kappa sum_{k>j} a_k (k - j), and scale its
+    angle by 1 + a_j.
     """
     factors, a = np.ones(n_segments + 1), np.array(WALLS[wall])
     for end, turns in zip((0, n_segments), elastic, strict=True):

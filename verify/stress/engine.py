@@ -32,11 +32,11 @@ class Outcome:
     points: Points
     """(value, error)."""
     breaks_at: float | None
-    """Value from which the tolerance is exceeded or the input refused; None where neither was reached."""
+    """Value from which the tolerance is exceeded or the input refused; None if neither occurs."""
     breaks_by: str
     """'error', 'refused', or empty."""
     baseline: Points
-    """(value, error) of the standard method, infinite where it fails."""
+    """(value, error) of the standard method; infinite if it fails."""
     seconds: float
 
 
@@ -52,11 +52,11 @@ class Check:
     error: Error
     """Raises InputError where the value is refused."""
     beyond: Sequence[float] = ()
-    """Values past the guaranteed range, to find where the tolerance is exceeded or the value refused."""
+    """Values beyond the guaranteed range, to determine where the tolerance is exceeded or the value refused."""
     refused: bool = False
-    """Whether the range may end only with a refusal."""
+    """Whether the range has to end with an InputError and not with a large error."""
     baseline: tuple[Any, ...] = ()
-    """(name, error, values if others) of the standard method, measured alike; it may fail in any way."""
+    """(name, error, values if different) of the standard method, which may raise any error."""
     slow: bool = False
 
     def run(self) -> Outcome:
@@ -75,7 +75,7 @@ class Check:
         return Outcome(self.id, worst, passed, points, breaks_at, how, tuple(baseline), perf_counter() - start)
 
     def _limit(self) -> tuple[float | None, str]:
-        """(the first value beyond that exceeds the tolerance, how), by bisection in the logarithm."""
+        """(first value of `beyond` that fails, 'error' or 'refused'), by bisection in the logarithm."""
         good = self.values[-1]
         for bad in self.beyond:
             error, how = _error(self.error, bad)
@@ -102,9 +102,9 @@ def check(
     models: Mapping[str, str] | None = None,
     **more: Any,
 ) -> Callable[[Error], Error]:
-    """Register an error function, whose docstring is the title unless given; `more` are fields of `Check`.
+    """Register an error function; default title: its docstring; `more` are fields of `Check`.
 
-    With `models` (name: word of the id) one check for each, of `error(model, value)` and a baseline likewise.
+    With `models` (name: suffix of the id) one check per model, of `error(model, value)` and `baseline(model, value)`.
     """
 
     def register(error: Error) -> Error:
@@ -139,7 +139,7 @@ def select(ids: Sequence[str] = (), *, slow: bool = False) -> list[Check]:
 def run(
     checks: Sequence[Check], jobs: int | None = None, progress: Callable[[str], None] = lambda id: None
 ) -> list[Outcome]:
-    """Outcomes in the order of the checks, on `jobs` processes, VERIFY_JOBS unless set."""
+    """Outcomes in the order of the checks, with `jobs` processes; default: VERIFY_JOBS."""
     from verify.parallel import map_processes
 
     ids = [one.id for one in checks]
@@ -151,16 +151,16 @@ def _run_by_id(name: str) -> Outcome:
 
 
 def _error(error: Error, value: float) -> tuple[float, str]:
-    """(the error, infinite where there is none, how it is exceeded)."""
+    """(error, infinite if the function fails; 'error' or 'refused')."""
     try:
-        found = float(error(value))
+        size = float(error(value))
     except InputError:
         return inf, "refused"
     except (ArithmeticError, ValueError, RuntimeError):  # a baseline overflows, is singular, or does not converge
         return inf, "error"
-    return (found, "error") if isfinite(found) else (inf, "error")
+    return (size, "error") if isfinite(size) else (inf, "error")
 
 
 def worst(*errors: Any) -> float:
-    """The largest size of numbers and arrays; NaN where one is."""
+    """Largest absolute value in numbers and arrays; NaN if one is NaN."""
     return float(np.max([np.max(np.abs(one)) for one in errors]))

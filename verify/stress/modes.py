@@ -1,6 +1,6 @@
 """Checks of modes: size, scale, uneven parts, attachments, foundation, axial force.
 
-1e-12 is what rounding costs a frequency of many parts, 1e-14 and less what a closed form leaves.
+Tolerances: 1e-12 for rounding with many parts, 1e-14 and less for closed forms.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +26,7 @@ FAR = (1e15, 1e18, 1e24)
 
 
 def frequency(model: str, beam: Beam, mode: int, n: int = N, **settings: float) -> float:
-    """Hz, of one mode of a model."""
+    """Frequency of a mode of a model, Hz."""
     if model == "analytic":
         return ExactModel(beam).frequency_hz(mode)
     return float(MODELS[model].build(beam, n, **settings).modes(mode).frequencies_hz[mode - 1])
@@ -39,14 +39,14 @@ def own_error(model: str, beam: Beam, lengths: Sequence[D], mode: int, **setting
 
 
 def dispersion(model: str, n: float, modes: int) -> Any:
-    """Hz, of the first modes of the pinned strip in equal parts, in closed form."""
+    """Frequencies of the first modes of the pinned strip in equal parts, Hz, in closed form."""
     from verify.exact.error_laws import dispersion_frequency_hz
 
     return np.array([dispersion_frequency_hz(model, STRIP, mode, int(n)) for mode in range(1, modes + 1)])
 
 
 def eigsh_error(model: str, n: float) -> float:
-    """Of scipy's eigsh about 0 on assembled matrices of unit parts."""
+    """Error of scipy's eigsh about 0 with assembled matrices of unit parts."""
     from scipy.sparse.linalg import eigsh
 
     unit = Beam(length=n, bending_stiffness=1.0, mass_per_length=1.0)
@@ -70,7 +70,7 @@ check("size-million", "N", (1e5, 3e5, 1e6), 1e-12, DISCRETE, baseline=(*EIGSH, (
 
 
 def newton_error(mode: float) -> float:
-    """Of cos y cosh y = -1 as printed."""
+    """Error of Newton's method for cos y cosh y = -1 in its usual form."""
     y = (mode - 0.5) * pi
     for _ in range(20):
         y -= (cos(y) * cosh(y) + 1.0) / (cos(y) * sinh(y) - sin(y) * cosh(y))
@@ -103,7 +103,7 @@ def shape_value(mode: float, x: float) -> float:
 
 
 def printed_shape_error(mode: float) -> float:
-    """Of the shape as printed."""
+    """Error of the cantilever shape in its usual form."""
     y, x = float(reference.cantilever_root(int(mode))), np.array(PLACES)
     sigma = (sinh(y) - sin(y)) / (cosh(y) + cos(y))
     printed = np.cosh(y * x) - np.cos(y * x) - sigma * (np.sinh(y * x) - np.sin(y * x))
@@ -122,7 +122,7 @@ def exact_shape(mode: float) -> float:
 
 
 def pinned_error(beam: Beam, mode: float) -> float:
-    """Of the exact model between pins."""
+    """Frequency error of the exact model with pinned ends."""
     return abs(float(D(frequency("analytic", beam, int(mode))) / reference.pinned_hertz(beam, int(mode)) - 1))
 
 
@@ -265,7 +265,7 @@ def nearly_floating(softness: float) -> float:
 
 @check("near-buckling", "1 - P / Pcr", (1, 1e-3, 1e-6, 1e-9), 1e-13, beyond=(1e-11, 1e-13, 1e-17))
 def near_buckling(left: float) -> float:
-    """Mode 1 close to buckling, three models: error times the share of the load that is left."""
+    """Mode 1 close to buckling, three models: error times 1 - P / Pcr."""
     errors = []
     for model in ALL:
         load = MODELS[model].build(STRIP, None if model == "analytic" else N).buckling_load()

@@ -14,7 +14,7 @@ SPEED, MU, SLOPE, STEPS = 0.1, 0.23, 310.0, 4096
 
 
 def speed_left(slope: float, time: float) -> D:
-    """Of a free slide under tanh friction: sinh(K v) = sinh(K v0) exp(-mu g K t), m/s."""
+    """Speed after a free slide with tanh friction: sinh(K v) = sinh(K v0) exp(-mu g K t), m/s."""
     k, start = D(slope), D(slope) * D(SPEED)
     rate = D(MU * GRAVITY) * k * D(time)
     if start - rate > 200:  # sinh is half an exponential to 1e-174
@@ -24,7 +24,7 @@ def speed_left(slope: float, time: float) -> D:
 
 
 def rk4_decay(slope: float, time: float) -> float:
-    """The speed left by classical Runge-Kutta in 4096 steps, m/s."""
+    """Speed after a free slide by classical Runge-Kutta in 4096 steps, m/s."""
     v, h, limit = SPEED, time / STEPS, MU * GRAVITY
     for _ in range(STEPS):
         a = -limit * tanh(slope * v)
@@ -35,7 +35,7 @@ def rk4_decay(slope: float, time: float) -> float:
 
 
 def decay_error(slope: float, method: Callable[[float, float], float]) -> float:
-    """Of the speed left before and after Coulomb friction would have stopped the slide, over the initial speed."""
+    """Error of the speed before and after the stop under Coulomb friction, over the initial speed."""
     times = [part * SPEED / (MU * GRAVITY) for part in (0.7, 1.3)]
     return worst([float(D(method(slope, t)) - speed_left(slope, t)) for t in times]) / SPEED
 
@@ -45,7 +45,7 @@ _RK4 = ("RK4 in 4096 steps", partial(decay_error, method=rk4_decay))
 
 @check("friction-slope", "slope, s/m", (1e-3, 1.0, 1e3, 1e6, 1e9), 1e-10, beyond=(1e12, 1e15), baseline=_RK4)
 def friction_slope(slope: float) -> float:
-    """Speed left of a free slide under tanh friction, viscous to step-like."""
+    """Speed after a free slide with tanh friction, viscous to step-like."""
     from verify.dynamics.belt import free_decay
 
     return decay_error(slope, lambda slope, time: free_decay(MU, slope, SPEED, time))

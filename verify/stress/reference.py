@@ -51,7 +51,7 @@ def _add(bands: Bands, first: int, block: Any) -> None:
 
 
 def _attach(beam: Beam, lengths: Sequence[D], k: Bands, m: Bands, per_node: int) -> tuple[Bands, Bands]:
-    """Add masses and springs at the nodes, and block what the supports block."""
+    """Add masses and springs at the nodes, and constrain the unknowns that supports prevent."""
     nodes = np.cumsum([0.0, *map(float, lengths)])
     attached: tuple[Any, ...] = (*beam.mass, *beam.spring)
     for one in attached:
@@ -151,7 +151,7 @@ def sparse(k: Bands, m: Bands) -> list[Any]:
 
 
 def sin(x: D | float) -> D:
-    """Of radians."""
+    """Sine of radians."""
     turns = (D(x) / PI).to_integral_value()
     rest = term = total = D(x) - turns * PI
     k = 1
@@ -162,17 +162,17 @@ def sin(x: D | float) -> D:
 
 
 def cos(x: D | float) -> D:
-    """Of radians."""
+    """Cosine of radians."""
     return sin(D(x) + PI / 2)
 
 
 def sinh(x: D | float) -> D:
-    """Of arguments from 1e-20 on, to 40 digits."""
+    """Hyperbolic sine of arguments from 1e-20 on, to 40 digits."""
     return (D(x).exp() - (-D(x)).exp()) / 2
 
 
 def cantilever_root(mode: int) -> D:
-    """Y with cos y cosh y = -1, by Newton on the equation over e^y."""
+    """Root y of cos y cosh y = -1, by Newton's method for the equation over e^y."""
     y = (D(mode) - D("0.5")) * PI
     for _ in range(12):
         fall = (-y).exp()

@@ -24,7 +24,7 @@ def record(outcome: Outcome) -> dict[str, Any]:
 
 
 def result(outcomes: Sequence[Outcome]) -> Result:
-    """Table and data of what was measured."""
+    """Table and data of the outcomes."""
     records = [record(one) for one in outcomes]
     failed = [one["id"] for one in records if not one["passed"]]
     rows = [

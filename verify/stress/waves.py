@@ -13,11 +13,11 @@ from verify.stress.reference import ALL, CANTILEVER, PI, STRIP, D, cos, pinned_h
 
 N, MODE = 40, 3
 AT, FROM = 11, 17
-"""Joints at which the field is read and driven."""
+"""Joints at which the field is evaluated and driven."""
 
 
 def deflection(model: str, beam: Beam, hertz: float, x: float, at: float, **more: str) -> complex:
-    """At a place under a unit force at x, m."""
+    """Deflection at `at` under a unit force at x, m."""
     count = None if model == "analytic" else N
     field = MODELS[model].build(beam, count, **more).harmonic((PointForce(position=x),), hertz)
     return complex(field.deflection([at])[0])
@@ -33,7 +33,7 @@ def green(beam: Beam, hertz: float, x: float, source: float) -> D:
 
 @check("near-resonance", "f / fn - 1", (1e-6, 1e-7, 1e-8, 3e-9), 1e-13, beyond=(1e-9, 1e-10, 1e-12), refused=True)
 def near_resonance(distance: float) -> float:
-    """Undamped field beside a resonance, three models: the frequency error that would explain its error."""
+    """Undamped field near a resonance, three models: equivalent frequency error."""
     from verify.exact.error_laws import dispersion_frequency_hz
 
     errors = []
@@ -44,7 +44,7 @@ def near_resonance(distance: float) -> float:
         up, down, *real = shifts / hertz - 1.0
         ends = FROM * STRIP.length / N, AT * STRIP.length / N
         above, below, *fields = (deflection(model, STRIP, driven, *ends).real for driven in shifts)
-        # the field is r / d + s near d = 0: readings at +-1e-5 give r and s, to 1e-10 of the field at 1e-9
+        # the field is r / d + s near d = 0: values at +-1e-5 give r and s, to 1e-10 of the field at 1e-9
         residue = (above - below) / (1.0 / up - 1.0 / down)
         for d, field in zip(real, fields, strict=True):
             errors.append(d * (field / (residue / d + above - residue / up) - 1.0))
@@ -64,7 +64,7 @@ _WAVES = (3.3, 33.3, 333.3, 3333.3, 33333.3)
 
 @check("short-waves", "half waves", _WAVES, 2e-15, beyond=(333333.3, 1e7, 1e12), refused=True)
 def short_waves(waves: float) -> float:
-    """Exact field of short waves against sines of 60 digits, over what k L = 1 moves."""
+    """Exact field of short waves against sines of 60 digits, over the deflection for k L = 1."""
     beam, x, at = replace(STRIP, length=1.0), 0.4375, 0.28125
     hertz = (waves * pi) ** 2 * beam.wave_constant / (2.0 * pi)
     k, field = (2 * PI * D(hertz) / D(beam.wave_constant)).sqrt(), deflection("analytic", beam, hertz, x, at)
@@ -77,7 +77,7 @@ READ, DRIVEN, DAMPED = 0.45 * STRIP.length, 0.08 * STRIP.length, 0.19 * STRIP.le
 
 @check("damped-resonance", "dashpot, N s/m", (100.0, 1.0, 1e-2, 1e-4), 1e-6, beyond=(1e-6, 1e-8))
 def damped_resonance(dashpot: float) -> float:
-    """Exact field of a strip with one dashpot at and beside resonance 7 of the bare strip, by Green's function."""
+    """Exact field of a strip with a dashpot at and near resonance 7 without it, against Green's function."""
 
     def exact(hertz: float) -> complex:
         resists, own = 2 * PI * D(hertz) * D(dashpot), green(STRIP, hertz, DAMPED, DAMPED)
@@ -102,7 +102,7 @@ _NEWMARK = ("average acceleration, 64 steps a period", newmark_error)
 
 @check("free-vibration", "periods", (1, 1e3, 1e5, 1e7, 1e9), 1e-15, baseline=_NEWMARK)
 def free_vibration_error(periods: float) -> float:
-    """Mode 1 released and read at a zero crossing: the frequency error that would explain its deflection."""
+    """Mode 1 released, at a zero crossing: equivalent frequency error of its deflection."""
     from verify.dynamics.free_vibration import free_vibration
 
     hertz = float(pinned_hertz(STRIP, 1))

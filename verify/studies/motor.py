@@ -101,7 +101,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         check_driven("motor", scene)
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
-        check_sliders(scene.beam, (scene.slider,), (scene.slider.start_on(scene.beam),))
+        check_sliders(scene.beam, (scene.slider,), (scene.slider.initial_position(scene.beam),))
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""

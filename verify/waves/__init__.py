@@ -1,1 +1,1 @@
-"""Behind `verify.travelling_wave`: two waves in a window, unit responses superposed, drives, impedance matching."""
+"""Parts of `verify.travelling_wave`: waves in a window, superposed unit responses, drives, impedance matching."""

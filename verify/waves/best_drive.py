@@ -1,10 +1,10 @@
 """The amplitude ratio and phase of a second actuator that leave no reflection.
 
-Unit forces of two actuators make waves (A1, B1) and (A2, B2) towards +x and -x in the window; with r at the second they
-make A1 + r A2 and B1 + r B2, so that r = -B1/B2 leaves no wave towards -x. Over a band one r makes
-sum |B1 + r B2|^2 / sum |A1 + r A2|^2 least: the last singular vector of the backward part of an orthonormal basis of
-all waves, at one frequency the same r. The forward wave that is left, (A1 B2 - A2 B1) / B2, vanishes where the unit
-waves are proportional, as at an undamped resonance: then no r exists.
+Unit forces of two actuators make waves (A1, B1) and (A2, B2) towards +x and -x in the window. With the complex ratio r
+of the second to the first force the waves are A1 + r A2 and B1 + r B2: r = -B1/B2 cancels the wave towards -x. For a
+band, r minimises sum |B1 + r B2|^2 / sum |A1 + r A2|^2: it is the last singular vector of the backward part of an
+orthonormal basis of all waves. The remaining forward wave (A1 B2 - A2 B1) / B2 vanishes where the unit waves are
+proportional, as at an undamped resonance: then no r exists.
 """
 
 from math import inf, isnan, nan
@@ -20,26 +20,26 @@ from verify.waves.two_waves import minimum_near, reflections, standing_wave_rati
 from verify.waves.window import Window, middle_half
 
 PROPORTIONAL, NEARLY = 1e-4, 0.05
-"""Independence of the unit waves below which no ratio exists, but for near fields, and below which a note says so."""
+"""Independence of the unit waves below which no ratio exists (near fields aside), and below which a note warns."""
 
 
 class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """The drive of two actuators with the least reflection, and the best of equal amplitudes."""
 
     frequencies_hz: Array
-    """(n,), the frequencies that have a wave."""
+    """(n,), Hz, without frequencies that have no wave."""
     ratio: float
-    """Amplitude of the second over that of the first, forces or displacements; NaN where none exists."""
+    """Amplitude ratio of second to first actuator; NaN where none exists."""
     phase_deg: float
-    """Lead of the second, in (-180, 180]."""
+    """Phase lead of the second actuator, in (-180, 180] degrees."""
     reflection: Array
-    """Gamma, (n,): at one frequency zero but for rounding."""
+    """Gamma, (n,): within rounding of zero for a single frequency."""
     equal_phase_deg: float
-    """Lead of the second at which equal amplitudes have the least reflection."""
+    """Phase lead of the second actuator, degrees, of least reflection with equal amplitudes."""
     equal_reflection: Array
     """Gamma of equal amplitudes at that phase, (n,)."""
     independence: float
-    """Sine of the angle between the unit waves (A1, B1) and (A2, B2), the least over the band; 0: proportional."""
+    """Least sine of the angle between the unit waves (A1, B1) and (A2, B2) in the band; 0: proportional."""
 
     @property
     def standing_wave_ratio(self) -> float:
@@ -48,16 +48,16 @@ class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def equal_standing_wave_ratio(self) -> float:
-        """The same of equal amplitudes."""
+        """(1 + Gamma) / (1 - Gamma) with equal amplitudes, the largest over the band."""
         return float(standing_wave_ratios(self.equal_reflection).max())
 
     @property
     def note(self) -> str:
-        """Limit of the drive near a resonance, where unit waves are proportional; empty elsewhere."""
+        """Note on a drive near a resonance, where unit waves are proportional; else empty."""
         if self.independence >= NEARLY:
             return ""
-        left = "no ratio makes it travel" if isnan(self.ratio) else f"{self.independence:.2g} of it is left travelling"
-        return f"near a resonance both actuators make the same standing wave and {left}: choose another frequency_hz"
+        rest = "no ratio cancels it" if isnan(self.ratio) else f"a travelling part of {self.independence:.2g} remains"
+        return f"near a resonance both actuators make the same standing wave, {rest}: choose another frequency_hz"
 
     def check_exists(self) -> None:
         """Raise NoFigureError where no ratio exists."""
@@ -68,10 +68,10 @@ class BestDrive(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def best_drive(
     case: DrivenCase, window: Window | None = None, *, frequencies_hz: Array | None = None, direction: int = 1
 ) -> BestDrive:
-    """The best ratio and phase of the second actuator of a case, at its frequency, or one pair over several.
+    """Ratio and phase of the second actuator with least reflection at the case's frequency, or over several.
 
-    For a wave towards +x, or -x with `direction` -1; in the middle half by default. Raises InputError without two
-    forces (displacements), and NoFigureError where no frequency has a wave.
+    `direction` is +1 for a wave towards +x, else -1; the default window is the middle half. Raises InputError without
+    two forces (displacements), and NoFigureError where no frequency has a wave.
     """
     check_two(case)
     frequencies = np.atleast_1d(
@@ -89,18 +89,18 @@ def best_drive(
     ratio, phase, drive = nan, nan, np.full(2, nan, dtype=complex)
     if independence > PROPORTIONAL:
         both = np.concatenate([wanted, unwanted])
-        scale = np.linalg.norm(both, axis=0)  # of each actuator, so that a weak one costs no digits
+        scale = np.linalg.norm(both, axis=0)  # per actuator, so that a weak one loses no digits
         q, r = np.linalg.qr(both / scale)
         drive = np.linalg.solve(r, np.linalg.svd(q[len(wanted) :])[2][-1].conj()) / scale
         ratio = float(abs(drive[1]) / abs(drive[0])) if drive[0] else inf
         phase = float(np.angle(drive[1] * np.conj(drive[0]), deg=True))
 
     def unwanted_share(phases: Array) -> Array:
-        """Root of the power of the unwanted wave over that of both, at equal amplitudes."""
+        """Root of the reflected over the total power, at equal amplitudes."""
         powers = [(abs(w[:, :1] + w[:, 1:] * np.exp(1j * phases)) ** 2).sum(axis=0) for w in (wanted, unwanted)]
         return np.asarray(np.sqrt(powers[1] / sum(powers)))
 
-    # beyond one turn on both sides, so that a minimum at 180 degrees is inside
+    # more than one turn, so that a minimum at 180 degrees is inside
     equal = np.exp(1j * minimum_near(unwanted_share, np.linspace(-1.04, 1.04, 105) * np.pi, 1e-12).x)
     return BestDrive(
         frequencies_hz=frequencies[known],

@@ -1,4 +1,4 @@
-"""A driven beam as one value: a model, its drive and devices; the superposition of the waves of its actuators."""
+"""A driven beam: model, drive and devices; superposition of the waves of its actuators."""
 
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     """One model under harmonic forces, or imposed displacements, at one frequency.
 
-    Raises InputError for a device off the beam or on a support, and for one with a force beside imposed displacements.
+    Raises InputError for a device off the beam or on a support, and for active devices with imposed displacements.
     """
 
     model: BeamModel
@@ -37,23 +37,23 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
             device.check_on(self.beam)
             if device.amplitude and self.kind != "force":
                 raise InputError(
-                    f"drive.kind = {self.kind!r}: beside imposed displacements a device has no force of its own, leave "
+                    f"drive.kind = {self.kind!r}: a device has no force under imposed displacements, leave "
                     "drive.device.amplitude out"
                 )
 
     @property
     def beam(self) -> Beam:
-        """The model's beam."""
+        """Beam of the model."""
         return self.model.beam
 
     @property
     def acting(self) -> tuple[PointForce, ...]:
-        """The forces, those of active devices among them."""
+        """All forces, including those of active devices."""
         return (*self.forces, *(device.own_force for device in self.devices if device.amplitude))
 
     @property
     def passive(self) -> tuple[Device, ...]:
-        """The devices without their own forces."""
+        """The devices with zero blocked force."""
         return tuple(replace(d, amplitude=0.0) for d in self.devices if d.turning or d.stiffness or d.mass or d.dashpot)
 
     def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
@@ -63,9 +63,9 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
         return solve(forces, frequency_hz, devices=self.passive)
 
     def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber in the model, 1/m: by its discrete dispersion where that is known, else the beam's.
+        """Wavenumber in the model, 1/m: by its discrete dispersion if known, else that of the beam.
 
-        Raises NoFigureError above the cut-off of its parts.
+        Raises NoFigureError above the cut-off frequency.
         """
         self.model.check_propagates(frequency_hz)
         if self.beam.section:
@@ -74,7 +74,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def driven(case: DrivenCase, cache: "SolutionCache") -> HarmonicField:
-    """The field of a case, stored in the cache. Raises InputError."""
+    """The field of a case, computed once per cache. Raises InputError."""
     if case not in cache.fields:
         cache.fields[case] = case.field(case.acting, case.frequency_hz)
     return cache.fields[case]
@@ -83,7 +83,7 @@ def driven(case: DrivenCase, cache: "SolutionCache") -> HarmonicField:
 class UnitWaves(msgspec.Struct, frozen=True, eq=False):
     """The two waves in a window per unit force (displacement) of each of n_a actuators, at n frequencies.
 
-    NaN at a frequency without them: an undamped resonance, a cut-off, a window that is too short.
+    NaN at a frequency without a fit: an undamped resonance, beyond the cut-off, or a window that is too short.
     """
 
     case: DrivenCase
@@ -94,14 +94,14 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
     forward: ComplexArray
     """A+ at the middle of the window, (n, n_a), m/N or m/m."""
     backward: ComplexArray
-    """A-, likewise."""
+    """A- at the middle of the window, (n, n_a), m/N or m/m."""
     missing: tuple[NoFigureError, ...]
-    """The reason for each frequency without them."""
+    """The reason for each frequency without waves."""
 
     def superposed(self, drives: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """A+ and A- in m, (n, p) arrays, under p sets of complex amplitudes, (n_a, p) or (n, n_a, p).
 
-        NaN where the motion is rounding. Raises NoFigureError where it is rounding throughout.
+        NaN where the motion is within rounding. Raises NoFigureError where it is at all frequencies.
         """
         scale = np.ones((len(self.k), 1))
         if self.case.kind == "force":
@@ -114,7 +114,7 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
 
 
 def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitWaves:
-    """The unit waves of a case's actuators, active devices among them. Raises InputError for an unfit window."""
+    """Unit waves of a case's actuators, including active devices. Raises InputError for an invalid window."""
     beam, theory, highest = case.beam, case.model.theory, float(frequencies_hz.max())
     positions, couples = [force.position for force in case.acting], [d.position for d in case.passive if d.turning]
     check_span(beam, [*positions, *(d.position for d in case.passive if d.across)], window, couples, theory)
@@ -126,10 +126,10 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
             check_waves(beam, hertz, window, theory)
             own = case.wavenumber(hertz)
             if not np.isfinite(responses[i]).all():
-                held = " held at its actuators" if case.kind == "displacement" else ""
+                fixed = " fixed at its actuators" if case.kind == "displacement" else ""
                 raise ResonanceError(
-                    f"frequency_hz = {hertz!r} is an undamped resonance of the {case.model.name} model{held}: give the "
-                    "beam a loss_factor or choose another frequency"
+                    f"frequency_hz = {hertz!r} is an undamped resonance of the {case.model.name} model{fixed}: give "
+                    "the beam a loss_factor or choose another frequency"
                 )
             k[i] = own
         except NoFigureError as error:
@@ -141,7 +141,7 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
 
 
 def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[float], x: Array) -> ComplexArray:
-    """Deflection at x, (n, n_a, len(x)), per unit force, or displacement with the others at rest; NaN at resonances."""
+    """Deflection at x, (n, n_a, len(x)), per unit force, or displacement with all others zero; NaN at resonances."""
     if case.kind == "force" and not case.passive:
         return case.model.receptance(positions, frequencies_hz, x)
     responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)

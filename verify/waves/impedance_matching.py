@@ -1,19 +1,19 @@
-"""A device that absorbs the wave: the impedance that matches the beam, and the reflection by any other.
+"""Impedance matching of an absorbing device on a beam, and the reflection by any device.
 
-Impedance is force over velocity, Z = R + i (omega m - S/omega) of a dashpot R, a spring S and a mass m; or couple over
-angular velocity. The beam ends at `distance` beyond the device, on any support; waves come from the other side, from so
-far that their near field has decayed. Source: flexural waves on a half-infinite beam, L. Cremer, M. Heckl,
-Structure-Borne Sound, chapters on impedance and on reflection; the classic of matching is Z = conj(Z_beam).
+Impedance is force over velocity, Z = R + i (omega m - S/omega) for a dashpot R, a spring S and a mass m; or couple over
+angular velocity. The beam ends at `distance` behind the device, on any support; waves arrive from the other side
+without near field. Source: flexural waves on a half-infinite beam, L. Cremer, M. Heckl, Structure-Borne Sound, chapters
+on impedance and on reflection; the classical matching condition is Z = conj(Z_beam).
 
-A wave e^{-ikx} from the left makes s = w (or w') at the bare beam's place and comes back as r. A unit force (or couple)
-there sends A s e^{ikx} to the left, with A = -i/(4 EI k^3) of an endless beam, by reciprocity. The device exerts
-i omega Z s Z_b/(Z + Z_b), so that
+On the beam without device a wave e^{-ikx} from the left has the motion s = w (or w') at the device's position and the
+reflection r. By reciprocity a unit force (or couple) at that position sends A s e^{ikx} to the left, A = -i/(4 EI k^3)
+for an infinite beam. The device exerts i omega Z s Z_b/(Z + Z_b), so that
 
-    Gamma = r - i omega A s^2 Z Z_b/(Z + Z_b) = Gamma_held (Z - Z_m)/(Z + Z_b),
+    Gamma = r - i omega A s^2 Z Z_b/(Z + Z_b) = Gamma_rigid (Z - Z_m)/(Z + Z_b),
 
-where Gamma_held = r - i omega A s^2 Z_b belongs to a rigid device, and Z_m = -Z_b r/Gamma_held reflects nothing.
-Without losses Z_m = conj(Z_b) and |Gamma_held| = 1; with a loss factor k is complex, and conj(Z_b), which absorbs the
-most power, still reflects.
+where Gamma_rigid = r - i omega A s^2 Z_b is the reflection by a rigid device, and Z_m = -Z_b r/Gamma_rigid has no
+reflection. Without losses Z_m = conj(Z_b) and |Gamma_rigid| = 1; with a loss factor k is complex, and conj(Z_b), which
+absorbs the most power, still reflects.
 """
 
 import msgspec
@@ -25,21 +25,21 @@ from verify.exact.layout import HELD
 from verify.linear.field import wavenumber
 from verify.problem.beam import Beam, check_frequency
 from verify.problem.device import Device, of_impedance
-from verify.validation import check_kind, check_number
+from verify.validation import check_number, check_type
 
 _DECAY = np.array([1j, 1.0])
-"""q of e^{-q k x} away from a source: a wave, and a near field."""
+"""q in e^{-q k x} away from a source: a wave, and a near field."""
 
 
 class Ending(msgspec.Struct, frozen=True):
-    """A half-infinite beam at a device before its end. Impedances in kg/s, against rotation in N m s."""
+    """A half-infinite beam at a device near its end. Impedances in kg/s, against rotation in N m s."""
 
     own: complex
-    """Z_b, the beam's own."""
+    """Z_b, impedance of the beam."""
     matched: complex
-    """Z_m, of the device that reflects nothing."""
-    held: complex
-    """Gamma_held, the reflection by a rigid device."""
+    """Z_m, impedance of a device without reflection."""
+    rigid: complex
+    """Gamma_rigid, the reflection by a rigid device."""
 
 
 def ending(
@@ -51,48 +51,48 @@ def ending(
     turning: bool = False,
     name: str = "",
 ) -> Ending:
-    """A half-infinite beam at a device at `distance` (m) from an end on a support, against rotation with `turning`.
+    """A half-infinite beam with a device at `distance` (m) from its end, against rotation if `turning`.
 
-    Raises InputError at a support without motion, with the `name` of the position, and for a beam that is not uniform.
+    Raises InputError at a support without motion (message with the `name` of the position) and for a non-uniform beam.
     """
     check_number("position", distance, "metres from the end", at_least=0)
     if not beam.uniform:
-        raise InputError(f"beam.{beam.added[0]}: the impedance of a half-infinite beam is that of a uniform one")
+        raise InputError(f"beam.{beam.features[0]}: a half-infinite beam is uniform, leave it out")
     k, omega = wavenumber(beam, frequency_hz), 2.0 * np.pi * frequency_hz
     unit = 4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3 / omega
 
     def returned(arriving: ComplexArray) -> ComplexArray:
-        """Wave and near field at the device, (2,), that the end sends back of those that leave it, (2,)."""
+        """Reflected wave and near field at the device, (2,), for those arriving from it, (2,)."""
         rows, decay = np.array([(-_DECAY) ** order for order in HELD[support]]), np.exp(-_DECAY * k * distance)
         right = np.array([_DECAY**order @ (arriving * decay) for order in HELD[support]])
         return np.asarray(np.linalg.solve(rows, -right) * decay)
 
-    # motion under a unit force or couple, in 1/(4 EI k^3): that of an endless beam, whose response at the distance r is
-    # -(i e^{-ikr} + e^{-kr}), or its derivative by the source's place, and both waves from the end
+    # motion under a unit force or couple, in 1/(4 EI k^3): that of an infinite beam, whose response at the distance r
+    # is -(i e^{-ikr} + e^{-kr}), or its derivative by the source position, plus wave and near field from the end
     back = returned(-np.array([1j, 1.0]) * (-_DECAY * k if turning else 1.0))
     motion = (1.0 - 1j) * k**2 + back @ (-_DECAY * k) if turning else back.sum() - (1.0 + 1j)
     if motion == 0.0:
         name = name or f"position = {distance!r} m"
-        raise InputError(f"{name} stands on a {support} support, where a device does nothing: move it")
+        raise InputError(f"{name} is on a {support} support, where a device has no effect: move it")
     own = complex(unit / (1j * motion))
     back = returned(np.array([1.0, 0.0]))
     s = k * (1j - back @ _DECAY) if turning else 1.0 + back.sum()
-    held = complex(back[0] - s**2 * own / unit)
-    return Ending(own, -own * complex(back[0]) / held if beam.loss_factor else own.conjugate(), held)
+    rigid = complex(back[0] - s**2 * own / unit)
+    return Ending(own, -own * complex(back[0]) / rigid if beam.loss_factor else own.conjugate(), rigid)
 
 
 def reflection(impedance: complex, end: Ending) -> float:
-    """|Gamma| at a device of this impedance."""
-    return float(abs(end.held) * abs(impedance - end.matched) / abs(impedance + end.own))
+    """|Gamma| at a device of an impedance in kg/s (rotational: N m s)."""
+    return float(abs(end.rigid) * abs(impedance - end.matched) / abs(impedance + end.own))
 
 
 def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning: bool = False) -> Device:
     """The device at a position (m from the left end) that absorbs the wave from the beam's longer side.
 
-    Beyond it the beam ends on its nearer support. Raises InputError.
+    The beam behind the device ends on the nearer support. Raises InputError.
     """
     check_frequency("frequency_hz", frequency_hz, beam)
-    check_kind("turning", turning, bool)
+    check_type("turning", turning, bool)
     check_number("position", position, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
     right = position > 0.5 * beam.length
     distance, support = max(beam.length - position, 0.0) if right else position, beam.supports[right]

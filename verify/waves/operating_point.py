@@ -1,4 +1,4 @@
-"""Operating points of a drive: the frequency of least reflection, and the fastest crests of little reflection."""
+"""Operating points of a drive: frequency of least reflection, and largest crest speed with limited reflection."""
 
 import msgspec
 import numpy as np
@@ -11,33 +11,32 @@ from verify.waves.two_waves import Waveguide, minimum_near, reflections
 from verify.waves.window import Window, middle_half
 
 SEARCH_SPAN = 0.015
-"""Half width of a search, relative to the drive's frequency."""
+"""Half width of the frequency search, relative to the drive's frequency."""
 PHASES_DEG = (5.0, 175.0)
-"""Range of the search in the phase between two drives, in size."""
+"""Range of the search in |phase| between the two forces, degrees."""
 ROUNDING = 1e-13
-"""Excess over the limit of a reflection that is rounding."""
+"""Excess of a reflection over its limit that is rounding."""
 _ZOOM, _LEVELS, _SHARP = 17, 13, 1e-12
-"""Points of a finer grid, number of such grids in phase (to 1e-12 rad), and relative interval of the last in
-frequency."""
+"""Points per refinement, number of refinements in phase (to 1e-12 rad), last relative interval in frequency."""
 
 
 class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):
-    """A drive of two actuators."""
+    """Operating point of a drive of two actuators."""
 
     frequency_hz: float
     phase_deg: float
-    """Lead of the second force."""
+    """Phase lead of the second force."""
     reflection: float
     crest_speed: float
-    """m/s, under the forces of the case."""
+    """m/s, with the force amplitudes of the case."""
     at_edge: bool
-    """Whether the crest speed still grows at the edge of the search in frequency."""
+    """Whether the crest speed still rises at the edge of the frequency search."""
 
 
 def best_frequency(case: DrivenCase, span: float = SEARCH_SPAN, window: Window | None = None) -> float:
-    """The frequency within `span` (relative) of the drive's with the least reflection, Hz, to 1e-5 Hz.
+    """Frequency of least reflection within `span` (relative) of the drive's frequency, Hz, to 1e-5 Hz.
 
-    Raises InputError where the reflection still falls at the edge of the search, and where the wave stands throughout.
+    Raises InputError for a minimum at the edge of the search, and for a standing wave at all frequencies.
     """
     drives = np.array([[phasor(force)] for force in case.acting])
 
@@ -48,14 +47,14 @@ def best_frequency(case: DrivenCase, span: float = SEARCH_SPAN, window: Window |
             if len(at) > 1:
                 raise
             return np.ones(1)
-        return np.nan_to_num(reflections(*waves)[:, 0], nan=1.0)  # on a resonance the wave stands
+        return np.nan_to_num(reflections(*waves)[:, 0], nan=1.0)  # standing wave at a resonance
 
     least = minimum_near(reflection, np.linspace(1.0 - span, 1.0 + span, 41) * case.frequency_hz, 1e-5)
     if least.value > 1.0 - 1e-6:
         low, high = ((1.0 + side * span) * case.frequency_hz for side in (-1, 1))
         raise InputError(
-            f"phase_deg: with this phase between the forces the wave stands at every frequency from {low:.6g} to "
-            f"{high:.6g} Hz, so none is best, choose another phase_deg"
+            f"phase_deg: with this phase between the forces the wave is standing at every frequency from {low:.6g} to "
+            f"{high:.6g} Hz, choose another phase_deg"
         )
     if least.at_edge:
         raise InputError(
@@ -66,23 +65,23 @@ def best_frequency(case: DrivenCase, span: float = SEARCH_SPAN, window: Window |
 
 
 def check_two(case: DrivenCase) -> None:
-    """Raise InputError without two forces, or with a device that has a force of its own."""
+    """Raise InputError unless the case has two forces and no active device."""
     if len(case.forces) != 2:
-        raise InputError(f"drive.force: there are {len(case.forces)} forces, a phase between two needs two: give two")
+        raise InputError(f"drive.force has {len(case.forces)} forces: give two, with a phase between them")
     if len(case.acting) > 2:
-        raise InputError("drive.device.amplitude: a phase between two forces knows no third, leave it out")
+        raise InputError("drive.device.amplitude is a third force: leave it out for a phase between two forces")
 
 
 def lead_deg(case: DrivenCase) -> float:
-    """Lead of the second of two forces, in (-180, 180] degrees."""
+    """Phase lead of the second force, in (-180, 180] degrees."""
     return 180.0 - (180.0 - (case.forces[1].phase_deg - case.forces[0].phase_deg)) % 360.0
 
 
 def maximum_crest_speed(case: DrivenCase, limit: float, span: float = SEARCH_SPAN) -> OperatingPoint:
-    """The fastest crests in the middle half with a reflection up to `limit`, by two forces of these amplitudes.
+    """Largest crest speed in the middle half with reflection up to `limit` under two forces of constant amplitude.
 
-    Over frequencies within `span` (relative) of the drive's and phases of 5 to 175 degrees, of the sign that the case
-    has. Raises InputError without two forces, and where no point keeps the limit.
+    Searched over frequencies within `span` (relative) of the drive's and phases of 5 to 175 degrees with the sign of
+    the case. Raises InputError without two forces, and where the reflection exceeds the limit at all points.
     """
     check_two(case)
     first, second = (force.amplitude for force in case.forces)
@@ -90,8 +89,8 @@ def maximum_crest_speed(case: DrivenCase, limit: float, span: float = SEARCH_SPA
     guide = Waveguide(case.beam, case.model.theory)
     edges = (1.0 - span) * case.frequency_hz, (1.0 + span) * case.frequency_hz
     at = np.linspace(*edges, 121)
-    # grids around the best point, eight times finer each: without derivatives, since the best point is often a corner,
-    # where the reflection reaches its limit; points beyond the limit rank by their reflection, which leads to it
+    # grids around the best point, each eight times finer: no derivatives, since the best point is often a corner at
+    # which the reflection reaches its limit; points beyond the limit are ranked by their reflection
     while True:
         waves, rows = unit_waves(case, at, middle_half(case.beam)), np.arange(len(at))
         omega, phases = 2.0 * np.pi * at[:, None], np.tile(np.linspace(ends[0], ends[1], 171), (len(at), 1))
@@ -113,7 +112,7 @@ def maximum_crest_speed(case: DrivenCase, limit: float, span: float = SEARCH_SPA
             break
         at = np.linspace(below, above, _ZOOM)
     if rank[i] < 0.0:
-        raise InputError(f"limit = {limit!r}: no frequency and phase near the drive has so little reflection, raise it")
+        raise InputError(f"limit = {limit!r}: the reflection near the drive's frequency is larger, raise it")
     return OperatingPoint(
         frequency_hz=float(at[i]),
         phase_deg=float(np.rad2deg(phase[i])),

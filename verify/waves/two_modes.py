@@ -1,12 +1,12 @@
-"""The lumped-parameter model of a travelling wave: two modes a quarter of a period apart.
+"""The lumped-parameter model of a travelling wave: two modes in quadrature.
 
-At a point the derivatives of a mode separate both waves from both near fields:
+The derivatives of a mode at a point separate both waves from both near fields:
 
     w - w''/k^2 = 2 (A+ + A-),   w' - w'''/k^2 = -2 i k (A+ - A-).
 
-Along a uniform beam without losses a driven field has one standing-wave ratio between two forces. Two modes do not:
+A driven field of a uniform undamped beam has a constant standing-wave ratio between two forces, two modes do not:
 equal neighbours n, n + 1 of a pinned beam in quadrature have |A+-|^2 as 1 +- sin(pi x / L), so that the ratio is
-max(tan, cot)(pi x / 2L): a pure wave at mid-span, standing at the ends. Derived here; the picture is that of
+max(tan, cot)(pi x / 2L): travelling at mid-span, standing at the ends. Derived here; the model is that of
 C. Vloebergh, J.-F. Collard, B. Dehez, F. Labrique, *Study of a travelling wave linear piezomotor using analytical,
 finite-element and lumped parameter models*, Electrimacs 2008.
 """
@@ -24,12 +24,12 @@ from verify.waves.two_waves import reflections, standing_wave_ratios
 def lumped_swr(beam: Beam, x: Numbers, modes: tuple[int, int] = (21, 22)) -> Array:
     """Local standing-wave ratio (|A+| + |A-|) / ||A+| - |A-|| at x (m), (n,), of phi_a + i phi_b, mass-normalised.
 
-    Infinite at a standing wave. Raises InputError off the beam, for one mode twice and a beam that is not uniform.
+    Infinite for a standing wave. Raises InputError off the beam, for equal modes and for a non-uniform beam.
     """
     if not beam.uniform:
-        raise InputError(f"beam.{beam.added[0]}: two modes are one wave on a uniform beam alone, leave it out")
+        raise InputError(f"beam.{beam.features[0]}: the two-mode model takes a uniform beam, leave it out")
     if modes[0] == modes[1]:
-        raise InputError(f"modes = {list(modes)}: one mode with itself stands, give two that differ")
+        raise InputError(f"modes = {list(modes)}: give two different modes")
     at, model = vector_on("x", x, beam.length), ExactModel(beam)
     forward = backward = np.zeros(len(at), dtype=complex)
     for mode, factor in zip(modes, (1.0, 1j), strict=True):

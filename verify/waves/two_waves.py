@@ -11,42 +11,42 @@ from verify.errors import InputError, NoFigureError
 from verify.linear.field import HarmonicField, phasor, unit_response, wavenumber
 from verify.linear.numerics import Rule, gauss_rule
 from verify.problem.beam import Beam
-from verify.validation import check_kind
+from verify.validation import check_type
 from verify.waves.window import Window, check_span, check_wavenumber, check_waves
 
 STANDING, ROUNDING = 1e-12, 1e-13
-"""1 - Gamma below which a wave is a standing one, and deflection over the response to the forces that is rounding."""
+"""1 - Gamma below which a wave is standing, and deflection over `unit_response` times force that is rounding."""
 _REACH = 0.04
-"""Largest relative distance of a fitted wavenumber from the beam's own."""
+"""Largest relative distance of a fitted wavenumber from that of the beam."""
 
 
 def reflections(forward: ComplexArray, backward: ComplexArray) -> Array:
-    """Gamma of amplitudes of any one shape: the weaker over the stronger; 1 where both are zero."""
+    """Gamma, weaker over stronger amplitude, elementwise for arrays of equal shape; 1 where both are zero."""
     sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
     return np.asarray(np.where(sizes[1] == 0.0, 1.0, sizes[0] / np.where(sizes[1] == 0.0, 1.0, sizes[1])))
 
 
 def standing_wave_ratios(gammas: Array) -> Array:
-    """(1 + Gamma) / (1 - Gamma) of reflections of any shape, infinite from 1 - `STANDING` on."""
+    """(1 + Gamma) / (1 - Gamma), elementwise; infinite from Gamma = 1 - `STANDING` on."""
     stands = gammas >= 1.0 - STANDING
     return np.asarray(np.where(stands, np.inf, (1.0 + gammas) / np.where(stands, 1.0, 1.0 - gammas)))
 
 
 class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
+    """A forward and a backward wave fitted to phasors; amplitudes refer to the middle of the window."""
 
     wavenumber: complex
-    """k, 1/m, stated or fitted."""
+    """k, 1/m, prescribed or fitted."""
     forward: complex
     """A+ of e^{-ik(x - middle)}, m."""
     backward: complex
     """A- of e^{+ik(x - middle)}, m."""
     residual: float
-    """Part of the field that the two waves do not explain, rms over rms."""
+    """Residual of the fit, rms over rms of the field."""
 
     @property
     def direction(self) -> int:
-        """Direction of the stronger wave: +1 towards +x, else -1."""
+        """Direction of the stronger wave: +1 towards +x, -1 towards -x."""
         return 1 if abs(self.forward) >= abs(self.backward) else -1
 
     @property
@@ -60,9 +60,9 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return float(standing_wave_ratios(np.array(self.reflection)))
 
     def check_travelling(self) -> None:
-        """Raise NoFigureError for a standing wave: its flux and signed area are zero but for rounding."""
+        """Raise NoFigureError for a standing wave, whose flux and signed area are within rounding of zero."""
         if self.reflection >= 1.0 - STANDING:
-            raise NoFigureError("the wave stands: its energy flux and S3 are zero, choose another phase_deg")
+            raise NoFigureError("standing wave: its energy flux and S3 are zero, choose another phase_deg")
 
 
 def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
@@ -72,7 +72,7 @@ def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
 
 
 def window_rule(window: Window, k: float) -> Rule:
-    """Gauss points and weights of a window: the fit is then in the mean square over all of it."""
+    """Gauss points and weights of a window, for a fit in the mean square."""
     start, end = map(float, window)
     return gauss_rule((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
 
@@ -85,8 +85,8 @@ def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle
 
 
 def two_waves(field: HarmonicField, window: Window, wave_number: complex | None = None) -> TwoWaves:
-    """The two waves of a field in a window, fitted in the mean square. Raises as `travelling_wave.measure`."""
-    check_kind("field", field, HarmonicField)
+    """The two waves of a field in a window, fitted in the mean square. Errors as in `travelling_wave.measure`."""
+    check_type("field", field, HarmonicField)
     hertz = float(field.frequency_hz)
     check_span(field.beam, [force.position for force in field.forces], window, field.couples, field.theory)
     check_waves(field.beam, hertz, window, field.theory)
@@ -102,17 +102,17 @@ def two_waves(field: HarmonicField, window: Window, wave_number: complex | None 
 
 
 def zero_field() -> NoFigureError:
-    """The error of a field without motion in the window."""
+    """The error for a field that is zero in the window."""
     return NoFigureError(
-        "the field is zero in the window: drive.force acts on a support or has no amplitude, move it or give it one"
+        "the field is zero in the window: drive.force is on a support or has no amplitude, move it or give it one"
     )
 
 
 def fit_waves(x: Array, deflection: ComplexArray, k: complex) -> TwoWaves:
-    """Forward and backward amplitude by least squares on phasors (n,) at x (n,), m: exact on two-wave fields.
+    """Forward and backward amplitude by least squares on phasors (n,) at x (n,), m: exact for two-wave fields.
 
     Amplitudes refer to the middle of x. Raises InputError for other shapes, values that are not finite, a zero
-    deflection, and a wavenumber that does not propagate or of which x spans less than half a wavelength.
+    deflection, an evanescent wavenumber, and x over less than half a wavelength.
     """
     at, values = np.asarray(x, dtype=float), np.asarray(deflection, dtype=complex)
     if at.ndim != 1 or len(at) < 2 or values.shape != at.shape or not np.isfinite([at, values]).all():
@@ -131,9 +131,9 @@ def _fit(x: Array, deflection: ComplexArray, k: complex, weights: Array) -> TwoW
 
 
 def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weights: Array | None = None) -> complex:
-    """The wavenumber near `start` (within 4 %, the same phase) of least residual.
+    """The wavenumber of least residual within 4 % of `start`, with the same complex phase.
 
-    Raises InputError where the residual still falls at the edge of the search.
+    Raises InputError for a minimum at the edge of the search.
     """
     halves, weights = float(x[-1] - x[0]) * start.real / np.pi, np.ones(len(x)) if weights is None else weights
     grid = np.linspace(1.0 - _REACH, 1.0 + _REACH, 2 * int(np.ceil(4.0 * _REACH * halves)) + 9)
@@ -144,14 +144,14 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weight
     least = minimum_near(residuals, grid, 1e-10)
     if least.at_edge:
         raise InputError(
-            f"the fitted wavenumber ends at the edge of its search, {least.x * start.real:.6g} 1/m, {_REACH:.0%} from "
-            f"the beam's {start.real:.6g} 1/m: state the wavenumber, the field is not two waves near the beam's"
+            f"the fitted wavenumber {least.x * start.real:.6g} 1/m is at the edge of its search, {_REACH:.0%} from the "
+            f"beam's {start.real:.6g} 1/m: the field is not two waves, prescribe the wavenumber or choose a window"
         )
     return complex(least.x * start)
 
 
 class Minimum(msgspec.Struct, frozen=True):
-    """Minimum of a figure in an interval; `at_edge`: it still falls at an end of the interval."""
+    """Minimum of a function in an interval; `at_edge`: at an end of the interval."""
 
     x: float
     value: float
@@ -159,14 +159,14 @@ class Minimum(msgspec.Struct, frozen=True):
 
 
 def minimum_near(figure: Callable[[Array], Array], grid: Array, tolerance: float) -> Minimum:
-    """The minimum, to `tolerance` in x, of `figure` ((n,) -> (n,), not negative) next to the best of a grid."""
+    """The minimum, to `tolerance` in x, of a non-negative function ((n,) -> (n,)) next to the best grid point."""
     from scipy.optimize import minimize_scalar
 
     values = figure(grid)
     i = int(np.argmin(values))
     best, low, high = (float(grid[j]) for j in (i, max(i - 1, 0), min(i + 1, len(grid) - 1)))
-    # the square: a figure that falls to zero has a corner there, its square a parabola; steps from the best of the
-    # grid, so that no digits are lost to the size of x
+    # the square: a function that falls to zero has a corner, its square a parabola; distances from the best grid
+    # point, so that no digits are lost to the size of x
     least = minimize_scalar(
         lambda step: float(figure(np.array([best + step]))[0]) ** 2,
         bounds=(low - best, high - best),
@@ -178,13 +178,13 @@ def minimum_near(figure: Callable[[Array], Array], grid: Array, tolerance: float
 
 
 class Waveguide(msgspec.Struct, frozen=True):
-    """A beam's own section by a theory. All methods take arrays as well."""
+    """The beam's own section as a waveguide of a theory. Methods take numbers or arrays."""
 
     beam: Beam
     theory: str = "euler-bernoulli"
 
     def rotation_ratio(self, omega: Any) -> Any:
-        """Rotation of the section over the slope of the line in a travelling wave: 1 without shear.
+        """psi/w', rotation of the section over slope of the neutral line in a travelling wave: 1 without shear.
 
         kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921);
         complex with losses.
@@ -204,14 +204,14 @@ class Waveguide(msgspec.Struct, frozen=True):
     def crest_speed(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
         """Velocity of the surface along +x at the crests of both waves, m/s.
 
-        When w at a point is largest, u_x changes at omega S3 / (2 |w|). S3 = -2 r (|A+|^2 - |A-|^2) is constant; with
-        the rms sqrt(|A+|^2 + |A-|^2) of |w| that is -omega r (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2).
+        At largest w, du_x/dt = omega S3 / (2 |w|). S3 = -2 r (|A+|^2 - |A-|^2) is constant; with the rms
+        sqrt(|A+|^2 + |A-|^2) of |w| the velocity is -omega r (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2).
         """
         plus, minus = abs(forward) ** 2, abs(backward) ** 2
         return -omega * self.axis_ratio(omega, k) * (plus - minus) / np.sqrt(plus + minus)
 
     def energy_flux(self, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
-        """Power that both waves carry towards +x, W, at the point to which their amplitudes refer.
+        """Energy flux of both waves towards +x, W, at the point to which their amplitudes refer.
 
         Transverse force times velocity and moment times angular velocity, 1/2 Re, with EI (1 + i eta); undamped
         EI k^3 omega (|A+|^2 - |A-|^2). Axial force and rotary inertia contribute to the transverse force.

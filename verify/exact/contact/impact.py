@@ -1,7 +1,7 @@
 """Impacts in closed form: a mass that bounces on a vibrating surface, and a mass that lands on a spring and dashpot.
 
 Bouncing: the surface moves as A sin theta; `ratio` is A omega^2 over the acceleration of the preload, g + F/m. P. J.
-Holmes, J. Sound Vib. 84 (1982) 173. Landing: spring k and dashpot c push and never pull, omega_0 = sqrt(k/m), zeta =
+Holmes, J. Sound Vib. 84 (1982) 173. Landing: unilateral spring k and dashpot c, omega_0 = sqrt(k/m), zeta =
 c/(2 m omega_0), gravity is neglected during the impact. T. Schwager and T. Poeschel, Granular Matter 9 (2007) 465.
 """
 
@@ -12,23 +12,23 @@ from verify.exact.contact.layer import root
 from verify.validation import check_number
 
 SEARCH_STEP = 2.0 * pi / 720
-"""Radians; first search for a landing."""
+"""Step of the first search for a landing, rad."""
 LARGEST_RATIO = 1e9
-"""A flight lasts 2 ratio radians; beyond this rounding leaves its landing phase fewer than six digits."""
+"""Largest ratio: a flight lasts 2 ratio radians, and beyond it the landing phase has fewer than six digits."""
 
 
 def landing_phase(ratio: float) -> float:
     """Phase of the first landing after lift-off, radians. Raises InputError for a ratio outside 1 to 1e9."""
     check_number("acceleration_ratio", ratio, "largest acceleration over that of the preload", at_most=LARGEST_RATIO)
     if not ratio > 1.0:
-        raise InputError(f"acceleration_ratio = {ratio!r}: the mass lifts off above 1 alone, raise it")
+        raise InputError(f"acceleration_ratio = {ratio!r}: the mass lifts off above 1 only, raise it")
     start = asin(1.0 / ratio)
 
     def gap(theta: float) -> float:
         t = theta - start
         return sin(start) + cos(start) * t - 0.5 * t * t / ratio - sin(theta)
 
-    # no landing before the parabola is down to the crests: the mass passes them within a quarter of a turn
+    # no landing before the parabola falls to the crests, which the mass passes within a quarter of a period
     above_crests = ratio * (1.0 + cos(start)) - 1.0
     after = start + SEARCH_STEP * max(int(above_crests / SEARCH_STEP), 1)
     while gap(after) > 0.0:

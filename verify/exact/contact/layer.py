@@ -16,7 +16,7 @@ from verify.errors import InputError
 from verify.validation import check_number
 
 NARROWEST = 1e-3
-"""Half angle of a contact, radians, below which sines and cosines leave fewer than nine digits of the normal force."""
+"""Smallest half angle of a contact, rad: below it the normal force has fewer than nine digits."""
 ROUNDING = 4e-15
 """Distance from the friction limit of a layer that has just stopped slipping."""
 
@@ -45,7 +45,7 @@ def no_load_speed(phi: float, epsilon: float = 0.0) -> float:
     """Speed over V at which the friction force vanishes. Raises InputError."""
     _check(phi, epsilon)
     if epsilon >= 1.0 / phi - cos(phi) / sin(phi):
-        return sin(phi) / phi  # it sticks throughout
+        return sin(phi) / phi  # full sticking
     if epsilon > 0.0:
         return root(lambda r: force(phi, r, epsilon), min(cos(phi), 0.0), 1.0)
     half = 0.5 * normal_integral(phi, phi)
@@ -53,7 +53,7 @@ def no_load_speed(phi: float, epsilon: float = 0.0) -> float:
 
 
 def efficiency(phi: float, r: float) -> float:
-    """Power on the slider over power into the layer, Coulomb's law, 0 <= r < 1. Raises InputError where none flows."""
+    """Power on the slider over power into the layer, Coulomb's law, 0 <= r < 1. Raises InputError without power."""
     _check(phi, 0.0)
     check_number("speed_ratio", r, "over the speed of the crests", at_least=0, below=1)
     psi = acos(r) if r > cos(phi) else phi
@@ -64,7 +64,7 @@ def efficiency(phi: float, r: float) -> float:
 
     supplied = 2.0 * power(psi) - power(phi)
     if supplied <= 0.0:
-        raise InputError(f"speed_ratio = {r!r}: the slider drives the layer, no efficiency exists; lower it")
+        raise InputError(f"speed_ratio = {r!r}: the slider drives the layer and has no efficiency, lower it")
     return r * (2.0 * normal_integral(psi, phi) - normal_integral(phi, phi)) / supplied
 
 
@@ -85,7 +85,7 @@ def _check(phi: float, epsilon: float) -> None:
 
 
 def _shear_integral(phi: float, r: float, epsilon: float) -> float:
-    """Integral of the shear y over the contact, which begins unsheared at s = -phi, from event to event."""
+    """Integral of the shear y over the contact, from y = 0 at s = -phi, event by event."""
     s, c, sign, total = -phi, sin(phi) - r * phi, 0, 0.0  # sign: direction of slip, 0 while it sticks
     while s < phi:
         if sign:
