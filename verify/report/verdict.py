@@ -1,0 +1,111 @@
+"""Verdicts: how far a result can be trusted, from the margins of the assumptions behind it."""
+
+from collections.abc import Iterable
+from math import isfinite
+from typing import Any, Literal, TypeAlias
+
+import msgspec
+
+Level: TypeAlias = Literal["trusted", "conditional", "not trusted"]
+LEVELS: tuple[Level, ...] = ("trusted", "conditional", "not trusted")
+COLOURS: dict[Level, str] = {"trusted": "green", "conditional": "yellow", "not trusted": "red"}
+"""Of a terminal: green is for results without a condition."""
+FINE, LIMIT = 0.01, 0.10
+"""Relative errors up to which a result is trusted, and trusted under a condition."""
+
+
+class Margin(msgspec.Struct, frozen=True, kw_only=True):
+    """One assumption behind a result, with the size of what it leaves out."""
+
+    name: str
+    """'discretisation of 49 segments'."""
+    size: float
+    """Relative error that it leaves in the result, or its fraction of a limit; infinite where there is no result."""
+    where: str = ""
+    """The mode or frequency that answers: 'at mode 22'."""
+    fine: float = FINE
+    """Size above which the result is trusted only under the condition."""
+    limit: float = LIMIT
+    """Size above which the result is not trusted."""
+    condition: str = ""
+    """After 'only if': 'bending across the width may be left out: 2.5 % at mode 22'."""
+    failure: str = ""
+    """After 'not to be trusted': 'the preload bends the beam by 84 mm'."""
+    remedy: str = ""
+    """What to change: 'give 60 segments or more'."""
+    is_error: bool = True
+    """Whether the size is an error of the result, which 'trusted to' names; otherwise a fraction of a limit."""
+
+    @property
+    def level(self) -> Level:
+        """Its own level; a size that is not a number is not trusted."""
+        return "trusted" if self.size <= self.fine else "conditional" if self.size <= self.limit else "not trusted"
+
+    @property
+    def text(self) -> str:
+        """The size in words: '0.43 % by the discretisation of 49 segments at mode 22'."""
+        return f"{self.name} {per_cent(self.size)} {self.where}".rstrip()
+
+
+class Verdict(msgspec.Struct, frozen=True, kw_only=True):
+    """How far a result can be trusted."""
+
+    level: Level
+    headline: str
+    """One sentence with the worst margin in words and per cent, and a remedy where it is not trusted."""
+    margins: tuple[Margin, ...] = ()
+    """Worst first."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON: level, headline, margins with their sizes and limits."""
+        names = ("name", "where", "size", "fine", "limit", "level", "condition", "failure", "remedy")
+        margins = [{name: getattr(one, name) for name in names} for one in self.margins]
+        return {"level": self.level, "headline": self.headline, "margins": margins}
+
+
+def verdict_of(margins: Iterable[Margin]) -> Verdict:
+    """The verdict by the worst of the margins: by level, then by size over limit."""
+    ordered = sorted(dict.fromkeys(margins), key=_badness, reverse=True)
+    if not ordered:
+        return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
+    worst = ordered[0]
+    if worst.level == "not trusted":
+        sentence = worst.failure or f"{worst.text}, more than {per_cent(worst.limit)}"
+        headline = f"Not to be trusted: {sentence}." + f" {worst.remedy[:1].upper()}{worst.remedy[1:]}." * bool(
+            worst.remedy
+        )
+    elif worst.level == "conditional":
+        others = sum(one.level == "conditional" for one in ordered) - 1
+        more = f" ({others} more condition{'s' * (others > 1)})" if others else ""
+        headline = f"Trusted only if {worst.condition or f'{worst.name} may be left out'}: {_size(worst)}{more}."
+    else:
+        errors = [one for one in ordered if one.is_error and isfinite(one.size)]
+        largest = max(errors, key=lambda one: one.size, default=None)
+        headline = (
+            f"Trusted to {per_cent(largest.size)} ({largest.name} {largest.where}".rstrip() + ")."
+            if largest
+            else "Trusted: no margin is beyond its limit."
+        )
+    return Verdict(level=worst.level, headline=headline, margins=tuple(ordered))
+
+
+def void(name: str, failure: str, remedy: str = "") -> Margin:
+    """The margin of a result that does not exist: not converged, diverged, left the beam."""
+    return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy)
+
+
+def per_cent(ratio: float) -> str:
+    """'0.43 %', '110 %': two digits, no exponent where a person reads one badly."""
+    if not isfinite(ratio):
+        return "more than all of it"
+    value = 100.0 * abs(ratio)
+    return f"{float(f'{value:.2g}'):.0f} %" if 100.0 <= value < 1e5 else f"{value:.2g} %"
+
+
+def _badness(margin: Margin) -> tuple[int, float]:
+    share = margin.size / margin.limit if margin.size == margin.size else float("inf")
+    return LEVELS.index(margin.level), share
+
+
+def _size(margin: Margin) -> str:
+    return f"{per_cent(margin.size) if margin.is_error else f'{margin.size:.2g}'} {margin.where}".rstrip()
