@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verify.report.result import Column, Result, Table
-from verify.report.summary import VERDICTS, verdict, worst_gate
+from verify.report.summary import verdict, worst_gate
+from verify.report.verdict import LEVELS, Verdict
 
 if TYPE_CHECKING:
     from verify.report.archive import Saved
@@ -21,7 +22,8 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
         "scene": name,
         "title": run.scene.title or run.scene.name,
         "passed": run.passed,
-        "verdict": verdict(run),
+        "level": verdict(run).level,
+        "verdict": verdict(run).headline,
         "failed": [{"gate": one.gate.id, "reason": one.reason} for one in run.failed],
         "worst": None if worst is None else worst.gate.id,
         "fraction": None if worst is None else worst.fraction,
@@ -33,18 +35,15 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
 
 def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
     """The same of a scene that cannot run."""
-    return {"scene": name, "title": name, "passed": None, "failed": [], "errors": list(sentences)}
+    return {"scene": name, "title": name, "passed": None, "level": LEVELS[-1], "failed": [], "errors": list(sentences)}
 
 
 def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     """All scenes as a result: those that fail first."""
-    order = {None: 0, False: 1, True: 2}
-    ordered = sorted(lines, key=lambda line: order[line["passed"]])
+    ordered = sorted(lines, key=lambda line: (line["passed"] is not None, line["passed"], -LEVELS.index(line["level"])))
     keys = ("scene", "verdict", "worst", "fraction", "seconds")
-    rows = [
-        (VERDICTS.get(one["passed"]) if one["passed"] is not None else CANNOT, *map(one.get, keys)) for one in ordered
-    ]
-    columns = [Column(name) for name in ("verdict", "scene", "gates", "worst gate")]
+    rows = [(CANNOT if one["passed"] is None else one["level"], *map(one.get, keys)) for one in ordered]
+    columns = [Column(name) for name in ("level", "scene", "verdict", "worst gate")]
     columns += [Column("of tolerance", format=".3g", percent=True), Column("time", "s", ".3g")]
     reasons = [(line["scene"], one["gate"], one["reason"]) for line in ordered for one in line["failed"]]
     reasons += [(line["scene"], "", text) for line in ordered for text in line.get("errors", ())]
@@ -59,7 +58,9 @@ def index_result(lines: Sequence[dict[str, Any]]) -> Result:
 def index_verdict(lines: Sequence[dict[str, Any]]) -> str:
     """One line over all scenes."""
     bad = sum(line["passed"] is not True for line in lines)
-    return f"{bad} of {len(lines)} scenes failed" if bad else f"All {len(lines)} scenes passed"
+    text = f"{bad} of {len(lines)} scenes failed" if bad else f"All {len(lines)} scenes passed their gates"
+    levels = [line["level"] for line in lines]
+    return f"{text}: " + ", ".join(f"{levels.count(one)} {one}" for one in LEVELS if one in levels)
 
 
 def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, seconds: float) -> None:
@@ -76,8 +77,7 @@ def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, secon
         "scenes",
         sections,
         title="All scenes",
-        passed=result.data["passed"],
-        verdict=result.summary,
+        verdict=Verdict(level=max((line["level"] for line in lines), key=LEVELS.index), headline=result.summary),
         seconds=seconds,
         command=command,
     )

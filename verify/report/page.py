@@ -12,12 +12,12 @@ from verify.report.result import Figure, Movie, Result, Table, to_json
 from verify.report.summary import (
     environment,
     expected,
+    gates_in_words,
     gates_table,
     skipped_table,
     study_title,
     value_text,
     verdict,
-    void_results,
     worst_gate,
 )
 
@@ -57,7 +57,6 @@ def run_page(run: "RunResult", command: str = "") -> str:
 
     scene, beam = run.scene, beam_figure(run.scene)
     studies = [_study_section(run, name, result) for name, result in run.results.items()]
-    void = void_results(run)
     summaries = [(section.title, section.id, " ".join(section.paragraphs)) for section in studies if section.paragraphs]
     sections = [Section("gates", "Gates", tables=[gates_table(run)])] if run.gates else []
     sections += studies
@@ -69,13 +68,11 @@ def run_page(run: "RunResult", command: str = "") -> str:
         name=scene.name,
         title=scene.title or scene.name,
         subtitle=scene.description,
-        passed=run.passed,
         verdict=verdict(run),
         seconds=run.seconds,
-        void=bool(void),
-        problems=[f"{study_title(run, name)}: {why}" for name, why in void.items()]
-        + [f"{one.gate.id}: {one.reason}" for one in run.failed],
-        warnings=list(dict.fromkeys(getattr(run, "warnings", ()))),
+        gates=gates_in_words(run),
+        problems=[f"{one.gate.id}: {one.reason}" for one in run.failed],
+        warnings=list(dict.fromkeys(run.warnings)),
         drawing=figure_svg(beam),
         drawing_caption=beam.caption,
         summaries=summaries,

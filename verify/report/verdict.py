@@ -77,7 +77,8 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
     elif worst.level == "conditional":
         others = sum(one.level == "conditional" for one in ordered) - 1
         more = f" ({others} more condition{'s' * (others > 1)})" if others else ""
-        headline = f"Trusted only if {worst.condition or f'{worst.name} may be left out'}: {_size(worst)}{more}."
+        size = f": {per_cent(worst.size)} {worst.where}".rstrip() if worst.is_error else ""
+        headline = f"Trusted only if {worst.condition or f'{worst.name} may be left out'}{size}{more}."
     else:
         errors = [one for one in ordered if one.is_error and isfinite(one.size)]
         largest = max(errors, key=lambda one: one.size, default=None)
@@ -105,7 +106,3 @@ def per_cent(ratio: float) -> str:
 def _badness(margin: Margin) -> tuple[int, float]:
     share = margin.size / margin.limit if margin.size == margin.size else float("inf")
     return LEVELS.index(margin.level), share
-
-
-def _size(margin: Margin) -> str:
-    return f"{per_cent(margin.size) if margin.is_error else f'{margin.size:.2g}'} {margin.where}".rstrip()

@@ -16,6 +16,7 @@ from verify.scene.model import Scene
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Result
+    from verify.report.verdict import Margin
 
 Progress: TypeAlias = Callable[[str], None]
 
@@ -41,7 +42,9 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     skipped: tuple[PlanRow, ...]
     """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
-    """Implausible units, and a deflection beyond small-amplitude theory."""
+    """Implausible units."""
+    margins: "tuple[Margin, ...]" = ()
+    """Linear theory under the drive and under the weight of the slider."""
     seconds: float
 
     @property
@@ -65,7 +68,7 @@ def run_scene(
     """
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES
-    from verify.scene.warnings import deflection_warning, unit_warnings
+    from verify.scene.warnings import unit_warnings
     from verify.studies.base import studies_of
 
     start = perf_counter()
@@ -87,7 +90,8 @@ def run_scene(
         gates=tuple(gates),
         results=results,
         skipped=tuple(row for row in rows if not row.runs),
-        warnings=(*unit_warnings(loaded), *deflection_warning(loaded, _largest_deflection(loaded, cache))),
+        warnings=unit_warnings(loaded),
+        margins=_margins(loaded, cache),
         seconds=perf_counter() - start,
     )
 
@@ -135,11 +139,14 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
     return skip
 
 
-def _largest_deflection(scene: Scene, cache: "SolutionCache") -> float | None:
-    """Amplitude of the exact steady field, its maximum along the beam, m; None without a drive, or at a resonance."""
-    from verify.quantities.base import evaluate
+def _margins(scene: Scene, cache: "SolutionCache") -> "tuple[Margin, ...]":
+    """Of the exact steady motion; none without a drive and at a resonance."""
+    from verify.analysis.margins import drive_margins, sag_margins
+    from verify.quantities.waves import FieldOptions, driven_case
+    from verify.waves.driven_case import driven
 
-    places = [scene.beam.length * i / 200.0 for i in range(201)] if scene.forces else []
-    with suppress(InputError):
-        return max((abs(evaluate("wave.deflection", {"x": x}, scene, cache)) for x in places), default=None)  # type: ignore[arg-type]
-    return None
+    found = sag_margins(cache, scene.slider) if scene.slider else []
+    if scene.forces:
+        with suppress(InputError):
+            found += drive_margins(driven(driven_case(scene, FieldOptions()), cache))
+    return tuple(found)

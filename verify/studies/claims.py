@@ -81,9 +81,12 @@ def unit_of(claim: "Claim") -> str:
 
 def computed(claim: "Claim", scene: "Scene", cache: "SolutionCache", **other: Any) -> float:
     """The value of its quantity, with `other` arguments. Raises InputError."""
+    from verify.analysis.margins import default_count
     from verify.quantities.base import evaluate
 
-    own = {"model": "segment", "count": scene.motion.count} if of_scene(claim) else claim.arguments
+    own = claim.arguments
+    if of_scene(claim):
+        own = {"model": "segment", "count": default_count(scene, cache, scene.motion.count)}
     arguments = {name: value for name, value in (own | other).items() if value is not None}
     value = evaluate(claim.quantity, arguments, scene, cache)
     if not isinstance(value, float | int):

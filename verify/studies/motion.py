@@ -26,16 +26,6 @@ STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
-LARGE = 0.1
-"""Size of a neglected effect beyond which a summary is omitted."""
-WARNINGS = {
-    "lift-off": "Lift-off: the surface falls away with {:.3g} times the acceleration that weight and preload give the "
-    "slider; a slider free to lift off leaves it, which this contact law forbids.",
-    "coupling": "Coupling: the inertia of a slider held on the surface changes its motion by {:.1%}; a normal contact "
-    "without it is not valid for such a slider.",
-    "axial": "Nonlinearity: linear models neglect an axial inertia (kL)² ⟨θ²⟩ = {:.2g} of a chain of rigid links.",
-    "step": "Time step: halving it changes the displacement by {:.1%}, not converged.",
-}
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 NOTES = [
     "Coupling: change of the surface's motion by full friction and by the inertia of the slider held on it.",
@@ -71,7 +61,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         float | None, Meta(description="Periods over which the forces grow; 2 from rest unless set, 0 is a step load.")
     ] = None
     modal_damping: Damping | None = None
-    count: Annotated[int, Meta(ge=1, description="Segments and elements.")] = 49
+    count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
     steps_per_period: Annotated[int, Meta(ge=1, description="Steps of the slider in a period, at least.")] = 128
     samples: Annotated[int, Meta(ge=2, le=100_000, description="Stored instants, ends included.")] = 1001
 
@@ -93,29 +83,36 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Simulate the slider on every model. Raises InputError."""
         import numpy as np
 
+        from verify.analysis.margins import beam_margins, default_count, marked, run_margins, sag_margins
         from verify.analytic_modes import check_in_time
         from verify.dynamics.simulate import simulate
         from verify.linear.registry import MODELS, bounding, discrete
         from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result
+        from verify.report.verdict import verdict_of
 
         scene = replace(scene, studies={**scene.studies, "motion": self})
         assert scene.slider is not None
         assert scene.drive is not None
+        count = default_count(scene, cache, self.count)
         steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
         check_in_time(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
         runs: dict[str, Run] = {}
         for model in ("analytic", *(model.name for model in discrete("time_basis", scene.beam))):
             progress(f"slider on {MODELS[model].title}")
             runs[model] = simulate(
-                **motion_arguments(scene, TimeOptions(model=model, count=self.count if MODELS[model].sized else None)),
+                **motion_arguments(scene, TimeOptions(model=model, count=count if MODELS[model].sized else None)),
                 slider=scene.slider,
-                at=np.linspace(0.0, scene.beam.length, self.count + 1).tolist(),
+                at=np.linspace(0.0, scene.beam.length, count + 1).tolist(),
                 samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2),
                 steps_per_period=self.steps_per_period,
             )
         chain = runs[bounding()[0].name]
-        warnings, valid = _warnings(runs)
+        sizes = [(run.model, run.count) for run in runs.values()]
+        margins = beam_margins(cache, sizes, frequency_hz=scene.drive.frequency_hz)
+        margins += [one for run in runs.values() for one in run_margins(run, scene.slider, _title(run))]
+        margins += sag_margins(cache, scene.slider)
+        valid = verdict_of(margins).level != "not trusted"
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{scene.slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
 
@@ -129,9 +126,15 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
         velocity = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
         figures = [
-            figure("displacement", f"Displacement of the slider, N = {self.count}", "m", of_all("travelled")),
-            figure("velocity", f"Velocity of the slider and the surface, {_title(chain)}", "m/s", velocity),
-            figure("friction force", f"Friction force on the slider, N = {self.count}", "N", of_all("friction")),
+            figure(
+                "displacement", marked(f"Displacement of the slider, N = {count}", margins), "m", of_all("travelled")
+            ),
+            figure(
+                "velocity", marked(f"Velocity of the slider and the surface, {_title(chain)}", margins), "m/s", velocity
+            ),
+            figure(
+                "friction force", marked(f"Friction force on the slider, N = {count}", margins), "N", of_all("friction")
+            ),
         ]
         keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
         keys += ["coupling", "margins", "energy", "statistics", "notes"]
@@ -140,34 +143,13 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             tables=_tables(runs),
             figures=figures,
             movies=[movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
-            warnings=warnings,
             data={"runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()}},
+            margins=margins,
         )
 
 
 def _title(run: "Run") -> str:
     return sized_title(run.model, run.count)
-
-
-def _warnings(runs: "dict[str, Run]") -> tuple[list[str], bool]:
-    """(what is not converged or outside its range of validity, whether the summary holds nevertheless)."""
-    from verify.dynamics.step_control import CONVERGED
-    from verify.dynamics.validity import COUPLED, NONLINEAR
-
-    stopped = [
-        f"{_title(run)}: the slider {run.statistics.stopped}, after {1e3 * run.end.time:.4g} ms."
-        for run in runs.values()
-        if not run.statistics.finished
-    ]
-    lift_off = max(run.margins.lift_off for run in runs.values())
-    axial = max(run.margins.nonlinearity for run in runs.values())
-    change = max(run.statistics.step_change or 0.0 for run in runs.values())
-    one_way = [run.coupling for run in runs.values() if run.coupling and not run.coupling.two_way]
-    normal = max((coupling.normal_size for coupling in one_way), default=0.0)
-    sizes = zip(WARNINGS.values(), (lift_off, normal, axial, change), (1.0, COUPLED, NONLINEAR, CONVERGED), strict=True)
-    warnings = [text.format(value) for text, value, limit in sizes if value > limit]
-    valid = not stopped and lift_off <= 1.0 and max(normal, axial) < LARGE and change <= CONVERGED
-    return [*stopped, *warnings], valid
 
 
 def _tables(runs: "dict[str, Run]") -> "list[Table]":

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from dataclasses import replace as changed
 from functools import partial
 from math import copysign
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -20,20 +21,11 @@ if TYPE_CHECKING:
     from verify.motor.curves import Transient
     from verify.motor.steady_state import MotorCase, SteadyState
     from verify.report.result import Figure, Result, Table
+    from verify.report.verdict import Margin
     from verify.scene.model import Scene
 
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
-VALIDITY = {
-    "coupling": (1e-3, "Coupling: contact changes the surface motion by {:.1%}, which one-way coupling neglects."),
-    "sag": (0.1, "Sag: the preload bends the beam by {:.2g} wave amplitudes, which one-way coupling neglects."),
-    "axial": (1e-3, "Nonlinearity: linear models neglect the axial inertia, (kL)² ⟨θ²⟩ = {:.2g} of a rigid chain."),
-    "epsilon": (0.1, "Compliance: epsilon = {:.3g}, points deflect along the surface before they slip."),
-    "step": (1e-3, "Time step: the contact's oscillation has a period error of {:.1e}; raise motor.steps_per_period."),
-}
-"""Size of a neglected effect from which on it is reported, and the text."""
-INVALID = 0.1
-"""Size of the first three effects from which on the summary is omitted."""
 SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
 CHARTS = {
     "motor-force": ("Force over speed", SPEED, FORCE, "Mean friction force along +x on the slider at a prescribed "
@@ -79,7 +71,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     title: ClassVar[str] = "The motor"
 
     models: Annotated[tuple[str, ...], Meta(min_length=1, description="Models.")] = ("analytic", "segment", "fem")
-    count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements.")] = 49
+    count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements; by default within 1 %.")] | None = None
     speeds: Annotated[int, Meta(ge=2, le=201, description="Points of the force-speed curve.")] = 9
     periods: Annotated[int, Meta(ge=20, le=100_000, description="Periods of a free run, at most of stopping.")] = 2000
     start: Annotated[Start, Meta(description="Beam at the start of the free run: steady or at rest.")] = "steady"
@@ -105,26 +97,30 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
+        from verify.analysis.margins import default_count, marked
         from verify.linear.registry import MODELS
         from verify.motor.curves import REASONS
         from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
+        from verify.report.verdict import verdict_of
 
+        n = default_count(scene, cache, self.count)
         fields: list[Field] = []
         for model in self.models:
-            count, options = self.count if MODELS[model].sized else None, asdict(self)
+            count, options = n if MODELS[model].sized else None, asdict(self)
             own = {name: options[name] for name in ("modal_damping", "steps_per_period")}
             case = MotorOptions(model=model, count=count, **own).case(scene)
             fields.append(self._field(case, fields[0].curve if fields else [], cache, progress))
-        first, (invalid, warnings) = fields[0], _validity(fields)
-        converged = all(field.free.converged and field.curve[0].converged("force") for field in fields)
+        first, margins = fields[0], _margins(fields, cache)
+        valid = verdict_of(margins).level != "not trusted"
         speed, force = 100 * first.free.speed, first.curve[0].means.force
         summary = f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})."
         return Result(
-            summary=summary if converged and not invalid else "",
+            summary=summary if valid else "",
             tables=_tables(fields),
-            figures=_figures(fields),
-            warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing] + warnings,
+            figures=[changed(one, title=marked(one.title, margins)) for one in _figures(fields)],
+            warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
+            margins=margins,
         )
 
     def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: "SolutionCache", progress: Progress) -> Field:
@@ -169,22 +165,23 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return Field(case, name, curve, unloaded, free, stop, reversal, times, missing)
 
 
-def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
-    """(whether a neglected effect is so large that the figures are void, warnings of those that are not small)."""
+def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
+    """Of the beam at the drive, of the free runs, of the sag, and of figures that have not converged."""
+    from verify.analysis.margins import beam_margins, run_margins, sag_margins
+    from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
+    from verify.report.verdict import void
 
-    run = fields[0].free.run
-    margins, coupling = run.margins, run.coupling
-    assert coupling is not None
-    sizes = {
-        "coupling": 0.0 if coupling.two_way else max(coupling.normal_size, coupling.friction_size or 0.0),
-        "sag": 0.0 if coupling.two_way else (margins.static_deflection or 0.0) / surface_motion(fields[0].case)[0],
-        "axial": margins.nonlinearity,
-        "epsilon": margins.presliding or 0.0,
-        "step": max(field.free.run.margins.contact_step for field in fields) ** 2 / 24.0,
-    }
-    void = max(sizes[key] for key in ("coupling", "sag", "axial")) >= INVALID
-    return void, [text.format(sizes[key]) for key, (limit, text) in VALIDITY.items() if sizes[key] > limit]
+    case = fields[0].case
+    sizes = [(field.case.model, field.case.count) for field in fields]
+    margins = beam_margins(cache, sizes, frequency_hz=case.frequency_hz)
+    for field in fields:
+        margins += run_margins(field.free.run, case.slider, field.name)
+        if not field.free.converged and field.free.run.statistics.finished:
+            margins.append(void("the free run", f"{REASONS['free speed']} ({field.name})"))
+        if not field.curve[0].converged("force"):
+            margins.append(void("the stall force", f"{REASONS['force']} ({field.name})"))
+    return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
 
 
 def _tables(fields: list[Field]) -> "list[Table]":
