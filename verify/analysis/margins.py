@@ -325,7 +325,7 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
         size = (known["model"], known.get("count")) if known.get("model") in MODELS else (EXACT, None)
         at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
         with suppress(InputError):
-            found += beam_margins(cache, [size], **at, settings=settings)  # type: ignore[arg-type]
+            found += beam_margins(cache, [size], **at, settings=settings)
     if scene.slider is not None:
         runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
         sliding = [run for run in runs if run.coupling is not None]

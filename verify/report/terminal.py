@@ -36,10 +36,9 @@ def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None
         console.print(f"warning: {warning}", style="yellow")
     for one in run.failed:
         console.print(f"FAIL {one.gate.id}: {one.reason}", style="red")
-    others = [one.text for one in found.margins[1:] if one.level != "trusted"]
     console.print(f"{found.headline} ({run.seconds:.3g} s)", style=style)
-    if others:
-        console.print(f"also: {'; '.join(others)}")
+    for text in found.others:
+        console.print(f"also: {text}")
     gates, worst = gates_in_words(run), worst_gate(run)
     if worst is not None and run.passed:
         gates += f", the worst is {worst.gate.id} with {100 * (worst.fraction or 0.0):.3g} % of its tolerance"

@@ -56,6 +56,12 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     margins: tuple[Margin, ...] = ()
     """Worst first."""
 
+    @property
+    def others(self) -> list[str]:
+        """Further margins that are not trusted, in words: of each name the worst."""
+        worst = {one.name: one.text for one in reversed(self.margins) if one.level != "trusted"}
+        return [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON: level, headline, margins with their sizes and limits."""
         names = ("name", "where", "size", "fine", "limit", "level", "condition", "failure", "remedy")
@@ -75,7 +81,7 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
             worst.remedy
         )
     elif worst.level == "conditional":
-        others = sum(one.level == "conditional" for one in ordered) - 1
+        others = len({one.name for one in ordered if one.level == "conditional"}) - 1
         more = f" ({others} more condition{'s' * (others > 1)})" if others else ""
         size = f": {per_cent(worst.size)} {worst.where}".rstrip() if worst.is_error else ""
         headline = f"Trusted only if {worst.condition or f'{worst.name} may be left out'}{size}{more}."
