@@ -99,6 +99,7 @@ def run_sweep(
         max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
     )
     rows = [one | found for one, found in zip(combinations, values, strict=True)]
+    margins = list(dict.fromkeys(margin for row in rows for margin in row.pop("margins")))
     wanted, failed = _quantities(quantities), sum(row["reason"] is not None for row in rows)
     columns = [Column(key, format=".6g") for key in combinations[0]]
     columns += [Column(one.name, "" if one.unit == "1" else one.unit, ".7g") for one in wanted]
@@ -120,18 +121,21 @@ def run_sweep(
             if len(over) <= 2 and any(_number(row[one.name]) for row in rows)
         ],
         data={"rows": rows},
+        margins=margins,
     )
 
 
 def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
-    """Values by quantity, number of claims that agree, reason for a missing value, of one combination."""
+    """Values by quantity, claims that agree, reason for a missing value, worst margin, of one combination."""
+    from verify.analysis.margins import quantity_margins
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import evaluate
+    from verify.report.verdict import verdict_of
     from verify.scene.load import scene_from
     from verify.studies.claims import computed
 
     tables, study, combination = task
-    row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None}
+    row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": ()}
     try:
         for key, value in combination.items():
             tables = _put(tables, key.split("."), key, value) if "." in key else tables
@@ -141,6 +145,7 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, A
         for one in _quantities(study.quantities):
             own = {k: v for k, v in arguments.items() if k in one.schema.__struct_fields__}
             row[one.name] = evaluate(one.name, own, scene, cache)
+            row["margins"] += verdict_of(quantity_margins(one.name, own, scene, cache)).margins[:1]
         for claim in scene.claim if study.claims else ():
             row[AGREE] += claim.agrees(computed(claim, scene, cache))
     except InputError as error:
