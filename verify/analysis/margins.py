@@ -52,7 +52,7 @@ def beam_margins(
     """
     beam, where = cache.beam, f"at mode {mode}" if mode else f"at {frequency_hz:g} Hz"
     k = _wavenumber(cache, mode, frequency_hz)
-    found = [_discretisation(cache, one, mode, frequency_hz, settings, where) for one in sizes if one[1]]
+    found = [_discretisation(cache, model, n, mode, frequency_hz or 0.0, settings, where) for model, n in sizes if n]
     if k is None:
         return found
     if theory_of(settings) == EULER:
@@ -82,50 +82,28 @@ def _wavenumber(cache: SolutionCache, mode: int | None, frequency_hz: float | No
 
 
 def _discretisation(
-    cache: SolutionCache,
-    size: tuple[str, int | None],
-    mode: int | None,
-    frequency_hz: float | None,
-    settings: Settings,
-    where: str,
+    cache: SolutionCache, model: str, count: int, mode: int | None, hertz: float, settings: Settings, where: str
 ) -> Margin:
-    model, count = size
-    assert count is not None
-    name = f"discretisation of {count} {MODELS[model].title}"
+    """Solved error at a mode; error of the dispersion at a driven wave, on beams without one that of the next mode."""
+    beam, title = cache.beam, f"{count} {MODELS[model].title}"
+    name, k = f"discretisation of {title}", None if mode else _wavenumber(cache, None, hertz)
     try:
         if mode is None:
-            assert frequency_hz is not None
-            MODELS[model].build(cache.beam, count).check_propagates(frequency_hz)
-            error = _dispersion_error(cache, model, count, frequency_hz)
+            MODELS[model].build(beam, count).check_propagates(hertz)
+        if k is not None and beam.uniform and model in LAWS:
+            error = error_at(model, beam, k * beam.length / count, count)
         else:
-            error = cache.frequency_error(model, count, mode, settings)
+            error = cache.frequency_error(model, count, mode or _mode_above(cache, hertz), settings)
     except InputError as problem:
-        return void(name, f"{count} {MODELS[model].title} have no answer {where} ({problem})")
-    remedy = ""
+        return void(name, f"{title} have no answer {where} ({problem})")
+    remedy, side = "", "low" if error < 0.0 else "high"
     if abs(error) > FINE:
         with suppress(InputError):
-            enough = sufficient_count(cache, modes=mode or 0, frequency_hz=frequency_hz, models=(model,))
+            enough = sufficient_count(cache, modes=mode or 0, frequency_hz=hertz, models=(model,))
             remedy = f"give more: {enough} are within {per_cent(FINE)}"
-    side = "low" if error < 0.0 else "high"
-    return Margin(
-        name=name,
-        size=abs(error),
-        where=where,
-        condition=f"a frequency that is {per_cent(error)} {side} is good enough, of {count} {MODELS[model].title}",
-        failure=f"{count} {MODELS[model].title} are {per_cent(error)} {side} {where}",
-        remedy=remedy,
-    )
-
-
-def _dispersion_error(cache: SolutionCache, model: str, count: int, frequency_hz: float) -> float:
-    """Relative frequency error of a model at a driven wave, signed. Raises InputError."""
-    k, beam = _wavenumber(cache, None, frequency_hz), cache.beam
-    if k is not None and beam.uniform and model in LAWS:
-        mu = k * beam.length / count
-        if mu >= pi:
-            raise InputError(f"count = {count}: half a wave is shorter than a part")
-        return error_at(model, beam, mu, count)
-    return cache.frequency_error(model, count, _mode_above(cache, frequency_hz))
+    failure = f"{title} are {per_cent(error)} too {side} {where}"
+    condition = f"{title} may lie too {side}"
+    return Margin(name=name, size=abs(error), where=where, condition=condition, failure=failure, remedy=remedy)
 
 
 def _mode_above(cache: SolutionCache, frequency_hz: float) -> int:
@@ -148,10 +126,9 @@ def _plate(cache: SolutionCache, k: float, mode: int | None, where: str) -> list
     if mode and mode <= MOST_PLATES:
         with suppress(InputError):
             size = abs(plate_error(beam, mode))
-    half = pi / k
-    short = f" (half a wave, {with_unit(half)}, is shorter than the width)" if half < width else ""
-    condition = f"bending across the width may be left out{short}"
-    return [Margin(name="bending across the width", size=size, where=where, condition=condition,
+    short = f" (half a wave, {with_unit(pi / k)}, is shorter than the width)" if pi / k < width else ""
+    return [Margin(name="bending across the width", size=size, where=where,
+                   condition=f"bending across the width may be left out{short}",
                    remedy="no beam theory has it: use a plate, or a narrower strip")]  # fmt: skip
 
 
@@ -194,39 +171,23 @@ def default_count(scene: "Scene", cache: SolutionCache, count: int | None, modes
 
 def marked(title: str, margins: Iterable[Margin]) -> str:
     """The title of a chart, with the discretisation that is more than 5 % off."""
-    off = max((m for m in margins if m.name.startswith("discretisation") and m.size > OFF),
-              key=lambda m: m.size, default=None)  # fmt: skip
-    if off is None:
-        return title
-    what = off.name.removeprefix("discretisation of ")
-    return f"{title} – {what} are {per_cent(off.size) if off.size < inf else 'beyond their range:'} off {off.where}"
+    off = [one.failure for one in margins if one.name.startswith("discretisation") and one.size > OFF]
+    return f"{title} ({', '.join(off)})" if off else title
 
 
 # --- Drive and sliders -----------------------------------------------------------------------------------------------
 
 
-def slope_margin(what: str, deflection: float, slope: float, length: float) -> Margin:
-    """Linear theory under a deflection (m) with a largest slope (rad): the square of the slope is a relative length."""
-    share = f"{with_unit(deflection)}, {per_cent(deflection / length)} of its length"
-    return Margin(
-        name=f"linear theory, {what} bends the beam by {share}:",
-        size=slope**2,
-        fine=SLOPE[0] ** 2,
-        limit=SLOPE[1] ** 2,
-        condition=f"a slope of {slope:.2g} is small ({what} bends the beam by {share})",
-        failure=f"{what} bends the beam by {share}",
-        remedy="press it less, or make the beam stiffer",
-        is_error=False,
-    )
-
-
-def drive_margins(field: "HarmonicField") -> list[Margin]:
-    """Linear theory under the steady motion of a drive."""
+def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
+    """Linear theory under the deflection of a field: the square of the largest slope is a relative length."""
     import numpy as np
 
     x = np.linspace(0.0, field.beam.length, POINTS)
-    one = slope_margin("the drive", abs(field.deflection(x)).max(), abs(field.slope(x)).max(), field.beam.length)
-    return [Margin(**{name: getattr(one, name) for name in one.__struct_fields__} | {"remedy": "drive it less"})]
+    bent, slope = float(abs(field.deflection(x)).max()), float(abs(field.slope(x)).max())
+    failure = f"{what} bends the beam by {with_unit(bent)}, {per_cent(bent / field.beam.length)} of its length"
+    return Margin(name=f"linear theory, {failure}: square of the slope", size=slope**2, fine=SLOPE[0] ** 2,
+                  limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
+                  remedy=remedy, is_error=False)  # fmt: skip
 
 
 def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None = None) -> list[Margin]:
@@ -235,8 +196,6 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
     The latter over the amplitude of the wave (m), where one-way coupling leaves it out. None of a beam whose rigid
     motions nothing prevents.
     """
-    import numpy as np
-
     from verify.problem.beam import PointForce
 
     beam, start = cache.beam, slider.start_on(cache.beam)
@@ -251,22 +210,12 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
         still = MODELS[EXACT].build(beam).harmonic(loads, STILL * cache.exact_hz(1))
     except InputError:
         return []
-    x = np.linspace(0.0, beam.length, POINTS)
-    found = [slope_margin("the preload" if slider.preload else "the slider's weight", abs(still.deflection(x)).max(),
-                          abs(still.slope(x)).max(), beam.length)]  # fmt: skip
+    what = "the preload" if slider.preload else "the slider's weight"
+    found = [slope_margin(what, still, "press it less, or make the beam stiffer")]
     if amplitude and slider.coupling == "one-way":
         bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
-        found.append(
-            Margin(
-                name="sag under a foot, in wave amplitudes,",
-                size=float(bent) / amplitude,
-                condition=f"feet may lie on a surface that the preload bends by {bent / amplitude:.2g} wave amplitudes",
-                failure=f"the preload bends the surface under a foot by {bent / amplitude:.2g} wave amplitudes, which "
-                "one-way coupling leaves out",
-                remedy="use coupling = 'two-way', or shorter feet",
-                is_error=False,
-            )
-        )
+        found.append(Margin(name="sag under a foot over the wave's amplitude:", size=float(bent) / amplitude,
+                            remedy="use coupling = 'two-way', or shorter feet"))  # fmt: skip
     return found
 
 
@@ -284,27 +233,22 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
                             failure=f"the slider lifts off: {falls}",
                             remedy="press it more, or model its contact by [slider.contact]"))  # fmt: skip
     if coupling is not None and not (coupling.two_way and slider.normal == "held"):
-        friction = 0.0 if coupling.two_way else coupling.friction_size or 0.0
-        size = max(coupling.normal_size, friction)
-        two_way = "slider.normal = 'held'" if coupling.two_way else "slider.coupling = 'two-way'"
+        size = max(coupling.normal_size, 0.0 if coupling.two_way else coupling.friction_size or 0.0)
         much = f"by {per_cent(size)}" if size < inf else "where the drive does not move it"
-        found.append(Margin(name="one-way coupling", size=size, remedy=f"use {two_way}",
-                            condition="the contact need not act on the wave",
-                            failure=f"the contact changes the surface motion {much}"))  # fmt: skip
-    found.append(Margin(name="axial inertia of the links, (kL)² ⟨θ²⟩,", size=margins.nonlinearity,
-                        condition="the axial inertia of the links may be left out",
-                        failure=f"linear theory leaves out axial inertia of {per_cent(margins.nonlinearity)}",
-                        remedy="drive it less"))  # fmt: skip
-    change = status.step_change
-    found.append(Margin(name="time step", size=change or 0.0, fine=CONVERGED, limit=CONVERGED,
-                        failure=f"halving the time step changes the displacement by {per_cent(change or 0.0)}",
-                        remedy="give a shorter step, or a shorter time"))  # fmt: skip
-    missed = status.unconverged / max(status.steps, 1)
-    found.append(Margin(name="steps without converged contact forces", size=missed, fine=1e-3, limit=0.01,
-                        is_error=False, remedy="raise steps_per_period"))  # fmt: skip
-    found.append(Margin(name="period of the contact in these steps", size=margins.contact_step**2 / 24.0,
-                        remedy="raise steps_per_period"))  # fmt: skip
-    return [one for one in found if one.size > 0.0]
+        remedy = "use slider.normal = 'held'" if coupling.two_way else "use slider.coupling = 'two-way'"
+        found.append(Margin(name="one-way coupling", size=size, condition="the contact need not act on the wave",
+                            failure=f"the contact changes the surface motion {much}", remedy=remedy))  # fmt: skip
+    change, missed = status.step_change or 0.0, status.unconverged / max(status.steps, 1)
+    failure = f"halving the time step changes the displacement by {per_cent(change)}"
+    found += [
+        Margin(name="axial inertia of the links", size=margins.nonlinearity, remedy="drive it less"),
+        Margin(name="time step", size=change, fine=CONVERGED, limit=CONVERGED, failure=failure,
+               remedy="give a shorter step, or a shorter time"),
+        Margin(name="contact forces that did not converge", size=missed, remedy="raise steps_per_period"),
+        Margin(name="time steps in a period of the contact", size=margins.contact_step**2 / 24.0,
+               remedy="raise steps_per_period"),
+    ]  # fmt: skip
+    return [one for one in found if not one.size <= 0.0]
 
 
 def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache) -> list[Margin]:

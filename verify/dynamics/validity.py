@@ -1,7 +1,7 @@
-"""Validity of a run: the size of the coupling of sliders and beam, and margins, errors that no time step removes."""
+"""Validity of a run: the size of the coupling of sliders and beam, and of what no time step removes."""
 
 from collections.abc import Callable, Sequence
-from math import inf, pi
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,8 +9,6 @@ from msgspec import Struct
 
 from verify.arrays import Array, ComplexArray
 from verify.dynamics.linear_system import Stage, damped_field
-from verify.exact.closed_forms import frequency_hz, wavenumber_length
-from verify.exact.error_laws import LAWS, expected_error, leading_error
 from verify.linear.field import lossless_wavenumber, travelling_wavenumber
 from verify.linear.surface import section_at
 from verify.linear.time_basis import Ratio, TimeBasis
@@ -20,10 +18,6 @@ from verify.problem.slider import Slider
 if TYPE_CHECKING:
     from verify.dynamics.request import Request
 
-NONLINEAR = 1e-3
-"""(kL)^2 <theta^2> from which the linear chain departs from the paper's nonlinear one."""
-COUPLED = 1e-3
-"""Relative change of the surface motion above which one-way coupling is an error to state."""
 NEAR = 1e-3
 """Distance of the forces that represent a couple, over 1/k, or over L/50 where that is shorter."""
 Receptance = Callable[[float, Array], tuple[ComplexArray, ComplexArray]]
@@ -40,11 +34,6 @@ class Coupling(Struct, frozen=True, kw_only=True):
     """Surface motion due to the normal load over its motion by the drive: N |G| / |w| of a slider with contact, of a
     bilateral one m omega^2 |G| of its inertia. Infinite where the drive does not move a loaded surface."""
 
-    @property
-    def relative_size(self) -> float | None:
-        """The larger of the sizes; None where the drive does not move the surface under the slider."""
-        return None if self.friction_size is None else max(self.friction_size, self.normal_size)
-
 
 class Margins(Struct, frozen=True, kw_only=True):
     """Validity of a run; each margin is small where its assumption holds."""
@@ -55,12 +44,6 @@ class Margins(Struct, frozen=True, kw_only=True):
     Under a point slider during the run; else the largest of the steady motion along the beam."""
     nonlinearity: float
     """(kL)^2 <theta^2>: the axial inertia of a roller-ended chain that linear theory leaves out."""
-    model_form: float | None
-    """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1.
-
-    None unless the beam is uniform, pinned at both ends and carries nothing: there it has a closed form."""
-    discretisation: float | None
-    """Leading error of the discrete frequency at that mode; None for the exact beam and where no law is known."""
     presliding: float | None = None
     """2 mu kappa / (kappa_t k h): how little a compliant contact slips before it has deformed tangentially. 0 where it
     is rigid along the surface; None without contact springs, and of a compliant one where no wave travels."""
@@ -155,35 +138,7 @@ def margins_of(request: "Request", stage: Stage) -> Margins:
     return Margins(
         lift_off=falling / request.gravity if request.gravity else inf,
         nonlinearity=axial_inertia_size(beam, hertz, square),
-        model_form=_model_form(beam, hertz),
-        discretisation=_discretisation(beam, request.model, request.count, hertz),
     )
-
-
-def _nearest_mode(beam: Beam, drive_hz: float) -> int:
-    """The exact mode whose frequency lies nearest a drive's."""
-    turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
-    return min(range(max(int(turns) - 2, 1), int(turns) + 4), key=lambda n: abs(frequency_hz(beam, n) - drive_hz))
-
-
-def _model_form(beam: Beam, drive_hz: float) -> float | None:
-    unknown = any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces)
-    if beam.supports != ("pinned", "pinned") or not beam.uniform or unknown:
-        return None
-    mode = _nearest_mode(beam, drive_hz)
-    return frequency_hz(beam, mode, "timoshenko") / frequency_hz(beam, mode) - 1.0
-
-
-def _discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
-    """The whole law for a chain with clamped ends: its leading terms have the wrong sign at practical sizes."""
-    if count is None or not beam.uniform or model not in LAWS:
-        return None
-    mode = _nearest_mode(beam, drive_hz)
-    if wavenumber_length(beam.supports, mode) >= pi * count:
-        return None
-    if "clamped" in beam.supports and LAWS[model].clamped_terms:
-        return expected_error(model, beam, mode, count)
-    return leading_error(model, beam.supports, mode, count)
 
 
 def presliding(request: "Request") -> float | None:

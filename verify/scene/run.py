@@ -141,12 +141,12 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
 
 def _margins(scene: Scene, cache: "SolutionCache") -> "tuple[Margin, ...]":
     """Of the exact steady motion; none without a drive and at a resonance."""
-    from verify.analysis.margins import drive_margins, sag_margins
+    from verify.analysis.margins import sag_margins, slope_margin
     from verify.quantities.waves import FieldOptions, driven_case
     from verify.waves.driven_case import driven
 
     found = sag_margins(cache, scene.slider) if scene.slider else []
     if scene.forces:
         with suppress(InputError):
-            found += drive_margins(driven(driven_case(scene, FieldOptions()), cache))
+            found.append(slope_margin("the drive", driven(driven_case(scene, FieldOptions()), cache), "drive it less"))
     return tuple(found)

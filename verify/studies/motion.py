@@ -27,11 +27,6 @@ MOST_SAMPLES = 100_000
 FRAMES = 96
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
-NOTES = [
-    "Coupling: change of the surface's motion by full friction and by the inertia of the slider held on it.",
-    "Lift-off: largest downward acceleration of the surface over that by weight and preload.",
-    "Theory (Timoshenko) and discretisation: frequency error at the mode nearest to the drive.",
-]
 
 
 Damping = Annotated[Relative, Meta(description="Damping ratio of every mode; from the beam's loss factor unless set.")]
@@ -171,17 +166,7 @@ def _tables(runs: "dict[str, Run]") -> "list[Table]":
         Column("steps"): lambda run: run.statistics.steps,
         Column("energy imbalance", format=".1e"): imbalance,
     }
-    limits = {
-        Column("model"): _title,
-        Column("coupling"): lambda run: "two-way" if run.coupling.two_way else "one-way",
-        Column("friction coupling", format=".1e"): lambda run: run.coupling.friction_size,
-        Column("normal coupling", format=".1e"): lambda run: run.coupling.normal_size,
-        Column("lift-off", format=".3g"): lambda run: run.margins.lift_off,
-        Column("(kL)² ⟨θ²⟩", format=".1e"): lambda run: run.margins.nonlinearity,
-        percent("theory", "+.3g"): lambda run: run.margins.model_form,
-        percent("discretisation", "+.3g"): lambda run: run.margins.discretisation,
-    }
-    return [table("Slider on each model", all_runs, results), table("Validity of these runs", all_runs, limits, *NOTES)]
+    return [table("Slider on each model", all_runs, results)]
 
 
 def _movie(run: "Run") -> "Callable[[Axes], Any]":

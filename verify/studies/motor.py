@@ -194,15 +194,13 @@ def _tables(fields: list[Field]) -> "list[Table]":
     def power(field: Field, loss: str) -> float:
         return float(getattr(field.free.run.energy, loss)) / field.free.run.duration
 
-    def sag(field: Field) -> float | None:
-        size = field.free.run.margins.static_deflection
-        return None if size is None else round(size, 12)  # of balanced loads rounding is left
-
     model: dict[Any, Callable[[Field], Any]] = {Column("model"): lambda field: field.name}
     overview = model | {
+        si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
         si("crest speed", "m/s", ".5g"): lambda field: surface_motion(field.case)[1],
         si("no-load speed", "m/s", "+.5g"): lambda field: field.no_load,
         si("free speed", "m/s", "+.5g"): lambda field: field.free.speed if field.free.converged else None,
+        si("±", "m/s", ".1g"): lambda field: field.free.error,
         si("stall force", "N", "+.4g"): lambda field: _if(field.curve[0], field.curve[0].means.force),
         si("largest power", "W"): lambda field: max(_if(at, at.power) or 0.0 for at in field.curve) or None,
         percent("best efficiency", ".3g"): lambda field: (
@@ -227,21 +225,10 @@ def _tables(fields: list[Field]) -> "list[Table]":
         percent("stick", ".3g"): lambda row: row[1].means.stuck_share,
         Column("converged"): lambda row: row[1].converged(),
     }
-    limits = model | {
-        Column("epsilon", format=".3g"): lambda field: field.free.run.margins.presliding,
-        si("sag", "m", ".3g"): sag,
-        si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
-        Column("normal coupling", format=".1e"): lambda field: field.free.run.coupling.normal_size,
-        Column("friction coupling", format=".1e"): lambda field: field.free.run.coupling.friction_size,
-        Column("(kL)² ⟨θ²⟩", format=".1e"): lambda field: field.free.run.margins.nonlinearity,
-        Column("contact phase per step", "rad", ".2g"): lambda field: field.free.run.margins.contact_step,
-        si("speed error", "m/s", ".1e"): lambda field: field.free.error,
-    }
     rows = [(field.name, at) for field in fields for at in field.curve]
     return [
         table("The motor on each model", fields, overview, NOTE),
         table("Force over speed, slider at a fixed position", rows, curve),
-        table("Validity of these runs", fields, limits),
     ]
 
 

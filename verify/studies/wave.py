@@ -73,7 +73,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Solve the fields of all models. Raises InputError."""
         from msgspec.structs import replace
 
-        from verify.analysis.margins import beam_margins, default_count, drive_margins, marked
+        from verify.analysis.margins import beam_margins, default_count, marked
         from verify.linear.registry import EXACT, MODELS, discrete
         from verify.quantities.waves import FieldOptions, driven_case, measured
         from verify.report.result import Column, Figure, Result, Table
@@ -110,7 +110,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
         size = n if n in counts else max(counts)
         margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
-        margins += drive_margins(fields[EXACT])
         true = rows[0]["drive"]["standing_wave_ratio"]
         for row in (
             row for row in rows if row["N"] == size
