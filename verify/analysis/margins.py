@@ -185,7 +185,7 @@ def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
     x = np.linspace(0.0, field.beam.length, POINTS)
     bent, slope = float(abs(field.deflection(x)).max()), float(abs(field.slope(x)).max())
     failure = f"{what} bends the beam by {with_unit(bent)}, {per_cent(bent / field.beam.length)} of its length"
-    return Margin(name=f"linear theory, {failure}: square of the slope", size=slope**2, fine=SLOPE[0] ** 2,
+    return Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
                   limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
                   remedy=remedy, is_error=False)  # fmt: skip
 

@@ -49,9 +49,6 @@ class Margins(Struct, frozen=True, kw_only=True):
     is rigid along the surface; None without contact springs, and of a compliant one where no wave travels."""
     contact_step: float = 0.0
     """Natural frequency of the contact times the step, radians; its square over 24 is the relative period error."""
-    static_deflection: float | None = None
-    """Static deflection under sliders with contact, m; left out by one-way coupling. None without such sliders, and of
-    a beam with rigid motions that they would move."""
 
 
 def coupling_of(

@@ -43,8 +43,9 @@ class Margin(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def text(self) -> str:
-        """The size in words: '0.43 % by the discretisation of 49 segments at mode 22'."""
-        return f"{self.name} {per_cent(self.size)} {self.where}".rstrip()
+        """The size in words: 'discretisation of 49 segments 0.43 % at mode 22', 'lift-off 152 times its limit'."""
+        size = per_cent(self.size) if self.is_error else f"{self.size / self.limit:.3g} times its limit"
+        return f"{self.name} {size} {self.where}".rstrip()
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
+LONG = 10
+"""Durations of a long run."""
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 
@@ -135,12 +137,51 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         keys += ["coupling", "margins", "energy", "statistics", "notes"]
         return Result(
             summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
-            tables=_tables(runs),
+            tables=[*_tables(runs), readings(scene)],
             figures=figures,
             movies=[movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
             data={"runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()}},
             margins=margins,
         )
+
+
+def readings(scene: "Scene") -> "Table":
+    """Mean speed of the one slider on the exact beam by every reading of it, with the margins of each.
+
+    A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
+    """
+    from verify.analysis.margins import run_margins
+    from verify.dynamics.simulate import simulate
+    from verify.problem.slider import Contact
+    from verify.quantities.slider import TimeOptions, motion_arguments
+    from verify.report.result import Column, Table
+    from verify.report.verdict import verdict_of
+
+    own, seconds = scene.slider, scene.motion.duration
+    assert own is not None
+    point = replace(own, contact=None, foot=(), pull=0.0, preload_stiffness=0.0)
+    opening = replace(point, kinematics="tangential", normal="held", line="spline", contact=Contact())
+    tangential = replace(point, kinematics="tangential")
+    following = replace(point, kinematics="following")
+    rows = []
+    for name, assumption, slider, time in (
+        ("tangential", "stays on the surface and moves along it alone", tangential, seconds),
+        ("following", "stays on it and moves with it across the beam", following, seconds),
+        (f"{own.kinematics}, long", "the same after its start", point, LONG * seconds),
+        ("contact that opens", "lifts off and lands", own if own.contact else opening, LONG * seconds),
+    ):
+        try:
+            run = simulate(
+                **motion_arguments(scene, TimeOptions(model="analytic", time=time)), slider=slider, samples=2
+            )
+            found, speed = verdict_of(run_margins(run, slider, "exact beam")), run.mean_speed
+            rows.append((name, assumption, time, speed, found.level, found.margins[0].text if found.margins else ""))
+        except InputError as error:
+            rows.append((name, assumption, time, None, "not trusted", str(error)))
+    columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
+    valid = ", ".join(row[0] for row in rows if row[4] != "not trusted")
+    note = f"Valid by its own margins: {valid or 'none'}. A mean over the start is not the speed of a motor."
+    return Table("One slider, one speed", [*columns, Column("verdict"), Column("worst margin")], rows, [note])
 
 
 def _title(run: "Run") -> str:

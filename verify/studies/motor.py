@@ -14,7 +14,7 @@ from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
-from verify.studies.motion import Damping, check_driven, check_start
+from verify.studies.motion import Damping, check_driven, check_start, readings
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
@@ -117,7 +117,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         summary = f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})."
         return Result(
             summary=summary if valid else "",
-            tables=_tables(fields),
+            tables=[*_tables(fields), *([readings(scene)] if scene.motion else [])],
             figures=[changed(one, title=marked(one.title, margins)) for one in _figures(fields)],
             warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
             margins=margins,
