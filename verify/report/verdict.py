@@ -71,8 +71,9 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def verdict_of(margins: Iterable[Margin]) -> Verdict:
-    """The verdict by the worst of the margins: by level, then by size over limit."""
-    ordered = sorted(dict.fromkeys(margins), key=_badness, reverse=True)
+    """The verdict by the worst of the margins, by level, then by size over limit; of like ones the worst counts."""
+    worst_of = {(one.name, one.where): one for one in sorted(margins, key=_badness)}
+    ordered = sorted(worst_of.values(), key=_badness, reverse=True)
     if not ordered:
         return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
     worst = ordered[0]
@@ -84,7 +85,7 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
     elif worst.level == "conditional":
         others = len({one.name for one in ordered if one.level == "conditional"}) - 1
         more = f" ({others} more condition{'s' * (others > 1)})" if others else ""
-        size = f": {per_cent(worst.size)} {worst.where}".rstrip() if worst.is_error else ""
+        size = f": {per_cent(worst.size)} {worst.where}".rstrip() if worst.is_error and isfinite(worst.limit) else ""
         headline = f"Trusted only if {worst.condition or f'{worst.name} may be left out'}{size}{more}."
     else:
         errors = [one for one in ordered if one.is_error and isfinite(one.size)]

@@ -80,7 +80,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Simulate the slider on every model. Raises InputError."""
         import numpy as np
 
-        from verify.analysis.margins import beam_margins, default_count, marked, run_margins, sag_margins
+        from verify.analysis.margins import against_exact, beam_margins, default_count, marked, run_margins, sag_margins
         from verify.analytic_modes import check_in_time
         from verify.dynamics.simulate import simulate
         from verify.linear.registry import MODELS, bounding, discrete
@@ -109,6 +109,8 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         margins = beam_margins(cache, sizes, frequency_hz=scene.drive.frequency_hz)
         margins += [one for run in runs.values() for one in run_margins(run, scene.slider, _title(run))]
         margins += sag_margins(cache, scene.slider)
+        true = runs["analytic"].displacement
+        margins += [against_exact("displacement", _title(run), run.displacement, true) for run in runs.values()]
         valid = verdict_of(margins).level != "not trusted"
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{scene.slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
@@ -163,7 +165,7 @@ def readings(scene: "Scene") -> "Table":
     opening = replace(point, kinematics="tangential", normal="held", line="spline", contact=Contact())
     tangential = replace(point, kinematics="tangential")
     following = replace(point, kinematics="following")
-    rows = []
+    rows: list[tuple[Any, ...]] = []
     for name, assumption, slider, time in (
         ("tangential", "stays on the surface and moves along it alone", tangential, seconds),
         ("following", "stays on it and moves with it across the beam", following, seconds),

@@ -1,6 +1,5 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
-from math import inf
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
@@ -73,11 +72,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Solve the fields of all models. Raises InputError."""
         from msgspec.structs import replace
 
-        from verify.analysis.margins import beam_margins, default_count, marked
+        from verify.analysis.margins import against_exact, beam_margins, default_count, marked
         from verify.linear.registry import EXACT, MODELS, discrete
         from verify.quantities.waves import FieldOptions, driven_case, measured
         from verify.report.result import Column, Figure, Result, Table
-        from verify.report.verdict import Margin
         from verify.travelling_wave import best_drive
         from verify.waves.driven_case import driven
 
@@ -110,15 +108,11 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
         size = n if n in counts else max(counts)
         margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
-        true = rows[0]["drive"]["standing_wave_ratio"]
-        for row in (
-            row for row in rows if row["N"] == size
-        ):  # near a resonance it is far off at small frequency errors
-            off = abs(row["drive"]["standing_wave_ratio"] / true - 1.0)
-            margins.append(Margin(name=f"standing-wave ratio of {row['name']}", size=off, limit=inf,
-                                  condition=f"the exact beam answers, the standing-wave ratio of {row['name']} is off",
-                                  where=f"at {drive.frequency_hz:g} Hz"))  # fmt: skip
-        ratios = [f"{r['name']} {r['drive']['standing_wave_ratio']:.5g}" for r in rows if r["N"] in (None, size)]
+        swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
+        margins += [
+            against_exact("standing-wave ratio", *one, rows[0]["drive"]["standing_wave_ratio"]) for one in swr.items()
+        ]
+        ratios = [f"{name} {value:.5g}" for name, value in swr.items()]
         x, up, magnified, widest = ellipses(fields["analytic"])
         paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
         start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
