@@ -57,8 +57,9 @@ def beam_margins(
         return found
     if theory_of(settings) == EULER:
         if any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces):
-            unknown = "shear, rotary inertia and bending across the width, unknown without a shape,"
-            return [*found, Margin(name=unknown, size=0.0, where=where, is_error=False)]
+            left_out = "shear, rotary inertia and bending across the width may be left out, unknown without a shape"
+            unknown = Margin(name="beam theory", size=0.0, fine=-1.0, condition=left_out, where=where, is_error=False)
+            return [*found, unknown]
         size, name = 1.0 - theory_ratio(beam.own, k), "shear and rotary inertia"
         if mode:
             with suppress(InputError):

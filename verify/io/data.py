@@ -28,7 +28,7 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     """modes, wave or motion; by default what the scene has and the file type holds."""
     model: str = "segment"
     count: int | None = None
-    """Segments or elements; by default the count of the scene's study of the same subject, else the fewest within 1 %."""
+    """Segments or elements; by default those of the scene's study of the same subject, else the fewest within 1 %."""
     mode: int | None = None
     """Number of modes of data, the mode of a picture."""
     samples: int | None = None
