@@ -20,7 +20,7 @@ from verify.report.beam_drawing import beam_figure
 from verify.report.diff import compare_runs
 from verify.report.plotting import figure_svg, movie_image
 from verify.report.result import Column, Table, to_json
-from verify.report.summary import expected, run_data, verdict, worst_gate
+from verify.report.summary import expected, run_data, worst_gate
 from verify.report.terminal import print_run
 from verify.scene.load import scene_from
 from verify.scene.model import Complex, Gate, Scene
@@ -308,12 +308,12 @@ def test_a_failed_gate_and_a_stopped_slider_are_never_green(small_run, full_run)
     from verify.report.result import Result
     from verify.report.verdict import void
 
-    assert verdict(small_run).level == "trusted"
-    assert verdict(full_run).level == "not trusted"
-    assert "elements-lie-above" in verdict(full_run).headline
+    assert small_run.verdict.level == "trusted"
+    assert full_run.verdict.level == "not trusted"
+    assert "elements-lie-above" in full_run.verdict.headline
     stopped = Result(margins=[void("the run", "the slider left the beam after 3 ms")])
     run = msgspec.structs.replace(small_run, results={"motion": stopped})
-    assert verdict(run).headline == "Not to be trusted: the slider left the beam after 3 ms."
+    assert run.verdict.headline == "Not to be trusted: the slider left the beam after 3 ms."
     assert 'class="verdict failed"' in run_page(run)
     assert run_data(run)["verdict"]["level"] == run_data(run)["results"]["motion"]["verdict"]["level"] == "not trusted"
-    assert verdict(msgspec.structs.replace(small_run, gates=(), results={})).level == "not trusted"
+    assert msgspec.structs.replace(small_run, gates=(), results={}).verdict.level == "not trusted"

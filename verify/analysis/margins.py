@@ -159,16 +159,9 @@ def sufficient_count(
 
 def against_exact(what: str, model: str, value: float, exact: float) -> Margin:
     """Result of a model against that of the exact beam: near a resonance far off at a small error in frequency."""
-    size = abs(value / exact - 1.0) if exact else inf
+    size = abs(value / exact - 1.0) if exact else 0.0 if value == exact else inf
     return Margin(name=f"{what} of {model}", size=size, limit=inf,
                   condition=f"the exact beam answers: {what} of {model} is off by {per_cent(size)}")  # fmt: skip
-
-
-def default_count(scene: "Scene", cache: SolutionCache, count: int | None, modes: int = 0) -> int:
-    """The count of a study: as given, or the fewest parts that keep 1 % at its last mode or its drive."""
-    if count is not None:
-        return count
-    return sufficient_count(cache, modes=modes, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
 
 
 def marked(title: str, margins: Iterable[Margin]) -> str:
@@ -246,7 +239,7 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
         Margin(name="axial inertia of the links", size=margins.nonlinearity, remedy="drive it less"),
         Margin(name="time step", size=change, fine=CONVERGED, limit=CONVERGED, failure=failure,
                remedy="give a shorter step, or a shorter time"),
-        Margin(name="contact forces that did not converge", size=missed, remedy="raise steps_per_period"),
+        Margin(name="contact forces that did not converge", size=missed, limit=FINE, remedy="raise steps_per_period"),
         Margin(name="time steps in a period of the contact", size=margins.contact_step**2 / 24.0,
                remedy="raise steps_per_period"),
     ]  # fmt: skip

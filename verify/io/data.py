@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
-from verify.analysis.margins import default_count
+from verify.analysis.margins import sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.arrays import Array
 from verify.errors import InputError
@@ -61,9 +61,11 @@ def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
     study = scene.studies.get({"modes": "spectrum"}.get(what, what))
     if request.count is not None and not model.sized:
         raise InputError(f"count = {request.count}: the {model.name} model has no segments or elements, leave it out")
-    cache, given = SolutionCache(scene.beam), request.count or getattr(study, "count", None)
-    modes = (request.mode or MODES) if what == "modes" else 0
-    count = default_count(scene, cache, given, modes) if model.sized else None
+    cache, count = SolutionCache(scene.beam), request.count or getattr(study, "count", None)
+    if model.sized and count is None:
+        hertz = scene.drive.frequency_hz if scene.drive and what != "modes" else None
+        count = sufficient_count(cache, modes=0 if hertz else request.mode or MODES, frequency_hz=hertz)
+    count = count if model.sized else None
     length = scene.beam.length
     x = np.linspace(0.0, length, EXACT) if count is None else np.asarray(cache.modes(model.name, count, 1).nodes)
     name = f"{count} {model.title}" if count else model.title

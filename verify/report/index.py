@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verify.report.result import Column, Result, Table
-from verify.report.summary import verdict, worst_gate
+from verify.report.summary import worst_gate
 from verify.report.verdict import LEVELS, Verdict
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
         "scene": name,
         "title": run.scene.title or run.scene.name,
         "passed": run.passed,
-        "level": verdict(run).level,
-        "verdict": verdict(run).headline,
+        "level": run.verdict.level,
+        "verdict": run.verdict.headline,
         "failed": [{"gate": one.gate.id, "reason": one.reason} for one in run.failed],
         "worst": None if worst is None else worst.gate.id,
         "fraction": None if worst is None else worst.fraction,

@@ -12,12 +12,10 @@ from verify.report.result import Figure, Movie, Result, Table, to_json
 from verify.report.summary import (
     environment,
     expected,
-    gates_in_words,
     gates_table,
     skipped_table,
     study_title,
     value_text,
-    verdict,
     worst_gate,
 )
 
@@ -68,9 +66,9 @@ def run_page(run: "RunResult", command: str = "") -> str:
         name=scene.name,
         title=scene.title or scene.name,
         subtitle=scene.description,
-        verdict=verdict(run),
+        verdict=run.verdict,
         seconds=run.seconds,
-        gates=gates_in_words(run),
+        gates=run.gates_in_words,
         problems=[f"{one.gate.id}: {one.reason}" for one in run.failed],
         warnings=list(dict.fromkeys(run.warnings)),
         drawing=figure_svg(beam),

@@ -6,7 +6,6 @@ from math import ceil, log10
 from typing import TYPE_CHECKING, Any
 
 from verify.report.result import MISSING, Column, Table, plain
-from verify.report.verdict import Verdict, verdict_of, void
 
 if TYPE_CHECKING:
     from verify.scene.gates import GateResult
@@ -21,29 +20,6 @@ def study_title(run: "RunResult", name: str) -> str:
 
     study = run.scene.studies.get(name) or STUDIES.get(name)
     return getattr(study, "title", "") or name.replace("_", " ").capitalize()
-
-
-def verdict(run: "RunResult") -> Verdict:
-    """The worst of all studies, of linear theory under the drive, and of the gates."""
-    margins = [*run.margins, *(margin for result in run.results.values() for margin in result.margins)]
-    judged = [gate for gate in run.gates if gate.passed is not None]
-    if run.failed:
-        margins.append(void("gates", f"{gates_in_words(run)}, {', '.join(one.gate.id for one in run.failed)}"))
-    elif not (judged or run.results):
-        margins.append(void("the run", "no study and no gate ran, nothing was computed"))
-    found = verdict_of(margins)
-    if found.level != "trusted" or any(margin.is_error for margin in margins):
-        return found
-    headline = f"Trusted as far as its gates: {gates_in_words(run)}." if judged else found.headline
-    return Verdict(level="trusted", headline=headline, margins=found.margins)
-
-
-def gates_in_words(run: "RunResult") -> str:
-    """'all 27 gates passed', '2 of 27 gates failed', 'no gate applies'."""
-    judged = [gate for gate in run.gates if gate.passed is not None]
-    if run.failed:
-        return f"{len(run.failed)} of {len(judged)} gates failed"
-    return f"all {len(judged)} gates passed" if judged else "no gate applies"
 
 
 def worst_gate(run: "RunResult") -> "GateResult | None":
@@ -130,7 +106,7 @@ def run_data(run: "RunResult", command: str = "") -> dict[str, Any]:
     return {
         "scene": run.scene.name,
         "passed": run.passed,
-        "verdict": verdict(run).to_dict(),
+        "verdict": run.verdict.to_dict(),
         "seconds": run.seconds,
         "gates": gates,
         "results": {name: result.to_dict() for name, result in run.results.items()},

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.report.result import MISSING, Column, Table
-from verify.report.summary import VERDICTS, expected, gates_in_words, study_title, value_text, verdict, worst_gate
+from verify.report.summary import VERDICTS, expected, study_title, value_text, worst_gate
 from verify.report.verdict import COLOURS
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ LONG = 30
 
 def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None) -> None:
     """Print a run: its verdict first, and at the end again with the gates, where a terminal stops."""
-    scene, found = run.scene, verdict(run)
+    scene, found = run.scene, run.verdict
     style = f"bold {COLOURS[found.level]}"
     console.print(scene.title or scene.name, style="bold")
     console.print(found.headline, style=style)
@@ -39,7 +39,7 @@ def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None
     console.print(f"{found.headline} ({run.seconds:.3g} s)", style=style)
     for text in found.others:
         console.print(f"also: {text}")
-    gates, worst = gates_in_words(run), worst_gate(run)
+    gates, worst = run.gates_in_words, worst_gate(run)
     if worst is not None and run.passed:
         gates += f", the worst is {worst.gate.id} with {100 * (worst.fraction or 0.0):.3g} % of its tolerance"
     console.print(f"{gates[:1].upper()}{gates[1:]}.")

@@ -16,7 +16,7 @@ from verify.scene.model import Scene
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Result
-    from verify.report.verdict import Margin
+    from verify.report.verdict import Margin, Verdict
 
 Progress: TypeAlias = Callable[[str], None]
 
@@ -56,6 +56,31 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def passed(self) -> bool:
         """Whether no gate failed."""
         return not self.failed
+
+    @property
+    def gates_in_words(self) -> str:
+        """'all 27 gates passed', '2 of 27 gates failed', 'no gate applies'."""
+        judged = sum(gate.passed is not None for gate in self.gates)
+        if self.failed:
+            return f"{len(self.failed)} of {judged} gates failed"
+        return f"all {judged} gates passed" if judged else "no gate applies"
+
+    @property
+    def verdict(self) -> "Verdict":
+        """The worst of all studies, of linear theory under the drive, and of the gates."""
+        from verify.report.verdict import Verdict, verdict_of, void
+
+        margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
+        judged = any(gate.passed is not None for gate in self.gates)
+        if self.failed:
+            margins.append(void("gates", f"{self.gates_in_words}, {', '.join(one.id for one in self.failed)}"))
+        elif not (judged or self.results):
+            margins.append(void("the run", "no study and no gate ran, nothing was computed"))
+        found = verdict_of(margins)
+        if found.level != "trusted" or any(margin.is_error for margin in margins) or not judged:
+            return found
+        headline = f"Trusted as far as its gates: {self.gates_in_words}."
+        return Verdict(level="trusted", headline=headline, margins=found.margins)
 
 
 def run_scene(

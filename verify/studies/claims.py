@@ -81,12 +81,9 @@ def unit_of(claim: "Claim") -> str:
 
 def computed(claim: "Claim", scene: "Scene", cache: "SolutionCache", **other: Any) -> float:
     """The value of its quantity, with `other` arguments. Raises InputError."""
-    from verify.analysis.margins import default_count
     from verify.quantities.base import evaluate
 
-    own = claim.arguments
-    if of_scene(claim):
-        own = {"model": "segment", "count": default_count(scene, cache, scene.motion.count)}
+    own = {"model": "segment", "count": scene.motion.size(scene, cache)} if of_scene(claim) else claim.arguments
     arguments = {name: value for name, value in (own | other).items() if value is not None}
     value = evaluate(claim.quantity, arguments, scene, cache)
     if not isinstance(value, float | int):

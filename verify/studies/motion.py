@@ -76,11 +76,17 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if scene.slider is None and self.steps_per_period != STEPS_PER_PERIOD:
             raise InputError(f"motion.steps_per_period = {self.steps_per_period!r}: only a slider takes steps, drop it")
 
+    def size(self, scene: "Scene", cache: "SolutionCache") -> int:
+        """Segments and elements: as given, or the fewest within 1 % at the drive. Raises InputError."""
+        from verify.analysis.margins import sufficient_count
+
+        return self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
+
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Simulate the slider on every model. Raises InputError."""
         import numpy as np
 
-        from verify.analysis.margins import against_exact, beam_margins, default_count, marked, run_margins, sag_margins
+        from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins
         from verify.analytic_modes import check_in_time
         from verify.dynamics.simulate import simulate
         from verify.linear.registry import MODELS, bounding, discrete
@@ -91,7 +97,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         scene = replace(scene, studies={**scene.studies, "motion": self})
         assert scene.slider is not None
         assert scene.drive is not None
-        count = default_count(scene, cache, self.count)
+        count = self.size(scene, cache)
         steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
         check_in_time(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
         runs: dict[str, Run] = {}
@@ -183,7 +189,7 @@ def readings(scene: "Scene") -> "Table":
     columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
     valid = ", ".join(row[0] for row in rows if row[4] != "not trusted")
     note = f"Valid by its own margins: {valid or 'none'}. A mean over the start is not the speed of a motor."
-    return Table("One slider, one speed", [*columns, Column("verdict"), Column("worst margin")], rows, [note])
+    return Table("Speed of the slider", [*columns, Column("verdict"), Column("worst margin")], rows, [note])
 
 
 def _title(run: "Run") -> str:

@@ -97,14 +97,14 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
-        from verify.analysis.margins import default_count, marked
+        from verify.analysis.margins import marked, sufficient_count
         from verify.linear.registry import MODELS
         from verify.motor.curves import REASONS
         from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
         from verify.report.verdict import verdict_of
 
-        n = default_count(scene, cache, self.count)
+        n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
         fields: list[Field] = []
         for model in self.models:
             count, options = n if MODELS[model].sized else None, asdict(self)

@@ -44,12 +44,12 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
-        from verify.analysis.margins import beam_margins, default_count, marked
+        from verify.analysis.margins import beam_margins, marked, sufficient_count
         from verify.analysis.solution_cache import comparable, theory_of
         from verify.formatting import theory_name
         from verify.report.result import Column, Figure, Result, Table
 
-        count = default_count(scene, cache, self.count, self.modes)
+        count = self.count or sufficient_count(cache, modes=self.modes)
         progress(f"modes 1 to {self.modes}, N = {count}")
         models, left_out = comparable(cache.beam, (count,), self.modes)
         variants, numbers = self.variants(models), range(1, self.modes + 1)

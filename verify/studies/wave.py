@@ -72,7 +72,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Solve the fields of all models. Raises InputError."""
         from msgspec.structs import replace
 
-        from verify.analysis.margins import against_exact, beam_margins, default_count, marked
+        from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
         from verify.linear.registry import EXACT, MODELS, discrete
         from verify.quantities.waves import FieldOptions, driven_case, measured
         from verify.report.result import Column, Figure, Result, Table
@@ -83,7 +83,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         assert drive is not None
         exact = driven_case(scene, FieldOptions())
         models = [model.name for model in discrete("harmonic", scene.beam)]
-        n = default_count(scene, cache, self.count)
+        n = self.count or sufficient_count(cache, frequency_hz=drive.frequency_hz)
         counts = self.counts or (n, 2 * n, 4 * n)
         rows: list[Row] = []
         for model, count in [(EXACT, None), *((model, count) for model in models for count in counts)]:
