@@ -14,6 +14,7 @@ from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theor
 from verify.errors import InputError
 from verify.exact.closed_forms import theory_ratio, wavenumber_length
 from verify.exact.error_laws import LAWS, error_at
+from verify.exact.plate import FLATNESS, plate_error, stiffening
 from verify.formatting import with_unit
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.report.verdict import FINE, Margin, per_cent, void
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from verify.problem.slider import Slider
     from verify.scene.model import Scene
 
-Sizes = Sequence[tuple[str, int | None]]
-"""(model, count) of the models that answer; None for the exact beam."""
 MOST_PLATES = 60
 """Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
 SLOPE = 0.1, 0.3
@@ -39,13 +38,13 @@ STILL = 1e-4
 
 def beam_margins(
     cache: SolutionCache,
-    sizes: Sizes,
+    sizes: Sequence[tuple[str, int | None]],
     *,
     mode: int | None = None,
     frequency_hz: float | None = None,
     settings: Settings = (),
 ) -> list[Margin]:
-    """Margins of a beam and its models at a mode, or at the wave of a frequency, Hz; give one of the two.
+    """Margins of a beam and its models (name, count) at a mode, or at the wave of a frequency, Hz; give one of the two.
 
     Discretisation at a mode is the solved error against the exact beam, at a wave the error of the dispersion at its
     wavenumber. Raises InputError for a mode that the exact beam does not have.
@@ -65,7 +64,17 @@ def beam_margins(
             with suppress(InputError):
                 size = abs(cache.exact_hz(mode, "timoshenko") / cache.exact_hz(mode) - 1.0)
         found.append(Margin(name=name, size=size, where=where, remedy="use theory = 'timoshenko'"))
-    return [*found, *_plate(cache, k, mode, where)]
+    width = max((one.width for one in (beam, *beam.section) if one.width), default=0.0)
+    if width and beam.thickness and width >= FLATNESS * beam.thickness:  # a strip
+        size, half = stiffening(0.5 * k * width, beam.poissons_ratio), pi / k
+        if mode and mode <= MOST_PLATES:
+            with suppress(InputError):
+                size = abs(plate_error(beam, mode))
+        short = f" (half a wave, {with_unit(half)}, is shorter than the width)" if half < width else ""
+        found.append(Margin(name="bending across the width", size=size, where=where,
+                            condition=f"bending across the width may be left out{short}",
+                            remedy="no beam theory has it: use a plate, or a narrower strip"))  # fmt: skip
+    return found
 
 
 def _wavenumber(cache: SolutionCache, mode: int | None, frequency_hz: float | None) -> float | None:
@@ -109,35 +118,12 @@ def _mode_above(cache: SolutionCache, frequency_hz: float) -> int:
     return bisect_left(range(1, top + 1), frequency_hz, key=cache.exact_hz) + 1
 
 
-def _plate(cache: SolutionCache, k: float, mode: int | None, where: str) -> list[Margin]:
-    """Bending across the width of a strip; none of sections that are no strip."""
-    from verify.exact.plate import FLATNESS, plate_error, stiffening
-
-    beam = cache.beam
-    width = max((one.width for one in (beam, *beam.section) if one.width), default=0.0)
-    if not width or not beam.thickness or width < FLATNESS * beam.thickness:
-        return []
-    size = stiffening(0.5 * k * width, beam.poissons_ratio)
-    if mode and mode <= MOST_PLATES:
-        with suppress(InputError):
-            size = abs(plate_error(beam, mode))
-    short = f" (half a wave, {with_unit(pi / k)}, is shorter than the width)" if pi / k < width else ""
-    return [Margin(name="bending across the width", size=size, where=where,
-                   condition=f"bending across the width may be left out{short}",
-                   remedy="no beam theory has it: use a plate, or a narrower strip")]  # fmt: skip
-
-
 def sufficient_count(
-    cache: SolutionCache,
-    *,
-    modes: int = 0,
-    frequency_hz: float | None = None,
-    models: Sequence[str] = (),
-    error: float = FINE,
+    cache: SolutionCache, *, modes: int = 0, frequency_hz: float | None = None, models: Sequence[str] = ()
 ) -> int:
-    """The fewest parts with which all models keep an error in frequency, at a mode or at a driven wave.
+    """The number of parts from which on all models keep 1 % in frequency, at a mode or at a driven wave.
 
-    From this number on: larger ones keep it too. Raises InputError where no practical number does.
+    Raises InputError where no practical number does.
     """
     from verify.analysis.sizing import LARGEST, sufficient_size
 
@@ -145,13 +131,13 @@ def sufficient_count(
     k = None if modes else _wavenumber(cache, None, frequency_hz)
     if modes or k is None or not cache.beam.uniform:
         mode = modes or _mode_above(cache, frequency_hz or 0.0)
-        return max(sufficient_size(cache, name, mode, error).count for name in names)
+        return max(sufficient_size(cache, name, mode, FINE).count for name in names)
     turns, last = k * cache.beam.length, 0
     count = first = max(int(turns / pi) + 1, 2)
     while count <= max(2 * last, first + 8):  # an error that changes sign is small by accident once
         if count > LARGEST:
             raise InputError(f"frequency_hz = {frequency_hz!r}: more than {LARGEST} parts are needed, lower it")
-        if any(abs(error_at(name, cache.beam, turns / count, count)) > error for name in names if name in LAWS):
+        if any(abs(error_at(name, cache.beam, turns / count, count)) > FINE for name in names if name in LAWS):
             last = count
         count += max(count // 500, 1)
     return max(last + 1, first)
@@ -168,9 +154,6 @@ def marked(title: str, margins: Iterable[Margin]) -> str:
     """The title of a chart, with the discretisation that is more than 5 % off."""
     off = [one.failure for one in margins if one.name.startswith("discretisation") and one.size > OFF]
     return f"{title} ({', '.join(off)})" if off else title
-
-
-# --- Drive and sliders -----------------------------------------------------------------------------------------------
 
 
 def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
@@ -258,16 +241,15 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
     mode, hertz = known.get("mode"), known.get("frequency_hz")
     if hertz is None and "drive" in quantity.reads and scene.drive is not None:
         hertz = scene.drive.frequency_hz
-    found = list[Margin]()
+    found: list[Margin] = []
     if "beam" in quantity.reads and (isinstance(mode, int) or hertz is not None):
         settings = tuple((key, known[key]) for key in DEFAULTS if known.get(key) not in (None, DEFAULTS[key]))
         size = (known["model"], known.get("count")) if known.get("model") in MODELS else (EXACT, None)
         at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
         with suppress(InputError):
             found += beam_margins(cache, [size], **at, settings=settings)
-    if scene.slider is not None:
-        runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
-        sliding = [run for run in runs if run.coupling is not None]
+    runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
+    if scene.slider is not None and (sliding := [run for run in runs if run.coupling is not None]):
         found += [one for run in sliding for one in run_margins(run, scene.slider, MODELS[run.model].title)]
-        found += sag_margins(cache, scene.slider) if sliding else []
+        found += sag_margins(cache, scene.slider)
     return found

@@ -19,7 +19,7 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
     from verify.analysis.margins import quantity_margins
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate, parse_arguments
-    from verify.report.verdict import COLOURS, verdict_of
+    from verify.report.result import Result
     from verify.scene.load import load_scene
 
     given = parse_arguments(quantity, arguments)
@@ -28,14 +28,10 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
         step(quantity)
         value = evaluate(quantity, given, loaded, cache := SolutionCache(loaded.beam))
         margins = quantity_margins(quantity, given, loaded, cache)
-    found = verdict_of(margins) if margins else None
     unit = QUANTITIES.named(quantity).unit
+    result = Result(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"), margins=margins)
     if as_json:
-        print_json(
-            {"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit}
-            | ({"verdict": found.to_dict()} if found else {})
-        )
+        own = {"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit}
+        print_json(own | ({"verdict": result.verdict.to_dict()} if result.verdict else {}))
     else:
-        if found:
-            console().print(found.headline, style=f"bold {COLOURS[found.level]}")
-        click.echo(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"))
+        result.print(console())

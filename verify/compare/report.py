@@ -5,12 +5,15 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
+from verify.analysis.margins import beam_margins
+from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import is_uneven
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import FAULTS, TOLERANCE, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.problem.beam import Beam
 from verify.report.result import Column, Figure, Result, Table
+from verify.report.verdict import Margin, void
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -113,8 +116,12 @@ def result_of(
     about |= {"passed": all(check[3] for check in checks), "status": found.status, "best": _plain(best, beam)}
     groups = {"equivalent": found.equivalent, "alternatives": found.alternatives, "candidates": found.ranking}
     about |= {name: [_plain(one, beam) for one in fits] for name, fits in groups.items()}
+    mode, off = max((row.mode for row in rows), default=1), max((abs(row.error) for row in rows), default=0.0)
+    margins = [*beam_margins(SolutionCache(beam), [], mode=mode), Margin(name="the list of frequencies", size=off)]
+    if not all(check[3] for check in checks):
+        margins.append(void("the list", f"{summary.rstrip('.')}; {', '.join(c[0] for c in checks if not c[3])}"))
     figure = _figure(beam, found, rows)
-    return Result(summary, tables, [figure], warnings=warnings, data=about)
+    return Result(summary, tables, [figure], warnings=warnings, data=about, margins=margins)
 
 
 def _figure(beam: Beam, found: Identification, rows: list[Entry]) -> Figure:

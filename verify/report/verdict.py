@@ -7,9 +7,9 @@ from typing import Any, Literal, TypeAlias
 import msgspec
 
 Level: TypeAlias = Literal["trusted", "conditional", "not trusted"]
-LEVELS: tuple[Level, ...] = ("trusted", "conditional", "not trusted")
 COLOURS: dict[Level, str] = {"trusted": "green", "conditional": "yellow", "not trusted": "red"}
 """Of a terminal: green is for results without a condition."""
+LEVELS: tuple[Level, ...] = tuple(COLOURS)
 FINE, LIMIT = 0.01, 0.10
 """Relative errors up to which a result is trusted, and trusted under a condition."""
 
@@ -65,8 +65,7 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON: level, headline, margins with their sizes and limits."""
-        names = ("name", "where", "size", "fine", "limit", "level", "condition", "failure", "remedy")
-        margins = [{name: getattr(one, name) for name in names} for one in self.margins]
+        margins = [msgspec.structs.asdict(one) | {"level": one.level} for one in self.margins]
         return {"level": self.level, "headline": self.headline, "margins": margins}
 
 
@@ -76,25 +75,20 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
     ordered = sorted(worst_of.values(), key=_badness, reverse=True)
     if not ordered:
         return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
-    worst = ordered[0]
+    worst, largest = ordered[0], max(ordered, key=lambda one: one.is_error * one.size)
     if worst.level == "not trusted":
-        sentence = worst.failure or f"{worst.text}, more than {per_cent(worst.limit)}"
-        headline = f"Not to be trusted: {sentence}." + f" {worst.remedy[:1].upper()}{worst.remedy[1:]}." * bool(
-            worst.remedy
-        )
+        headline = f"Not to be trusted: {worst.failure or f'{worst.text}, more than {per_cent(worst.limit)}'}."
+        if worst.remedy:
+            headline += f" {worst.remedy[0].upper()}{worst.remedy[1:]}."
     elif worst.level == "conditional":
         others = len({one.name for one in ordered if one.level == "conditional"}) - 1
         more = f" ({others} more condition{'s' * (others > 1)})" if others else ""
         size = f": {per_cent(worst.size)} {worst.where}".rstrip() if worst.is_error and isfinite(worst.limit) else ""
         headline = f"Trusted only if {worst.condition or f'{worst.name} may be left out'}{size}{more}."
+    elif largest.is_error:
+        headline = f"Trusted to {per_cent(largest.size)} ({f'{largest.name} {largest.where}'.rstrip()})."
     else:
-        errors = [one for one in ordered if one.is_error and isfinite(one.size)]
-        largest = max(errors, key=lambda one: one.size, default=None)
-        headline = (
-            f"Trusted to {per_cent(largest.size)} ({largest.name} {largest.where}".rstrip() + ")."
-            if largest
-            else "Trusted: no margin is beyond its limit."
-        )
+        headline = "Trusted: no margin is beyond its limit."
     return Verdict(level=worst.level, headline=headline, margins=tuple(ordered))
 
 

@@ -123,7 +123,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         def figure(name: str, title: str, unit: str, lines: list[Any]) -> Figure:
             drawn = partial(plot_lines, lines=lines, x=("time", "s"), y=(name, unit))
-            return Figure(f"slider-{name.split(maxsplit=1)[0]}", title, "Along +x.", drawn)
+            return Figure(f"slider-{name.split(maxsplit=1)[0]}", marked(title, margins), "Along +x.", drawn)
 
         def of_all(name: str) -> list[Any]:
             return [(_title(run), run.times, getattr(run, name), model_style(run.model)) for run in runs.values()]
@@ -131,15 +131,9 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
         velocity = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
         figures = [
-            figure(
-                "displacement", marked(f"Displacement of the slider, N = {count}", margins), "m", of_all("travelled")
-            ),
-            figure(
-                "velocity", marked(f"Velocity of the slider and the surface, {_title(chain)}", margins), "m/s", velocity
-            ),
-            figure(
-                "friction force", marked(f"Friction force on the slider, N = {count}", margins), "N", of_all("friction")
-            ),
+            figure("displacement", f"Displacement of the slider, N = {count}", "m", of_all("travelled")),
+            figure("velocity", f"Velocity of the slider and the surface, {_title(chain)}", "m/s", velocity),
+            figure("friction force", f"Friction force on the slider, N = {count}", "N", of_all("friction")),
         ]
         keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
         keys += ["coupling", "margins", "energy", "statistics", "notes"]
@@ -165,27 +159,33 @@ def readings(scene: "Scene") -> "Table":
     from verify.report.result import Column, Table
     from verify.report.verdict import verdict_of
 
-    own, seconds = scene.slider, scene.motion.duration
+    own = scene.slider
     assert own is not None
     point = replace(own, contact=None, foot=(), pull=0.0, preload_stiffness=0.0)
     opening = replace(point, kinematics="tangential", normal="held", line="spline", contact=Contact())
-    tangential = replace(point, kinematics="tangential")
-    following = replace(point, kinematics="following")
     rows: list[tuple[Any, ...]] = []
-    for name, assumption, slider, time in (
-        ("tangential", "stays on the surface and moves along it alone", tangential, seconds),
-        ("following", "stays on it and moves with it across the beam", following, seconds),
-        (f"{own.kinematics}, long", "the same after its start", point, LONG * seconds),
-        ("contact that opens", "lifts off and lands", own if own.contact else opening, LONG * seconds),
+    for name, assumption, slider, times in (
+        ("tangential", "stays on the surface and moves along it alone", replace(point, kinematics="tangential"), 1),
+        ("following", "stays on it and moves with it across the beam", replace(point, kinematics="following"), 1),
+        (f"{own.kinematics}, long", "the same after its start", point, LONG),
+        ("contact that opens", "lifts off and lands", own if own.contact else opening, LONG),
     ):
         try:
-            run = simulate(
-                **motion_arguments(scene, TimeOptions(model="analytic", time=time)), slider=slider, samples=2
-            )
+            options = TimeOptions(model="analytic", time=times * scene.motion.duration)
+            run = simulate(**motion_arguments(scene, options), slider=slider, samples=2)
             found, speed = verdict_of(run_margins(run, slider, "exact beam")), run.mean_speed
-            rows.append((name, assumption, time, speed, found.level, found.margins[0].text if found.margins else ""))
+            rows.append(
+                (
+                    name,
+                    assumption,
+                    times * scene.motion.duration,
+                    speed,
+                    found.level,
+                    found.margins[0].text if found.margins else "",
+                )
+            )
         except InputError as error:
-            rows.append((name, assumption, time, None, "not trusted", str(error)))
+            rows.append((name, assumption, times * scene.motion.duration, None, "not trusted", str(error)))
     columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
     valid = ", ".join(row[0] for row in rows if row[4] != "not trusted")
     note = f"Valid by its own margins: {valid or 'none'}. A mean over the start is not the speed of a motor."

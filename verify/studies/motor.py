@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from dataclasses import replace as changed
 from functools import partial
 from math import copysign
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -97,7 +96,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
-        from verify.analysis.margins import marked, sufficient_count
+        from verify.analysis.margins import sufficient_count
         from verify.linear.registry import MODELS
         from verify.motor.curves import REASONS
         from verify.quantities.motor import MotorOptions
@@ -118,7 +117,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return Result(
             summary=summary if valid else "",
             tables=[*_tables(fields), *([readings(scene)] if scene.motion else [])],
-            figures=[changed(one, title=marked(one.title, margins)) for one in _figures(fields)],
+            figures=_figures(fields, margins),
             warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
             margins=margins,
         )
@@ -237,9 +236,10 @@ def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
     return value if at.converged("force", *figures) else None
 
 
-def _figures(fields: list[Field]) -> "list[Figure]":
+def _figures(fields: list[Field], margins: "list[Margin]") -> "list[Figure]":
     import numpy as np
 
+    from verify.analysis.margins import marked
     from verify.motor.curves import phase_portrait
     from verify.report.result import Figure
 
@@ -262,6 +262,6 @@ def _figures(fields: list[Field]) -> "list[Figure]":
     limit = np.copysign(fields[0].case.slider.mu * still.normal_force, still.force)
     lines["motor-force"].append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
     return [
-        Figure(key, title, caption, partial(plot_lines, lines=lines[key], x=x, y=y))
+        Figure(key, marked(title, margins), caption, partial(plot_lines, lines=lines[key], x=x, y=y))
         for key, (title, x, y, caption) in CHARTS.items()
     ]

@@ -42,9 +42,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     title: ClassVar[str] = "The driven beam"
 
     count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
-    counts: Annotated[Counts, Meta(description="Of the errors over N; by default count, twice and 4 times.")] | None = (
-        None
-    )
+    counts: Annotated[Counts, Meta(description="Of the errors over N; else 1, 2, 4 times count.")] | None = None
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
