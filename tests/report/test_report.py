@@ -304,9 +304,9 @@ def test_run_data_is_complete(full_run):
 def test_a_failed_gate_and_a_stopped_slider_are_never_green(small_run, full_run):
     import msgspec
 
+    from verify.analysis.verdict import void
     from verify.report.page import run_page
     from verify.report.result import Result
-    from verify.report.verdict import void
 
     assert small_run.verdict.level == "trusted"
     assert full_run.verdict.level == "not trusted"

@@ -8,20 +8,20 @@ from verify import Beam
 from verify.analysis.margins import (
     beam_margins,
     marked,
-    quantity_margins,
     run_margins,
     sag_margins,
     slope_margin,
     sufficient_count,
 )
 from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import Margin, verdict_of, void
 from verify.linear.registry import MODELS
 from verify.problem.beam import PointForce
 from verify.quantities.base import evaluate
-from verify.report.verdict import Margin, verdict_of, void
 from verify.scene.load import load_scene, scene_from
 from verify.studies.motor import Motor
 from verify.studies.spectrum import Spectrum
+from verify.studies.sweep import quantity_margins
 
 PAPER = load_scene("paper").beam
 BRASS = {"length": 0.3, "width": 0.012, "thickness": 0.0008, "youngs_modulus": 105e9, "density": 8500.0}

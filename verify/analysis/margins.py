@@ -1,29 +1,28 @@
 """Margins: the sizes of what a result leaves out, from the beam, the model, its count, and the mode or drive.
 
 Discretisation, shear and rotary inertia, bending across the width, cut-off of the parts, sag and slope under sliders,
-one-way coupling, lift-off, convergence and linearity; `report.verdict` derives the verdict from them.
+one-way coupling, lift-off, convergence and linearity; `verdict` derives the level from them.
 """
 
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from math import inf, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
+from verify.analysis.verdict import FINE, Margin, per_cent, void
 from verify.errors import InputError
 from verify.exact.closed_forms import theory_ratio, wavenumber_length
 from verify.exact.error_laws import LAWS, error_at
 from verify.exact.plate import FLATNESS, plate_error, stiffening
 from verify.formatting import with_unit
 from verify.linear.registry import EXACT, MODELS, discrete
-from verify.report.verdict import FINE, Margin, per_cent, void
 
 if TYPE_CHECKING:
     from verify.dynamics.result import Motion
     from verify.linear.field import HarmonicField
     from verify.problem.slider import Slider
-    from verify.scene.model import Scene
 
 MOST_PLATES = 60
 """Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
@@ -227,29 +226,3 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
                remedy="raise steps_per_period"),
     ]  # fmt: skip
     return [one for one in found if not one.size <= 0.0]
-
-
-def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache) -> list[Margin]:
-    """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
-    import msgspec
-
-    from verify.analysis.variants import DEFAULTS
-    from verify.quantities.base import QUANTITIES
-
-    quantity = QUANTITIES.named(name)
-    known = {f.name: f.default for f in msgspec.structs.fields(quantity.schema) if not f.required} | dict(arguments)
-    mode, hertz = known.get("mode"), known.get("frequency_hz")
-    if hertz is None and "drive" in quantity.reads and scene.drive is not None:
-        hertz = scene.drive.frequency_hz
-    found: list[Margin] = []
-    if "beam" in quantity.reads and (isinstance(mode, int) or hertz is not None):
-        settings = tuple((key, known[key]) for key in DEFAULTS if known.get(key) not in (None, DEFAULTS[key]))
-        size = (known["model"], known.get("count")) if known.get("model") in MODELS else (EXACT, None)
-        at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
-        with suppress(InputError):
-            found += beam_margins(cache, [size], **at, settings=settings)
-    runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
-    if scene.slider is not None and (sliding := [run for run in runs if run.coupling is not None]):
-        found += [one for run in sliding for one in run_margins(run, scene.slider, MODELS[run.model].title)]
-        found += sag_margins(cache, scene.slider)
-    return found

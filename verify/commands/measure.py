@@ -16,11 +16,11 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
 
     Example: `verify measure paper mode.frequency_error model=segment mode=22 count=49`
     """
-    from verify.analysis.margins import quantity_margins
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate, parse_arguments
     from verify.report.result import Result
     from verify.scene.load import load_scene
+    from verify.studies.sweep import quantity_margins
 
     given = parse_arguments(quantity, arguments)
     loaded = load_scene(scene, overrides)

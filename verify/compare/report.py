@@ -8,12 +8,12 @@ import numpy as np
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import is_uneven
+from verify.analysis.verdict import Margin, void
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import FAULTS, TOLERANCE, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.problem.beam import Beam
 from verify.report.result import Column, Figure, Result, Table
-from verify.report.verdict import Margin, void
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verify.analysis.verdict import LEVELS, Verdict
 from verify.report.result import Column, Result, Table
 from verify.report.summary import worst_gate
-from verify.report.verdict import LEVELS, Verdict
 
 if TYPE_CHECKING:
     from verify.report.archive import Saved

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
+from verify.analysis.verdict import COLOURS, Margin, Verdict, verdict_of
 from verify.formatting import unit_over
-from verify.report.verdict import COLOURS, Margin, Verdict, verdict_of
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
+from verify.analysis.verdict import COLOURS
 from verify.report.result import MISSING, Column, Table
 from verify.report.summary import VERDICTS, expected, study_title, value_text, worst_gate
-from verify.report.verdict import COLOURS
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -15,8 +15,8 @@ from verify.scene.model import Scene
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin, Verdict
     from verify.report.result import Result
-    from verify.report.verdict import Margin, Verdict
 
 Progress: TypeAlias = Callable[[str], None]
 
@@ -68,7 +68,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def verdict(self) -> "Verdict":
         """The worst of all studies, of linear theory under the drive, and of the gates."""
-        from verify.report.verdict import Verdict, verdict_of, void
+        from verify.analysis.verdict import Verdict, verdict_of, void
 
         margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
         judged = any(gate.passed is not None for gate in self.gates)

@@ -87,12 +87,12 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins
+        from verify.analysis.verdict import verdict_of
         from verify.analytic_modes import check_in_time
         from verify.dynamics.simulate import simulate
         from verify.linear.registry import MODELS, bounding, discrete
         from verify.quantities.slider import TimeOptions, motion_arguments
         from verify.report.result import Figure, Result
-        from verify.report.verdict import verdict_of
 
         scene = replace(scene, studies={**scene.studies, "motion": self})
         assert scene.slider is not None
@@ -153,11 +153,11 @@ def readings(scene: "Scene") -> "Table":
     A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
     """
     from verify.analysis.margins import run_margins
+    from verify.analysis.verdict import verdict_of
     from verify.dynamics.simulate import simulate
     from verify.problem.slider import Contact
     from verify.quantities.slider import TimeOptions, motion_arguments
     from verify.report.result import Column, Table
-    from verify.report.verdict import verdict_of
 
     own = scene.slider
     assert own is not None

@@ -17,10 +17,10 @@ from verify.studies.motion import Damping, check_driven, check_start, readings
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin
     from verify.motor.curves import Transient
     from verify.motor.steady_state import MotorCase, SteadyState
     from verify.report.result import Figure, Result, Table
-    from verify.report.verdict import Margin
     from verify.scene.model import Scene
 
 TIME_CONSTANTS = 8.0
@@ -97,11 +97,11 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
         from verify.analysis.margins import sufficient_count
+        from verify.analysis.verdict import verdict_of
         from verify.linear.registry import MODELS
         from verify.motor.curves import REASONS
         from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
-        from verify.report.verdict import verdict_of
 
         n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
         fields: list[Field] = []
@@ -167,9 +167,9 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
     """Of the beam at the drive, of the free runs, of the sag, and of figures that have not converged."""
     from verify.analysis.margins import beam_margins, run_margins, sag_margins
+    from verify.analysis.verdict import void
     from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
-    from verify.report.verdict import void
 
     case = fields[0].case
     sizes = [(field.case.model, field.case.count) for field in fields]

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin
     from verify.report.result import Result
     from verify.scene.model import Scene
 
@@ -127,10 +129,9 @@ def run_sweep(
 
 def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
     """Values by quantity, claims that agree, reason for a missing value, worst margin, of one combination."""
-    from verify.analysis.margins import quantity_margins
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import verdict_of
     from verify.quantities.base import evaluate
-    from verify.report.verdict import verdict_of
     from verify.scene.load import scene_from
     from verify.studies.claims import computed
 
@@ -151,6 +152,32 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, A
     except InputError as error:
         row["reason"] = str(error)
     return row
+
+
+def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
+    """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
+    from verify.analysis.margins import beam_margins, run_margins, sag_margins
+    from verify.analysis.variants import DEFAULTS
+    from verify.linear.registry import EXACT, MODELS
+    from verify.quantities.base import QUANTITIES
+
+    quantity = QUANTITIES.named(name)
+    known = {f.name: f.default for f in msgspec.structs.fields(quantity.schema) if not f.required} | dict(arguments)
+    mode, hertz = known.get("mode"), known.get("frequency_hz")
+    if hertz is None and "drive" in quantity.reads and scene.drive is not None:
+        hertz = scene.drive.frequency_hz
+    found: list[Margin] = []
+    if "beam" in quantity.reads and (isinstance(mode, int) or hertz is not None):
+        settings = tuple((key, known[key]) for key in DEFAULTS if known.get(key) not in (None, DEFAULTS[key]))
+        size = (known["model"], known.get("count")) if known.get("model") in MODELS else (EXACT, None)
+        at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
+        with suppress(InputError):
+            found += beam_margins(cache, [size], **at, settings=settings)
+    runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
+    if scene.slider is not None and (sliding := [run for run in runs if run.coupling is not None]):
+        found += [one for run in sliding for one in run_margins(run, scene.slider, MODELS[run.model].title)]
+        found += sag_margins(cache, scene.slider)
+    return found
 
 
 def _quantities(names: Sequence[str]) -> list[Any]:
