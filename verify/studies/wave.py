@@ -63,7 +63,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             ) from None
         bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
         for model in discrete("harmonic", scene.beam) if bare.uniform else ():
-            for count in self.counts or ():
+            for count in filter(None, (self.count, *(self.counts or ()))):
                 model.build(bare, count).check_propagates(frequency)
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
