@@ -101,7 +101,9 @@ def run_sweep(
         max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
     )
     rows = [one | found for one, found in zip(combinations, values, strict=True)]
-    margins = list(dict.fromkeys(margin for row in rows for margin in row.pop("margins")))
+    margins = [margin for row in rows for margin in row.pop("margins")]
+    if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
+        margins = [margin for margin in margins if not margin.name.startswith("discretisation")]
     wanted, failed = _quantities(quantities), sum(row["reason"] is not None for row in rows)
     columns = [Column(key, format=".6g") for key in combinations[0]]
     columns += [Column(one.name, "" if one.unit == "1" else one.unit, ".7g") for one in wanted]
@@ -130,7 +132,6 @@ def run_sweep(
 def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
     """Values by quantity, claims that agree, reason for a missing value, worst margin, of one combination."""
     from verify.analysis.solution_cache import SolutionCache
-    from verify.analysis.verdict import verdict_of
     from verify.quantities.base import evaluate
     from verify.scene.load import scene_from
     from verify.studies.claims import computed
@@ -146,7 +147,7 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, A
         for one in _quantities(study.quantities):
             own = {k: v for k, v in arguments.items() if k in one.schema.__struct_fields__}
             row[one.name] = evaluate(one.name, own, scene, cache)
-            row["margins"] += verdict_of(quantity_margins(one.name, own, scene, cache)).margins[:1]
+            row["margins"] += (*quantity_margins(one.name, own, scene, cache),)
         for claim in scene.claim if study.claims else ():
             row[AGREE] += claim.agrees(computed(claim, scene, cache))
     except InputError as error:
