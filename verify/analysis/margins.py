@@ -28,7 +28,6 @@ MOST_PLATES = 60
 """Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
 SLOPE = 0.1, 0.3
 """Slopes up to which linear theory is trusted, and trusted under a condition: their squares are relative lengths."""
-POINTS = 401
 OFF = 0.05
 """Discretisation error from which a chart is marked."""
 STILL = 1e-4
@@ -159,7 +158,7 @@ def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
     """Linear theory under the deflection of a field: the square of the largest slope is a relative length."""
     import numpy as np
 
-    x = np.linspace(0.0, field.beam.length, POINTS)
+    x = np.linspace(0.0, field.beam.length, 401)
     bent, slope = float(abs(field.deflection(x)).max()), float(abs(field.slope(x)).max())
     failure = f"{what} bends the beam by {with_unit(bent)}, {per_cent(bent / field.beam.length)} of its length"
     return Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
@@ -187,8 +186,8 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
         still = MODELS[EXACT].build(beam).harmonic(loads, STILL * cache.exact_hz(1))
     except InputError:
         return []
-    what = "the preload" if slider.preload else "the slider's weight"
-    found = [slope_margin(what, still, "press it less, or make the beam stiffer")]
+    what, remedy = "the preload" if slider.preload else "the slider's weight", "press it less, or stiffen the beam"
+    found = [slope_margin(what, still, remedy)]
     if amplitude and slider.coupling == "one-way":
         bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
         found.append(Margin(name="sag under a foot over the wave's amplitude:", size=float(bent) / amplitude,
@@ -205,9 +204,8 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
         end = with_unit(run.end.time, "s")
         found.append(void("the run", f"the slider {status.stopped} on the {title} after {end}", "give a shorter time"))
     if slider.contact is None:
-        falls = f"the surface falls away with {margins.lift_off:.3g} times the acceleration of weight and preload"
-        found.append(Margin(name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, is_error=False,
-                            failure=f"the slider lifts off: {falls}",
+        falls = f"the slider lifts off: the surface falls away with {margins.lift_off:.3g} times its own acceleration"
+        found.append(Margin(name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, failure=falls, is_error=False,
                             remedy="press it more, or model its contact by [slider.contact]"))  # fmt: skip
     if coupling is not None and not (coupling.two_way and slider.normal == "held"):
         size = max(coupling.normal_size, 0.0 if coupling.two_way else coupling.friction_size or 0.0)

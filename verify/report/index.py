@@ -58,8 +58,7 @@ def index_result(lines: Sequence[dict[str, Any]]) -> Result:
 def index_verdict(lines: Sequence[dict[str, Any]]) -> str:
     """One line over all scenes."""
     bad = sum(line["passed"] is not True for line in lines)
-    text = f"{bad} of {len(lines)} scenes failed" if bad else f"All {len(lines)} scenes passed their gates"
-    levels = [line["level"] for line in lines]
+    text, levels = f"{bad} of {len(lines)} scenes failed", [line["level"] for line in lines]
     return f"{text}: " + ", ".join(f"{levels.count(one)} {one}" for one in LEVELS if one in levels)
 
 
