@@ -150,7 +150,7 @@ class TestCommand:
     def test_typed_frequencies(self, capsys):
         status, out, _ = self.run(capsys, "27.570", "172.56", "482.63", "944.65", "1559.74", "2327.2", "--count", 30)
         assert status == 0
-        assert out.startswith("Identified: rigid links, 2EI/l at the wall, N = 30")
+        assert "\nIdentified: rigid links, 2EI/l at the wall, N = 30" in out
 
     @pytest.mark.parametrize(
         ("words", "message"),

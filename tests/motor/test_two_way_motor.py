@@ -344,7 +344,6 @@ def test_a_slider_runs_on_a_beam_that_nothing_holds_as_on_soft_springs():
     assert abs(exact.travelled[-1]) > 5e-8
     for model, count in (("segment", 31), ("fem", 40)):
         free, held = (simulate(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying))
-        assert free.margins.static_deflection is None
         assert free.travelled == pytest.approx(held.travelled, rel=1e-5)
         assert free.travelled == pytest.approx(exact.travelled, rel=5e-3)
     with pytest.raises(InputError, match=r"beam\.supports"):

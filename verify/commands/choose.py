@@ -23,17 +23,18 @@ def choose(
     RULE=VALUE sets up the models: wall=half,gregory joints=printed theory=timoshenko grading=2 attachment=lever.
     Example: `verify choose steel-cantilever --mode 5 --error 0.1%`
     """
+    from verify.analysis.margins import beam_margins
     from verify.analysis.sizing import choose as choose_sizes
     from verify.analysis.solution_cache import SolutionCache
-    from verify.exact.plate import plate_warnings
     from verify.report.result import Column, Result, Table
     from verify.scene.load import load_scene
 
     modes, largest, chosen = _modes(mode), _error(error), _rules(rules)
-    beam = load_scene(scene, overrides).beam
-    choices, skipped = choose_sizes(SolutionCache(beam), modes, largest, chosen)
-    numbers = {one.size.mode for one in choices}
-    plate = plate_warnings(beam, {n: [c.error for c in choices if c.size.mode == n] for n in numbers})
+    cache = SolutionCache(load_scene(scene, overrides).beam)
+    choices, skipped = choose_sizes(cache, modes, largest, chosen)
+    first = choices[0].variant.settings
+    sizes = [(one.variant.model, one.size.count) for one in choices if one.variant.settings == first]
+    margins = beam_margins(cache, sizes, mode=modes if isinstance(modes, int) else modes[-1], settings=first)
     rows = [
         (
             *(one.variant.title, one.size.count, one.size.mode, one.unknowns, one.error, one.expected_error),
@@ -48,7 +49,8 @@ def choose(
     result = Result(
         f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
         [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
-        warnings=[*plate, *(f"{name} is skipped: {why}" for name, why in skipped.items())],
+        warnings=[f"{name} is skipped: {why}" for name, why in skipped.items()],
+        margins=margins,
     )
     show(result, **formats)
 

@@ -15,7 +15,7 @@ from verify.errors import printable
 @click.option("--to", "path", required=True, metavar="FILE", help="The suffix is the file type.")
 @click.option("--model", default="segment", show_default=True, metavar="NAME", help="segment, fem or analytic.")
 @click.option(
-    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements. Default: the scene's, or 49."
+    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements. Default: the scene's; within 1 %."
 )
 @click.option(
     "--mode", type=click.IntRange(min=1), metavar="N", help="The mode of a picture, the number of modes of data."

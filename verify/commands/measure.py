@@ -2,7 +2,15 @@
 
 import click
 
-from verify.commands.shared import BeamCommand, json_option, overrides_option, print_json, progress, scene_argument
+from verify.commands.shared import (
+    BeamCommand,
+    console,
+    json_option,
+    overrides_option,
+    print_json,
+    progress,
+    scene_argument,
+)
 
 
 @click.command(cls=BeamCommand)
@@ -18,15 +26,20 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
     """
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate, parse_arguments
+    from verify.report.result import Result
     from verify.scene.load import load_scene
+    from verify.studies.sweep import quantity_margins
 
     given = parse_arguments(quantity, arguments)
     loaded = load_scene(scene, overrides)
     with progress(quiet=as_json) as step:
         step(quantity)
-        value = evaluate(quantity, given, loaded, SolutionCache(loaded.beam))
+        value = evaluate(quantity, given, loaded, cache := SolutionCache(loaded.beam))
+        margins = quantity_margins(quantity, given, loaded, cache)
     unit = QUANTITIES.named(quantity).unit
+    result = Result(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"), margins=margins)
     if as_json:
-        print_json({"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit})
+        own = {"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit}
+        print_json(own | ({"verdict": result.verdict.to_dict()} if result.verdict else {}))
     else:
-        click.echo(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"))
+        result.print(console())

@@ -5,7 +5,10 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
+from verify.analysis.margins import beam_margins
+from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import is_uneven
+from verify.analysis.verdict import Margin, void
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import FAULTS, TOLERANCE, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
@@ -111,8 +114,12 @@ def result_of(
     about |= {"passed": all(check[3] for check in checks), "status": fits.status, "best": _plain(best, beam)}
     groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
     about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
+    mode, off = max((row.mode for row in rows), default=1), max((abs(row.error) for row in rows), default=0.0)
+    margins = [*beam_margins(SolutionCache(beam), [], mode=mode), Margin(name="the list of frequencies", size=off)]
+    if not all(check[3] for check in checks):
+        margins.append(void("the list", f"{summary.rstrip('.')}; {', '.join(c[0] for c in checks if not c[3])}"))
     figure = _figure(beam, fits, rows)
-    return Result(summary, tables, [figure], warnings=warnings, data=about)
+    return Result(summary, tables, [figure], warnings=warnings, data=about, margins=margins)
 
 
 def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:

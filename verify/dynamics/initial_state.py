@@ -5,18 +5,13 @@ import numpy as np
 from verify.arrays import Array, ComplexArray, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.excitation import RESONANCE
-from verify.dynamics.linear_system import Stage, basis_of
+from verify.dynamics.linear_system import Stage
 from verify.dynamics.stepping import Contacts
 from verify.errors import InputError
 from verify.linear.time_basis import Ratio, TimeBasis
-from verify.problem.beam import Beam
 
 PASSES = 4
 """Fixed-point iterations for the material point under a contact point; each reduces the error by (h/2) w''."""
-BALANCED = 1e-12
-"""Relative resultant of the forces on a beam below which they are in balance."""
-STATIC_MODES = 20
-"""Number of modes for the static deflection in the margins."""
 
 
 def static_deflection(basis: TimeBasis, contacts: Contacts) -> Array:
@@ -128,21 +123,3 @@ def deepen_between_beams(basis: TimeBasis, contacts: Contacts, still: Array) -> 
         between = (contacts.indices[:, lay.OF_FOOT] == number) & (p[:, lay.WEIGHT] < 1.0)
         if between.any():
             p[between, lay.INSET] -= bent[between].mean()
-
-
-def largest_static_deflection(beam: Beam, model: str, count: int | None, contacts: Contacts) -> float | None:
-    """Largest static deflection under the points, m, by the first modes.
-
-    None where the load moves a beam with rigid-body motions.
-    """
-    p, foot = contacts.points, contacts.indices[:, lay.OF_FOOT]
-    if beam.rigid_motions:
-        load = (contacts.feet[:, lay.PRESS] / np.bincount(foot))[foot]
-        turned = abs(load @ p[:, lay.OFFSET]) > BALANCED * (abs(load) @ abs(p[:, lay.OFFSET]))
-        if abs(load.sum()) > BALANCED * abs(load).sum() or turned or (p[:, lay.WEIGHT] < 1.0).any():
-            return None
-    if model == "analytic" and set(beam.features) - {"section", "mass"}:  # the exact beam has no modes with these
-        model, count = "fem", 2 * STATIC_MODES
-    basis = basis_of(beam, model, count, STATIC_MODES if count is None else None)
-    still = static_deflection(basis, contacts)
-    return float(abs(still @ basis.shapes(contacts.start + p[:, lay.OFFSET], 0)).max())

@@ -14,7 +14,6 @@ from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble, contact_rate
 from verify.dynamics.initial_state import (
     deepen_between_beams,
-    largest_static_deflection,
     set_down,
     static_deflection,
     steady_with_mass,
@@ -111,7 +110,6 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             self.margins,
             presliding=presliding(request),
             contact_step=rate * stages[-1].steps.dt,
-            static_deflection=largest_static_deflection(request.beam, request.model, request.count, contacts),
         )
         return replace(self, stages=stages, margins=margins)
 

@@ -1,7 +1,7 @@
-"""Validity of a run: size of the coupling of sliders and beam, and margins, the errors of its assumptions."""
+"""Validity of a run: the size of the coupling of sliders and beam, and of what no time step removes."""
 
 from collections.abc import Callable, Sequence
-from math import inf, pi
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,8 +9,6 @@ from msgspec import Struct
 
 from verify.arrays import Array, ComplexArray
 from verify.dynamics.linear_system import Stage, damped_field
-from verify.exact.closed_forms import frequency_hz, wavenumber_length
-from verify.exact.error_laws import LAWS, expected_error, leading_error
 from verify.linear.field import lossless_wavenumber, travelling_wavenumber
 from verify.linear.surface import section_at
 from verify.linear.time_basis import Ratio, TimeBasis
@@ -20,10 +18,6 @@ from verify.problem.slider import Slider
 if TYPE_CHECKING:
     from verify.dynamics.request import Request
 
-NONLINEAR = 1e-3
-"""(kL)^2 <theta^2> above which the linear chain departs from the paper's nonlinear chain."""
-COUPLED = 1e-3
-"""Relative change of the surface motion above which one-way coupling is not valid."""
 NEAR = 1e-3
 """Spacing of the forces that represent a couple, over the smaller of 1/k and L/50."""
 Receptance = Callable[[float, Array], tuple[ComplexArray, ComplexArray]]
@@ -40,11 +34,6 @@ class Coupling(Struct, frozen=True, kw_only=True):
     """Surface motion due to the normal load over that due to the drive: N |G| / |w| with unilateral contact, else
     m omega^2 |G| of the slider's inertia. Infinite for a loaded surface without motion by the drive."""
 
-    @property
-    def relative_size(self) -> float | None:
-        """The larger of both sizes; None where the drive does not move the surface under the slider."""
-        return None if self.friction_size is None else max(self.friction_size, self.normal_size)
-
 
 class Margins(Struct, frozen=True, kw_only=True):
     """Validity of a run; each margin is small where its assumption holds."""
@@ -55,20 +44,11 @@ class Margins(Struct, frozen=True, kw_only=True):
     Under a point slider in the run; else the largest along the beam in the steady state."""
     nonlinearity: float
     """(kL)^2 <theta^2>: relative size of the axial inertia, neglected in linear theory, of a roller-ended chain."""
-    model_form: float | None
-    """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1.
-
-    None unless the beam is uniform, pinned at both ends and without attachments, where a closed form exists."""
-    discretisation: float | None
-    """Leading error of the discrete frequency at that mode; None for the exact beam and where no law is known."""
     presliding: float | None = None
     """Presliding 2 mu kappa / (kappa_t k h): tangential deformation of the contact before it slips, relative to the
     surface motion. 0 for tangentially rigid contact; None without contact springs or without a travelling wave."""
     contact_step: float = 0.0
     """Natural frequency of the contact times the step, rad; its square over 24 is the relative period error."""
-    static_deflection: float | None = None
-    """Static deflection under sliders with contact, m; neglected by one-way coupling. None without such sliders, and
-    for a beam with rigid-body motions that they would move."""
 
 
 def coupling_of(
@@ -154,35 +134,7 @@ def margins_of(request: "Request", stage: Stage) -> Margins:
     return Margins(
         lift_off=falling / request.gravity if request.gravity else inf,
         nonlinearity=axial_inertia_size(beam, hertz, square),
-        model_form=_model_form(beam, hertz),
-        discretisation=_discretisation(beam, request.model, request.count, hertz),
     )
-
-
-def _nearest_mode(beam: Beam, drive_hz: float) -> int:
-    """The exact mode with frequency nearest to that of the drive."""
-    turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
-    return min(range(max(int(turns) - 2, 1), int(turns) + 4), key=lambda n: abs(frequency_hz(beam, n) - drive_hz))
-
-
-def _model_form(beam: Beam, drive_hz: float) -> float | None:
-    unknown = any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces)
-    if beam.supports != ("pinned", "pinned") or not beam.uniform or unknown:
-        return None
-    mode = _nearest_mode(beam, drive_hz)
-    return frequency_hz(beam, mode, "timoshenko") / frequency_hz(beam, mode) - 1.0
-
-
-def _discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
-    """For a chain with clamped ends `expected_error`: its leading terms have the wrong sign at usual sizes."""
-    if count is None or not beam.uniform or model not in LAWS:
-        return None
-    mode = _nearest_mode(beam, drive_hz)
-    if wavenumber_length(beam.supports, mode) >= pi * count:
-        return None
-    if "clamped" in beam.supports and LAWS[model].clamped_terms:
-        return expected_error(model, beam, mode, count)
-    return leading_error(model, beam.supports, mode, count)
 
 
 def presliding(request: "Request") -> float | None:

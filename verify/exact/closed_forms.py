@@ -8,6 +8,7 @@ from math import atan, exp, pi, sqrt
 
 from verify.errors import InputError
 from verify.problem.beam import Beam
+from verify.problem.cross_section import Piece
 from verify.validation import check_integer
 
 HIGHEST = 10**9
@@ -60,8 +61,7 @@ def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> floa
     """The exact frequency of one mode of a uniform beam, Hz.
 
     `euler-bernoulli` for all supports; `rayleigh` and `timoshenko` (Timoshenko, Phil. Mag. 41, 1921) between pinned
-    ends: with a = beta^2 I/A and s = beta^2 EI / (kappa G A) the flexural frequency is the lower root of
-    a s Lambda^2 - (1 + a + s) Lambda + 1 = 0, Lambda = omega^2 / omega_EB^2. Raises InputError.
+    ends, by `theory_ratio`. Raises InputError.
     """
     check_uniform(beam)
     beta, own = wavenumber_length(beam.supports, mode) / beam.length, beam.own
@@ -69,8 +69,18 @@ def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> floa
     if theory != "euler-bernoulli":
         if beam.supports != ("pinned", "pinned"):
             raise InputError(f"theory = {theory!r} has a closed form for pinned-pinned beams only: use euler-bernoulli")
-        a = beta * beta * (own.rotary_inertia or 0.0) / own.mass_per_length
-        shear = own.shear_stiffness if theory == "timoshenko" else None
-        s = beta * beta * own.bending_stiffness / shear if shear else 0.0
-        omega *= sqrt(2.0 / (1.0 + a + s + sqrt((1.0 + a + s) ** 2 - 4.0 * a * s)))
+        omega *= theory_ratio(own, beta, theory)
     return omega / (2.0 * pi)
+
+
+def theory_ratio(piece: Piece, wavenumber: float, theory: str = "timoshenko") -> float:
+    """Frequency of a wave (1/m) by Rayleigh's or Timoshenko's theory over that by Euler-Bernoulli's.
+
+    With a = k^2 I/A and s = k^2 EI / (kappa G A) it is the root of the lower root of
+    a s Lambda^2 - (1 + a + s) Lambda + 1 = 0, Lambda = omega^2 / omega_EB^2.
+    """
+    square = wavenumber * wavenumber
+    a = square * (piece.rotary_inertia or 0.0) / piece.mass_per_length
+    shear = piece.shear_stiffness if theory == "timoshenko" else None
+    s = square * piece.bending_stiffness / shear if shear else 0.0
+    return sqrt(2.0 / (1.0 + a + s + sqrt((1.0 + a + s) ** 2 - 4.0 * a * s)))

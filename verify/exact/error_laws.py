@@ -74,8 +74,13 @@ def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
     Exact between pinned and guided ends; at other ends within a third of the sum of its terms' sizes from N = 20 on.
     Valid where `has_law`.
     """
-    mu, law = wavenumber_length(beam.supports, mode) / count, law_of(model)
-    clamped = beam.supports.count("clamped") if law.clamped_terms else 0
+    return error_at(model, beam, wavenumber_length(beam.supports, mode) / count, count)
+
+
+def error_at(model: str, beam: Beam, mu: float, count: int) -> float:
+    """The same at a wavenumber that need not be a mode's, mu in radians per part, below pi."""
+    law = law_of(model)
+    clamped = beam.supports.count("clamped") if law.clamped_terms and mu <= _LAW_TO else 0
     return sqrt(law.root(mu)) / mu**2 - 1.0 - (0.5 * clamped * wall_residual(mu) / count if clamped else 0.0)
 
 

@@ -6,7 +6,8 @@ ends: closed form (Levy; Leissa, Vibration of Plates, NASA SP-160, 1969, section
 method with integrated Legendre polynomials along and Legendre polynomials across.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from functools import lru_cache
 from math import sqrt, tanh
 from typing import TYPE_CHECKING, Any
 
@@ -47,27 +48,6 @@ def plate_error(beam: Beam, mode: int) -> float:
     return ritz_error(beam.supports, beam.length / beam.width, beam.poissons_ratio, mode)
 
 
-def plate_warnings(beam: Beam, errors: Mapping[int, Sequence[float]]) -> list[str]:
-    """A warning on modes whose plate effect exceeds a discretisation error; empty list otherwise.
-
-    `errors`: relative discretisation errors by mode number. No warning for beams that are not thin strips.
-    """
-    exceeded = []
-    for mode, own in errors.items():
-        try:
-            plate = plate_error(beam, mode)
-        except InputError:
-            continue
-        if smaller := [abs(error) for error in own if abs(error) < abs(plate)]:
-            exceeded.append(f"mode {mode} {100 * plate:+.3g} % (discretisation {100 * max(smaller):.2g} %)")
-    if not exceeded:
-        return []
-    return [
-        "Bending across the width (thin plate), absent in beam theory, changes frequencies by more than the "
-        f"discretisation: {', '.join(exceeded)}."
-    ]
-
-
 def stiffening(half_width: float, poissons_ratio: float) -> float:
     """Relative frequency difference of a wave along an infinite strip with free edges from the beam's.
 
@@ -88,6 +68,7 @@ def stiffening(half_width: float, poissons_ratio: float) -> float:
     return below / narrow - 1.0
 
 
+@lru_cache(maxsize=512)
 def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, mode: int) -> float:
     """Plate effect for any supports, by Ritz's method: an upper bound of the frequency. `aspect`: length over width.
 

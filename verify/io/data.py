@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
+from verify.analysis.margins import sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.arrays import Array
 from verify.errors import InputError
@@ -14,8 +15,8 @@ from verify.linear.registry import MODELS
 if TYPE_CHECKING:
     from verify.scene.model import Scene
 
-COUNT, MODES, EXACT = 49, 10, 201
-"""Default number of segments or elements, of modes, and points of the exact beam."""
+MODES, EXACT = 10, 201
+"""Default number of modes, and points of the exact beam."""
 PHASES, INSTANTS = 36, 101
 """Default number of steps of a period and of a motion."""
 
@@ -27,7 +28,7 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     """modes, wave or motion; by default what the scene has and the file type holds."""
     model: str = "segment"
     count: int | None = None
-    """Segments or elements; by default the count of the scene's study of the same subject, else 49."""
+    """Segments or elements; by default those of the scene's study of the same subject, else the fewest within 1 %."""
     mode: int | None = None
     """Number of modes of data, the mode of a picture."""
     samples: int | None = None
@@ -58,10 +59,13 @@ def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
     """Modes, wave or motion of a scene by one model. Raises InputError where the scene lacks what is needed."""
     model = MODELS.named(request.model)
     study = scene.studies.get({"modes": "spectrum"}.get(what, what))
-    count = (request.count or getattr(study, "count", COUNT)) if model.sized else None
     if request.count is not None and not model.sized:
         raise InputError(f"count = {request.count}: the {model.name} model has no segments or elements, leave it out")
-    cache = SolutionCache(scene.beam)
+    cache, count = SolutionCache(scene.beam), request.count or getattr(study, "count", None)
+    if model.sized and count is None:
+        hertz = scene.drive.frequency_hz if scene.drive and what != "modes" else None
+        count = sufficient_count(cache, modes=0 if hertz else request.mode or MODES, frequency_hz=hertz)
+    count = count if model.sized else None
     length = scene.beam.length
     x = np.linspace(0.0, length, EXACT) if count is None else np.asarray(cache.modes(model.name, count, 1).nodes)
     name = f"{count} {model.title}" if count else model.title

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verify.report.page import LEVELS, Section, level_of, render
+from verify.report.page import LEVELS, Section, render
 from verify.report.result import Column, Result, Table
 
 if TYPE_CHECKING:
@@ -16,13 +16,12 @@ CANNOT = "cannot run"
 
 def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, Any]:
     """The index's line of one run, as plain data."""
-    level, headline, _ = level_of(run)
     return {
         "scene": name,
         "title": run.scene.title or run.scene.name,
         "passed": run.passed,
-        "level": level,
-        "verdict": headline,
+        "level": run.verdict.level,
+        "verdict": run.verdict.headline,
         "failed": [{"gate": one.gate.id, "reason": one.reason} for one in run.failed],
         "seconds": run.seconds,
         "page": str(saved.page) if saved else None,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verify.analysis import verdict
 from verify.formatting import with_unit
 from verify.report.plotting import figure_files, movie_image
 from verify.report.result import Column, Figure, Movie, Table, plain, to_json
@@ -14,8 +15,6 @@ from verify.report.summary import (
     gates_table,
     skipped_table,
     study_title,
-    verdict,
-    void_results,
     worst_gate,
 )
 
@@ -26,7 +25,7 @@ LONG = 30
 """Rows beyond which a table is folded."""
 DENSE = 6
 """Columns beyond which a table has small print."""
-LEVELS = ("not trusted", "conditional", "trusted")
+LEVELS = verdict.LEVELS[::-1]
 """Levels of a verdict, the worst first."""
 MARKS = dict(
     zip((*LEVELS, "FAIL", "cannot run", "pass"), ("fail", "warn", "pass", "fail", "fail", "pass"), strict=True)
@@ -59,22 +58,12 @@ class Section:
     folded: bool = False
 
 
-def level_of(run: "RunResult") -> tuple[str, str, Sequence[Any]]:
-    """(Level, headline, margins) of a run. Without a verdict of its own gates and warnings decide."""
-    if (stated := getattr(run, "verdict", None)) is not None:
-        return stated.level, stated.headline, stated.margins
-    bad, judged = run.failed or void_results(run), any(gate.passed for gate in run.gates)
-    sound = judged and not run.warnings and not any(result.warnings for result in run.results.values())
-    return LEVELS[0 if bad else 2 if sound else 1], verdict(run), ()
-
-
 def run_page(run: "RunResult", command: str = "") -> str:
     """The report of a run as HTML: verdict, margins and caveats, then figures, no sentence twice."""
     from verify.report.beam_drawing import beam_figure
 
-    scene, (level, headline, margins) = run.scene, level_of(run)
-    problems = [(study_title(run, name), why) for name, why in void_results(run).items()]
-    problems += [(one.gate.id, one.reason) for one in run.failed]
+    scene, headline = run.scene, run.verdict.headline
+    problems = [(one.gate.id, one.reason) for one in run.failed]
     caveats = dict.fromkeys(run.warnings, ("", ""))
     for name, result in run.results.items():
         for text in result.warnings:
@@ -85,7 +74,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
     columns = [Column("level"), Column("margin")]
     columns += [Column(name, format=".3g", percent=True) for name in ("size", "fine", "limit")]
     rows: list[Any] = []
-    for one in margins:
+    for one in run.verdict.margins:
         texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
         texts = ["" if one.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
         rows.append((one.level, f"{one.name} {one.where}", *map(plain, (one.size, one.fine, one.limit)), *texts))
@@ -95,7 +84,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
     whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
     rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
     sections = [
-        Section("margins", "Margins", tables=[reasons] * bool(margins)),
+        Section("margins", "Margins", tables=[reasons] * bool(rows)),
         Section("caveats", "Caveats", caveats=listed),
         Section("speeds", SPEEDS, tables=speeds),
         *(_study_section(run, name) for name in run.results),
@@ -107,7 +96,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         name=scene.name,
         title=scene.title or scene.name,
         subtitle=scene.description,
-        level=level,
+        level=run.verdict.level,
         verdict=headline,
         seconds=run.seconds,
         problems=[f"{what}: {why}" for what, why in problems if why not in headline],

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
+from verify.analysis.verdict import COLOURS, Margin, Verdict, verdict_of
 from verify.formatting import unit_over
 
 if TYPE_CHECKING:
@@ -156,15 +157,25 @@ class Result:
     """Fixed sentences on what is not converged, left out, or outside its range of validity."""
     data: Mapping[str, Any] = field(default_factory=dict)
     """More values for JSON, in SI units."""
+    margins: Sequence[Margin] = ()
+    """Sizes of what it leaves out; without any it has no verdict."""
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """How far it can be trusted, by its margins."""
+        return verdict_of(self.margins) if self.margins else None
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON: summary, warnings, tables as records, and the data."""
+        """For JSON: verdict, summary, warnings, tables as records, and the data."""
         tables = [{"title": table.title, "rows": table.records()} for table in self.tables]
         data: dict[str, Any] = plain(self.data)
-        return {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | data
+        verdict = {"verdict": self.verdict.to_dict()} if self.verdict else {}
+        return verdict | {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | data
 
     def print(self, console: "Console", most_rows: int | None = None) -> None:
-        """Print summary, tables and warnings; of tables with more than `most_rows` rows the title alone."""
+        """Print verdict, summary, tables, warnings; of tables with more than `most_rows` rows the title alone."""
+        if self.verdict:
+            console.print(self.verdict.headline, style=f"bold {COLOURS[self.verdict.level]}")
         if self.summary:
             console.print(self.summary)
         for table in self.tables:

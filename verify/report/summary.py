@@ -22,19 +22,6 @@ def study_title(run: "RunResult", name: str) -> str:
     return getattr(study, "title", "") or name.replace("_", " ").capitalize()
 
 
-def void_results(run: "RunResult") -> dict[str, str]:
-    """First warning, by name, of each study without a valid result: one with warnings and no summary."""
-    return {name: one.warnings[0] for name, one in run.results.items() if one.warnings and not one.summary}
-
-
-def verdict(run: "RunResult") -> str:
-    """One line: studies without a valid result, and how many of the gates that apply pass."""
-    judged = [gate for gate in run.gates if gate.passed is not None]
-    text = f"{len(run.failed)} of {len(judged)} gates failed" if run.failed else f"All {len(judged)} gates passed"
-    void = ", ".join(study_title(run, name) for name in void_results(run))
-    return (f"No valid result: {void}. " if void else "") + (text if judged else "No gate applies")
-
-
 def worst_gate(run: "RunResult") -> "GateResult | None":
     """The gate that uses most of its tolerance, among those that have one."""
     gates = [gate for gate in run.gates if gate.passed is not None and gate.fraction is not None]
@@ -119,7 +106,7 @@ def run_data(run: "RunResult", command: str = "") -> dict[str, Any]:
     return {
         "scene": run.scene.name,
         "passed": run.passed,
-        "verdict": verdict(run),
+        "verdict": run.verdict.to_dict(),
         "seconds": run.seconds,
         "gates": gates,
         "results": {name: result.to_dict() for name, result in run.results.items()},

@@ -2,8 +2,9 @@
 
 from typing import TYPE_CHECKING
 
+from verify.analysis.verdict import COLOURS
 from verify.report.result import MISSING, Column, Table
-from verify.report.summary import VERDICTS, expected, study_title, value_text, verdict, void_results, worst_gate
+from verify.report.summary import VERDICTS, expected, study_title, value_text, worst_gate
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -16,9 +17,11 @@ LONG = 30
 
 
 def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None) -> None:
-    """Print a run; its verdict stands at the end, where a terminal stops."""
-    scene = run.scene
+    """Print a run: its verdict first, and at the end again with the gates, where a terminal stops."""
+    scene, found = run.scene, run.verdict
+    style = f"bold {COLOURS[found.level]}"
     console.print(scene.title or scene.name, style="bold")
+    console.print(found.headline, style=style)
     for name, result in run.results.items():
         console.print()
         console.print(study_title(run, name), style="bold")
@@ -29,15 +32,17 @@ def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None
     console.print()
     for one in (gate for gate in run.gates if gate.passed is None):
         console.print(f"skipped {one.gate.id}: {one.reason}", style="dim")
-    for warning in getattr(run, "warnings", ()):
+    for warning in run.warnings:
         console.print(f"warning: {warning}", style="yellow")
     for one in run.failed:
         console.print(f"FAIL {one.gate.id}: {one.reason}", style="red")
-    color = "red" if run.failed else "yellow" if void_results(run) else "green"
-    console.print(f"{verdict(run)} ({run.seconds:.3g} s)", style=f"bold {color}")
-    worst = worst_gate(run)
+    console.print(f"{found.headline} ({run.seconds:.3g} s)", style=style)
+    for text in found.others:
+        console.print(f"also: {text}")
+    gates, worst = run.gates_in_words, worst_gate(run)
     if worst is not None and run.passed:
-        console.print(f"worst gate: {worst.gate.id}, {100 * (worst.fraction or 0.0):.3g} % of its tolerance")
+        gates += f", the worst is {worst.gate.id} with {100 * (worst.fraction or 0.0):.3g} % of its tolerance"
+    console.print(f"{gates[:1].upper()}{gates[1:]}.")
     if saved is not None:
         console.print(f"report: {saved.page}", soft_wrap=True)
 

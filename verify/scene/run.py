@@ -15,6 +15,7 @@ from verify.scene.model import Scene
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin, Verdict
     from verify.report.result import Result
 
 Progress: TypeAlias = Callable[[str], None]
@@ -41,7 +42,9 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     skipped: tuple[PlanRow, ...]
     """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
-    """Implausible units, and a deflection beyond small-amplitude theory."""
+    """Implausible units."""
+    margins: "tuple[Margin, ...]" = ()
+    """Linear theory under the drive and under the weight of the slider."""
     seconds: float
 
     @property
@@ -54,6 +57,31 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether no gate failed."""
         return not self.failed
 
+    @property
+    def gates_in_words(self) -> str:
+        """'all 27 gates passed', '2 of 27 gates failed', 'no gate applies'."""
+        judged = sum(gate.passed is not None for gate in self.gates)
+        if self.failed:
+            return f"{len(self.failed)} of {judged} gates failed"
+        return f"all {judged} gates passed" if judged else "no gate applies"
+
+    @property
+    def verdict(self) -> "Verdict":
+        """The worst of all studies, of linear theory under the drive, and of the gates."""
+        from verify.analysis.verdict import Verdict, verdict_of, void
+
+        margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
+        judged = any(gate.passed is not None for gate in self.gates)
+        if self.failed:
+            margins.append(void("gates", f"{self.gates_in_words}, {', '.join(one.id for one in self.failed)}"))
+        elif not (judged or self.results):
+            margins.append(void("the run", "no study and no gate ran, nothing was computed"))
+        found = verdict_of(margins)
+        if found.level != "trusted" or any(margin.is_error for margin in margins) or not judged:
+            return found
+        headline = f"Trusted as far as its gates: {self.gates_in_words}."
+        return Verdict(level="trusted", headline=headline, margins=found.margins)
+
 
 def run_scene(
     scene: Scene | str | Path, progress: Progress = lambda step: None, overrides: Sequence[str] = ()
@@ -65,7 +93,7 @@ def run_scene(
     """
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES
-    from verify.scene.warnings import deflection_warning, unit_warnings
+    from verify.scene.warnings import unit_warnings
     from verify.studies.base import studies_of
 
     start = perf_counter()
@@ -87,7 +115,8 @@ def run_scene(
         gates=tuple(gates),
         results=results,
         skipped=tuple(row for row in rows if not row.runs),
-        warnings=(*unit_warnings(loaded), *deflection_warning(loaded, _largest_deflection(loaded, cache))),
+        warnings=unit_warnings(loaded),
+        margins=_margins(loaded, cache),
         seconds=perf_counter() - start,
     )
 
@@ -135,11 +164,14 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
     return skip
 
 
-def _largest_deflection(scene: Scene, cache: "SolutionCache") -> float | None:
-    """Amplitude of the exact steady field, its maximum along the beam, m; None without a drive, or at a resonance."""
-    from verify.quantities.base import evaluate
+def _margins(scene: Scene, cache: "SolutionCache") -> "tuple[Margin, ...]":
+    """Of the exact steady motion; none without a drive and at a resonance."""
+    from verify.analysis.margins import sag_margins, slope_margin
+    from verify.quantities.waves import FieldOptions, driven_case
+    from verify.waves.driven_case import driven
 
-    places = [scene.beam.length * i / 200.0 for i in range(201)] if scene.forces else []
-    with suppress(InputError):
-        return max((abs(evaluate("wave.deflection", {"x": x}, scene, cache)) for x in places), default=None)  # type: ignore[arg-type]
-    return None
+    found = sag_margins(cache, scene.slider) if scene.slider else []
+    if scene.forces:
+        with suppress(InputError):
+            found.append(slope_margin("the drive", driven(driven_case(scene, FieldOptions()), cache), "drive it less"))
+    return tuple(found)

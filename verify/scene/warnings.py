@@ -1,4 +1,4 @@
-"""Plausibility warnings: values that look like another unit, and deflections beyond small-amplitude theory."""
+"""Plausibility warnings: values that look like another unit."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -16,8 +16,8 @@ MAX_DENSITY = 25_000.0  # above osmium, kg/m^3
 MAX_WIDTH = 5.0  # of a strip over its length
 MAX_MASS = 1e8  # kg, above any bridge's; a beam in millimetres read as metres has 1e9 times its mass
 LONG = 5.0  # m; no beam in millimetres is shorter than this when read as metres
-ELEMENTS = 50  # of that sag, which is exact at the nodes of any number
 SMALL_DEFLECTION = 0.1  # over the beam's length
+ELEMENTS = 50  # of that sag, which is exact at the nodes of any number
 
 
 def unit_warnings(scene: Scene) -> tuple[str, ...]:
@@ -25,14 +25,6 @@ def unit_warnings(scene: Scene) -> tuple[str, ...]:
     beam = scene.beam
     found = dict.fromkeys(one for piece in beam.pieces for one in _material(piece))
     return (*found, *_lengths(beam))
-
-
-def deflection_warning(scene: Scene, deflection: float | None) -> tuple[str, ...]:
-    """Whether the steady deflection is beyond small-amplitude theory."""
-    if deflection is None or deflection <= SMALL_DEFLECTION * scene.beam.length:
-        return ()
-    share = deflection / scene.beam.length
-    return (f"drive: the steady deflection is {share:.3g} times the beam's length, linear theory does not hold",)
 
 
 def _material(piece: "Piece") -> Iterator[str]:

@@ -83,7 +83,7 @@ def computed(claim: "Claim", scene: "Scene", cache: "SolutionCache", **other: An
     """The value of its quantity, with `other` arguments. Raises InputError."""
     from verify.quantities.base import evaluate
 
-    own = {"model": "segment", "count": scene.motion.count} if of_scene(claim) else claim.arguments
+    own = {"model": "segment", "count": scene.motion.size(scene, cache)} if of_scene(claim) else claim.arguments
     arguments = {name: value for name, value in (own | other).items() if value is not None}
     value = evaluate(claim.quantity, arguments, scene, cache)
     if not isinstance(value, float | int):

@@ -45,13 +45,13 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
     name: ClassVar[str] = "convergence"
     title: ClassVar[str] = "Convergence"
 
-    modes: Annotated[Counts, Meta(description="Mode numbers, from 1.")] = (1, 5, 22)
-    counts: Annotated[Counts, Meta(description="Numbers of segments and of elements.")] = (10, 20, 49, 98)
+    modes: Annotated[Counts, Meta(description="Mode numbers, from 1.")] = (1, 3, 5)
+    counts: Annotated[Counts, Meta(description="Numbers of segments and of elements.")] = (10, 20, 40, 80)
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve every variant at every size and time it. Raises InputError for a size that cannot be solved."""
+        from verify.analysis.margins import beam_margins
         from verify.analysis.solution_cache import comparable
-        from verify.exact.plate import plate_warnings
         from verify.report.result import Column, Figure, Result, Table
 
         models, left_out = comparable(cache.beam, self.counts, max(self.modes))
@@ -59,9 +59,9 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         rows = self._rows(cache, variants, progress)
         bounds, no_bound = self._bounds(cache)
         settled, warnings = self._summarise(cache, rows)
-        finest = [row for row in rows if row["N"] == max(self.counts) and row["error"] is not None]
-        own = {mode: [row["error"] for row in finest if row["mode"] == mode] for mode in self.modes}
-        warnings += plate_warnings(cache.beam, own)
+        first = variants[0].settings
+        sizes = [(one.model, max(self.counts)) for one in variants if one.settings == first]
+        margins = beam_margins(cache, sizes, mode=max(self.modes), settings=first)
         columns = [Column("mode"), Column("model"), Column("N"), Column("frequency", "Hz", ".8g"), percent("error")]
         columns += [Column("order", format=".2f"), Column("in range"), percent("GCI", ".3g")]
         columns += [percent("extrapolated", "+.3g"), si("solve time", "s", ".3g")]
@@ -81,6 +81,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             figures=[Figure("errors-over-size", title, CAPTION, draw)],
             warnings=[*warnings, *no_bound, *left_out.values()],
             data={"rows": rows, "bounds": bounds},
+            margins=margins,
         )
 
     def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:

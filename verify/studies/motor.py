@@ -13,10 +13,11 @@ from verify.errors import InputError
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
-from verify.studies.motion import Damping, check_driven, check_start
+from verify.studies.motion import Damping, check_driven, check_start, readings
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin
     from verify.motor.curves import Transient
     from verify.motor.steady_state import MotorCase, SteadyState
     from verify.report.result import Figure, Result, Table
@@ -24,16 +25,6 @@ if TYPE_CHECKING:
 
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
-VALIDITY = {
-    "coupling": (1e-3, "Coupling: contact changes the surface motion by {:.1%}, which one-way coupling neglects."),
-    "sag": (0.1, "Sag: the preload bends the beam by {:.2g} wave amplitudes, which one-way coupling neglects."),
-    "axial": (1e-3, "Nonlinearity: linear models neglect the axial inertia, (kL)² ⟨θ²⟩ = {:.2g} of a rigid chain."),
-    "epsilon": (0.1, "Compliance: epsilon = {:.3g}, points deflect along the surface before they slip."),
-    "step": (1e-3, "Time step: the contact's oscillation has a period error of {:.1e}; raise motor.steps_per_period."),
-}
-"""Size of a neglected effect from which on it is reported, and the text."""
-INVALID = 0.1
-"""Size of the first three effects from which on the summary is omitted."""
 SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
 CHARTS = {
     "motor-force": ("Force over speed", SPEED, FORCE, "Mean friction force along +x on the slider at a prescribed "
@@ -79,7 +70,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     title: ClassVar[str] = "The motor"
 
     models: Annotated[tuple[str, ...], Meta(min_length=1, description="Models.")] = ("analytic", "segment", "fem")
-    count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements.")] = 49
+    count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements; by default within 1 %.")] | None = None
     speeds: Annotated[int, Meta(ge=2, le=201, description="Points of the force-speed curve.")] = 9
     periods: Annotated[int, Meta(ge=20, le=100_000, description="Periods of a free run, at most of stopping.")] = 2000
     start: Annotated[Start, Meta(description="Beam at the start of the free run: steady or at rest.")] = "steady"
@@ -105,26 +96,30 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Run the motor on every model. Raises InputError."""
+        from verify.analysis.margins import sufficient_count
+        from verify.analysis.verdict import verdict_of
         from verify.linear.registry import MODELS
         from verify.motor.curves import REASONS
         from verify.quantities.motor import MotorOptions
         from verify.report.result import Result
 
+        n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
         fields: list[Field] = []
         for model in self.models:
-            count, options = self.count if MODELS[model].sized else None, asdict(self)
+            count, options = n if MODELS[model].sized else None, asdict(self)
             own = {name: options[name] for name in ("modal_damping", "steps_per_period")}
             case = MotorOptions(model=model, count=count, **own).case(scene)
             fields.append(self._field(case, fields[0].curve if fields else [], cache, progress))
-        first, (invalid, warnings) = fields[0], _validity(fields)
-        converged = all(field.free.converged and field.curve[0].converged("force") for field in fields)
+        first, margins = fields[0], _margins(fields, cache)
+        valid = verdict_of(margins).level != "not trusted"
         speed, force = 100 * first.free.speed, first.curve[0].means.force
         summary = f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})."
         return Result(
-            summary=summary if converged and not invalid else "",
-            tables=_tables(fields),
-            figures=_figures(fields),
-            warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing] + warnings,
+            summary=summary if valid else "",
+            tables=[*_tables(fields), *([readings(scene)] if scene.motion else [])],
+            figures=_figures(fields, margins),
+            warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
+            margins=margins,
         )
 
     def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: "SolutionCache", progress: Progress) -> Field:
@@ -169,22 +164,23 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return Field(case, name, curve, unloaded, free, stop, reversal, times, missing)
 
 
-def _validity(fields: list[Field]) -> tuple[bool, list[str]]:
-    """(whether a neglected effect is so large that the figures are void, warnings of those that are not small)."""
+def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
+    """Of the beam at the drive, of the free runs, of the sag, and of figures that have not converged."""
+    from verify.analysis.margins import beam_margins, run_margins, sag_margins
+    from verify.analysis.verdict import void
+    from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
 
-    run = fields[0].free.run
-    margins, coupling = run.margins, run.coupling
-    assert coupling is not None
-    sizes = {
-        "coupling": 0.0 if coupling.two_way else max(coupling.normal_size, coupling.friction_size or 0.0),
-        "sag": 0.0 if coupling.two_way else (margins.static_deflection or 0.0) / surface_motion(fields[0].case)[0],
-        "axial": margins.nonlinearity,
-        "epsilon": margins.presliding or 0.0,
-        "step": max(field.free.run.margins.contact_step for field in fields) ** 2 / 24.0,
-    }
-    void = max(sizes[key] for key in ("coupling", "sag", "axial")) >= INVALID
-    return void, [text.format(sizes[key]) for key, (limit, text) in VALIDITY.items() if sizes[key] > limit]
+    case = fields[0].case
+    sizes = [(field.case.model, field.case.count) for field in fields]
+    margins = beam_margins(cache, sizes, frequency_hz=case.frequency_hz)
+    for field in fields:
+        margins += run_margins(field.free.run, case.slider, field.name)
+        if not field.free.converged and field.free.run.statistics.finished:
+            margins.append(void("the free run", f"{REASONS['free speed']} ({field.name})"))
+        if not field.curve[0].converged("force"):
+            margins.append(void("the stall force", f"{REASONS['force']} ({field.name})"))
+    return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
 
 
 def _tables(fields: list[Field]) -> "list[Table]":
@@ -197,15 +193,13 @@ def _tables(fields: list[Field]) -> "list[Table]":
     def power(field: Field, loss: str) -> float:
         return float(getattr(field.free.run.energy, loss)) / field.free.run.duration
 
-    def sag(field: Field) -> float | None:
-        size = field.free.run.margins.static_deflection
-        return None if size is None else round(size, 12)  # of balanced loads rounding is left
-
     model: dict[Any, Callable[[Field], Any]] = {Column("model"): lambda field: field.name}
     overview = model | {
+        si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
         si("crest speed", "m/s", ".5g"): lambda field: surface_motion(field.case)[1],
         si("no-load speed", "m/s", "+.5g"): lambda field: field.no_load,
         si("free speed", "m/s", "+.5g"): lambda field: field.free.speed if field.free.converged else None,
+        si("±", "m/s", ".1g"): lambda field: field.free.error,
         si("stall force", "N", "+.4g"): lambda field: _if(field.curve[0], field.curve[0].means.force),
         si("largest power", "W"): lambda field: max(_if(at, at.power) or 0.0 for at in field.curve) or None,
         percent("best efficiency", ".3g"): lambda field: (
@@ -230,21 +224,10 @@ def _tables(fields: list[Field]) -> "list[Table]":
         percent("stick", ".3g"): lambda row: row[1].means.stuck_share,
         Column("converged"): lambda row: row[1].converged(),
     }
-    limits = model | {
-        Column("epsilon", format=".3g"): lambda field: field.free.run.margins.presliding,
-        si("sag", "m", ".3g"): sag,
-        si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
-        Column("normal coupling", format=".1e"): lambda field: field.free.run.coupling.normal_size,
-        Column("friction coupling", format=".1e"): lambda field: field.free.run.coupling.friction_size,
-        Column("(kL)² ⟨θ²⟩", format=".1e"): lambda field: field.free.run.margins.nonlinearity,
-        Column("contact phase per step", "rad", ".2g"): lambda field: field.free.run.margins.contact_step,
-        si("speed error", "m/s", ".1e"): lambda field: field.free.error,
-    }
     rows = [(field.name, at) for field in fields for at in field.curve]
     return [
         table("The motor on each model", fields, overview, NOTE),
         table("Force over speed, slider at a fixed position", rows, curve),
-        table("Validity of these runs", fields, limits),
     ]
 
 
@@ -253,9 +236,10 @@ def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
     return value if at.converged("force", *figures) else None
 
 
-def _figures(fields: list[Field]) -> "list[Figure]":
+def _figures(fields: list[Field], margins: "list[Margin]") -> "list[Figure]":
     import numpy as np
 
+    from verify.analysis.margins import marked
     from verify.motor.curves import phase_portrait
     from verify.report.result import Figure
 
@@ -278,6 +262,6 @@ def _figures(fields: list[Field]) -> "list[Figure]":
     limit = np.copysign(fields[0].case.slider.mu * still.normal_force, still.force)
     lines["motor-force"].append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
     return [
-        Figure(key, title, caption, partial(plot_lines, lines=lines[key], x=x, y=y))
+        Figure(key, marked(title, margins), caption, partial(plot_lines, lines=lines[key], x=x, y=y))
         for key, (title, x, y, caption) in CHARTS.items()
     ]

@@ -40,60 +40,57 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     title: ClassVar[str] = "Error spectrum"
 
     modes: Annotated[int, Meta(ge=1, le=10_000, description="Number of modes, from the first.")] = 22
-    count: Annotated[int, Meta(ge=1, description="Number of segments and of elements.")] = 49
+    count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
-        from verify.analysis.solution_cache import EULER, comparable, theory_of
+        from verify.analysis.margins import beam_margins, marked, sufficient_count
+        from verify.analysis.solution_cache import comparable, theory_of
         from verify.formatting import theory_name
         from verify.report.result import Column, Figure, Result, Table
 
-        progress(f"modes 1 to {self.modes}, N = {self.count}")
-        models, left_out = comparable(cache.beam, (self.count,), self.modes)
+        count = self.count or sufficient_count(cache, modes=self.modes)
+        progress(f"modes 1 to {self.modes}, N = {count}")
+        models, left_out = comparable(cache.beam, (count,), self.modes)
         variants, numbers = self.variants(models), range(1, self.modes + 1)
         errors: dict[Variant, list[float | None]] = {}
         warnings = []
         for one in variants:
             # The last mode first: one solve with the most modes then serves all.
-            cells = [cache.error_or_reason(one.model, self.count, mode, one.settings) for mode in reversed(numbers)][
-                ::-1
-            ]
+            cells = [cache.error_or_reason(one.model, count, mode, one.settings) for mode in reversed(numbers)][::-1]
             errors[one] = [error for error, _ in cells]
             warnings += [f"{one.title}: {cells[-1][1]}"] if cells[-1][1] else []
         theories, theory = self._theories(cache), theory_of(variants[0].settings)
         series: list[Sequence[float | None]] = [*errors.values(), *theories.values()]
         rows = [(mode, cache.exact_hz(mode, theory), *(own[mode - 1] for own in series)) for mode in numbers]
         known = {one.title: own[-1] for one, own in errors.items() if own[-1] is not None}
-        largest = max((abs(own[-1]) for own in theories.values()), default=0.0)
-        euler = all(theory_of(one.settings) == EULER for one in variants)
-        if known and euler and largest > max(map(abs, known.values())):
-            warnings.append(
-                f"Mode {self.modes}: what Euler-Bernoulli theory neglects changes its frequency by up to "
-                f"{100 * largest:.3g} %, more than the discretisation does."
-            )
+        own = dict(variants[0].settings)
+        sizes = [(one.model, count) for one in variants if dict(one.settings) == own]
+        margins = beam_margins(cache, sizes, mode=self.modes, settings=variants[0].settings)
         summary = ", ".join(f"{title} {100 * error:+.4g} %" for title, error in known.items())
         columns = [Column("mode"), Column(f"exact {theory_name(theory)}", "Hz", ".7g")]
         columns += [percent(one.title) for one in variants] + [percent(f"{theory_name(t)} theory") for t in theories]
         note = "Theory: change of the exact frequency against Euler-Bernoulli theory."
-        size = f"N = {self.count}"
+        size = f"N = {count}"
         return Result(
             summary=f"Mode {self.modes}, {size}, against the exact beam: {summary}." if known else "",
             tables=[Table(f"Frequency errors, {size}", columns, rows, [note] * bool(theories))],
             figures=[
                 Figure(
                     "mode-errors",
-                    f"Frequency error over mode number, {size}",
+                    marked(f"Frequency error over mode number, {size}", margins),
                     CAPTIONS["mode-errors"],
                     partial(draw_errors, errors, theories),
                 ),
-                *self._shapes(cache, variants),
+                *self._shapes(cache, variants, count),
             ],
             warnings=[*warnings, *left_out.values()],
             data={
-                "count": self.count,
+                "count": count,
                 "errors": {one.label: own for one, own in errors.items()},
                 "theories": theories,
             },
+            margins=margins,
         )
 
     def _theories(self, cache: "SolutionCache") -> dict[str, list[float]]:
@@ -113,7 +110,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
                 found["plate"] = [plate_error(cache.beam, mode) for mode in numbers]
         return found
 
-    def _shapes(self, cache: "SolutionCache", variants: tuple[Variant, ...]) -> "list[Figure]":
+    def _shapes(self, cache: "SolutionCache", variants: tuple[Variant, ...], count: int) -> "list[Figure]":
         """First, middle and last mode above one another; no figure where exact shapes are not available."""
         import numpy as np
 
@@ -129,8 +126,8 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         try:
             exact = [cache.exact_shape(mode, x, theory=theory) for mode in chosen]
             for model, one in shown.items():
-                modes = cache.modes(model, self.count, self.modes, one.settings)
-                index = [cache.paired_index(model, self.count, mode, one.settings) for mode in chosen]
+                modes = cache.modes(model, count, self.modes, one.settings)
+                index = [cache.paired_index(model, count, mode, one.settings) for mode in chosen]
                 for reading, read in modes.readings.items():
                     label = f"{MODELS[model].title}, {reading}" if len(modes.readings) > 1 else MODELS[model].title
                     points.append((label, model_style(model)["color"], modes.nodes, [read()[k] for k in index]))
@@ -150,7 +147,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             ax.set_yticklabels([f"mode {mode}" for mode in chosen])
             ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
-        return [Figure("mode-shapes", f"Mode shapes, N = {self.count}", CAPTIONS["mode-shapes"], draw, (6.4, 5.2))]
+        return [Figure("mode-shapes", f"Mode shapes, N = {count}", CAPTIONS["mode-shapes"], draw, (6.4, 5.2))]
 
 
 def draw_errors(errors: dict[Variant, list[float | None]], theories: dict[str, list[float]], ax: "Axes") -> None:

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin
     from verify.report.result import Result
     from verify.scene.model import Scene
 
@@ -99,6 +101,9 @@ def run_sweep(
         max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
     )
     rows = [one | found for one, found in zip(combinations, values, strict=True)]
+    margins = [margin for row in rows for margin in row.pop("margins")]
+    if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
+        margins = [margin for margin in margins if not margin.name.startswith("discretisation")]
     wanted, failed = _quantities(quantities), sum(row["reason"] is not None for row in rows)
     columns = [Column(key, format=".6g") for key in combinations[0]]
     columns += [Column(one.name, "" if one.unit == "1" else one.unit, ".7g") for one in wanted]
@@ -120,18 +125,19 @@ def run_sweep(
             if len(over) <= 2 and any(_number(row[one.name]) for row in rows)
         ],
         data={"rows": rows},
+        margins=margins,
     )
 
 
 def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
-    """Values by quantity, number of claims that agree, reason for a missing value, of one combination."""
+    """Values by quantity, claims that agree, reason for a missing value, worst margin, of one combination."""
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import evaluate
     from verify.scene.load import scene_from
     from verify.studies.claims import computed
 
     tables, study, combination = task
-    row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None}
+    row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": ()}
     try:
         for key, value in combination.items():
             tables = _put(tables, key.split("."), key, value) if "." in key else tables
@@ -141,11 +147,38 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, A
         for one in _quantities(study.quantities):
             own = {k: v for k, v in arguments.items() if k in one.schema.__struct_fields__}
             row[one.name] = evaluate(one.name, own, scene, cache)
+            row["margins"] += (*quantity_margins(one.name, own, scene, cache),)
         for claim in scene.claim if study.claims else ():
             row[AGREE] += claim.agrees(computed(claim, scene, cache))
     except InputError as error:
         row["reason"] = str(error)
     return row
+
+
+def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
+    """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
+    from verify.analysis.margins import beam_margins, run_margins, sag_margins
+    from verify.analysis.variants import DEFAULTS
+    from verify.linear.registry import EXACT, MODELS
+    from verify.quantities.base import QUANTITIES
+
+    quantity = QUANTITIES.named(name)
+    known = {f.name: f.default for f in msgspec.structs.fields(quantity.schema) if not f.required} | dict(arguments)
+    mode, hertz = known.get("mode"), known.get("frequency_hz")
+    if hertz is None and "drive" in quantity.reads and scene.drive is not None:
+        hertz = scene.drive.frequency_hz
+    found: list[Margin] = []
+    if "beam" in quantity.reads and (isinstance(mode, int) or hertz is not None):
+        settings = tuple((key, known[key]) for key in DEFAULTS if known.get(key) not in (None, DEFAULTS[key]))
+        size = (known["model"], known.get("count")) if known.get("model") in MODELS else (EXACT, None)
+        at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
+        with suppress(InputError):
+            found += beam_margins(cache, [size], **at, settings=settings)
+    runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
+    if scene.slider is not None and (sliding := [run for run in runs if run.coupling is not None]):
+        found += [one for run in sliding for one in run_margins(run, scene.slider, MODELS[run.model].title)]
+        found += sag_margins(cache, scene.slider)
+    return found
 
 
 def _quantities(names: Sequence[str]) -> list[Any]:

@@ -41,8 +41,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: ClassVar[str] = "wave"
     title: ClassVar[str] = "The driven beam"
 
-    count: Annotated[int, Meta(ge=1, description="Segments and elements of envelopes and movie.")] = 49
-    counts: Annotated[Counts, Meta(description="Segments and elements of the errors over N.")] = (49, 98, 196)
+    count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
+    counts: Annotated[Counts, Meta(description="Of the errors over N; else 1, 2, 4 times count.")] | None = None
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
@@ -63,13 +63,14 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             ) from None
         bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
         for model in discrete("harmonic", scene.beam) if bare.uniform else ():
-            for count in self.counts:
+            for count in filter(None, (self.count, *(self.counts or ()))):
                 model.build(bare, count).check_propagates(frequency)
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve the fields of all models. Raises InputError."""
         from msgspec.structs import replace
 
+        from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
         from verify.linear.registry import EXACT, MODELS, discrete
         from verify.quantities.waves import FieldOptions, driven_case, measured
         from verify.report.result import Column, Figure, Result, Table
@@ -80,14 +81,16 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         assert drive is not None
         exact = driven_case(scene, FieldOptions())
         models = [model.name for model in discrete("harmonic", scene.beam)]
+        n = self.count or sufficient_count(cache, frequency_hz=drive.frequency_hz)
+        counts = self.counts or (n, 2 * n, 4 * n)
         rows: list[Row] = []
-        for model, count in [(EXACT, None), *((model, count) for model in models for count in self.counts)]:
+        for model, count in [(EXACT, None), *((model, count) for model in models for count in counts)]:
             row: Row = {"name": sized_title(model, count), "model": model, "N": count}
             progress(row["name"])
             rows.append(row | _waves(replace(exact, model=MODELS[model].build(scene.beam, count)), cache))
         fields = {EXACT: driven(exact, cache)}
         for model in models:
-            fields[model] = driven(replace(exact, model=MODELS[model].build(scene.beam, self.count)), cache)
+            fields[model] = driven(replace(exact, model=MODELS[model].build(scene.beam, n)), cache)
         other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
         ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact)
 
@@ -101,8 +104,13 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
-        size = self.count if self.count in self.counts else max(self.counts)
-        ratios = [f"{r['name']} {r['drive']['standing_wave_ratio']:.5g}" for r in rows if r["N"] in (None, size)]
+        size = n if n in counts else max(counts)
+        margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
+        swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
+        margins += [
+            against_exact("standing-wave ratio", *one, rows[0]["drive"]["standing_wave_ratio"]) for one in swr.items()
+        ]
+        ratios = [f"{name} {value:.5g}" for name, value in swr.items()]
         x, up, magnified, widest = ellipses(fields["analytic"])
         paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
         start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
@@ -118,7 +126,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             figures=[
                 Figure(
                     "wave-envelopes",
-                    f"Envelope of the wave, N = {self.count}",
+                    marked(f"Envelope of the wave, N = {n}", margins),
                     ENVELOPES,
                     lambda ax: _draw_envelopes(ax, fields),
                 ),
@@ -129,7 +137,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     lambda ax: plot_lines(ax, [*paths, start], ("x", "m"), ("deflection", "m")),
                 ),
             ],
-            movies=[movie("wave-moving", f"One period, N = {self.count}", MOVIE, _movie(fields, self.count))],
+            movies=[movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{row['name']}: {row['note']}." for row in rows if row["note"]],
             data={
                 "rows": rows,
@@ -137,6 +145,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 "best_ratio": best.ratio,
                 "best_ratio_phase_deg": best.phase_deg,
             },
+            margins=margins,
         )
 
 

@@ -1,0 +1,158 @@
+"""Verdicts and margins against closed forms, published values and direct solves."""
+
+import math
+
+import pytest
+
+from verify import Beam
+from verify.analysis.margins import (
+    beam_margins,
+    marked,
+    run_margins,
+    sag_margins,
+    slope_margin,
+    sufficient_count,
+)
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import Margin, verdict_of, void
+from verify.linear.registry import MODELS
+from verify.problem.beam import PointForce
+from verify.quantities.base import evaluate
+from verify.scene.load import load_scene, scene_from
+from verify.studies.motor import Motor
+from verify.studies.spectrum import Spectrum
+from verify.studies.sweep import quantity_margins
+
+PAPER = load_scene("paper").beam
+BRASS = {"length": 0.3, "width": 0.012, "thickness": 0.0008, "youngs_modulus": 105e9, "density": 8500.0}
+FORCES = [
+    {"position": 0.01, "amplitude": 1.0},
+    {"position": 0.29, "amplitude": 1.0, "phase_deg": 90.0},
+]
+SLIDER = {"mass": 0.005, "mu": 0.3, "preload": 5.0, "coupling": "one-way", "law": "coulomb"}
+
+
+def brass(*supports, **slider):
+    """The strip at 30 kHz with a slider pressed on one-way by 5 N, and no sizes given."""
+    drive = {"frequency_hz": 30e3, "force": FORCES}
+    return scene_from({"name": "brass", "beam": BRASS | {"supports": supports}, "drive": drive,
+                       "slider": SLIDER | slider})  # fmt: skip
+
+
+def by_name(margins):
+    return {one.name: one for one in margins}
+
+
+# --- Verdicts ---
+
+
+def test_level_and_headline_are_those_of_the_worst_margin():
+    fine, high = Margin(name="a", size=0.004, where="at mode 3"), Margin(name="b", size=0.2, failure="b fails")
+    middle = Margin(name="c", size=0.025, condition="c may be left out")
+    assert verdict_of([fine]).headline == "Trusted to 0.4 % (a at mode 3)."
+    assert verdict_of([fine, middle]).headline == "Trusted only if c may be left out: 2.5 %."
+    assert verdict_of([middle, high, fine]).headline == "Not to be trusted: b fails."
+    assert [one.name for one in verdict_of([fine, middle, high]).margins] == ["b", "c", "a"]
+    levels = [verdict_of(some).level for some in ([fine], [fine, middle], [fine, high], [void("run", "diverged")])]
+    assert levels == ["trusted", "conditional", "not trusted", "not trusted"]
+    assert Margin(name="nan", size=math.nan).level == "not trusted"
+
+
+def test_the_spectrum_of_a_plain_cantilever_is_trusted_and_plain_data_in_json():
+    scene = load_scene("steel-cantilever")
+    data = Spectrum(modes=2, count=12).run(scene, SolutionCache(scene.beam), print).to_dict()["verdict"]
+    assert data["level"] == "trusted"
+    assert data["headline"].startswith("Trusted to ")
+    assert {"name", "size", "fine", "limit", "level"} <= set(data["margins"][0])
+
+
+def test_a_pressed_on_slider_without_two_way_coupling_is_not_trusted():
+    scene = brass("clamped", "clamped", contact={"stiffness": 1e6, "damping": 1.0})
+    study = Motor(models=("analytic",), speeds=2, periods=20)
+    result = study.run(scene, SolutionCache(scene.beam), lambda step: None)
+    assert result.verdict.level == "not trusted"
+    assert result.summary == ""
+    one_way = by_name(result.margins)["one-way coupling"]
+    assert one_way.size > 1.0
+    assert one_way.failure in verdict_of([one_way]).headline
+
+
+def test_a_preload_that_bends_a_cantilever_is_in_the_headline():
+    """P a^2 (3 L - a) / 6 EI at the tip and P a^2 / 2 EI beyond the load."""
+    scene = brass("clamped", "free")
+    load, a, stiffness = 5.0 + 0.005 * 9.81, 0.15, scene.beam.bending_stiffness
+    (sag,) = sag_margins(SolutionCache(scene.beam), scene.slider)
+    assert sag.size == pytest.approx((load * a**2 / (2 * stiffness)) ** 2, rel=1e-6)
+    tip = load * a**2 * (3 * 0.3 - a) / (6 * stiffness)
+    assert verdict_of([sag]).headline.startswith(
+        f"Not to be trusted: the preload bends the beam by {1e3 * tip:.0f} mm, {100 * tip / 0.3:.0f} % of its length"
+    )
+
+
+# --- Margins ---
+
+
+def test_margins_of_the_paper_at_mode_22_are_the_published_and_closed_forms():
+    margins = by_name(beam_margins(SolutionCache(PAPER), [("segment", 49), ("fem", 49)], mode=22))
+    beta = 22 * math.pi / PAPER.length
+    a, s = beta**2 * 1e-6 / 12, beta**2 * 1e-6 / 12 * 2 * 1.33 * 6 / 5
+    timoshenko = math.sqrt(2 / (1 + a + s + math.sqrt((1 + a + s) ** 2 - 4 * a * s))) - 1
+    assert margins["shear and rotary inertia"].size == pytest.approx(-timoshenko, rel=1e-3)
+    assert margins["shear and rotary inertia"].size == pytest.approx(0.0033, abs=5e-5)
+    assert margins["bending across the width"].size == pytest.approx(0.0246, abs=5e-5)
+    assert margins["discretisation of 49 segments"].size == pytest.approx(0.0042802, abs=1e-7)
+
+
+def test_the_error_at_a_driven_wave_is_that_of_a_mode_at_its_frequency():
+    cache = SolutionCache(PAPER)
+    for model, count in (("segment", 31), ("fem", 37)):
+        at_mode, at_wave = (
+            beam_margins(cache, [(model, count)], **at)[0].size
+            for at in ({"mode": 17}, {"frequency_hz": cache.exact_hz(17)})
+        )
+        assert at_wave == pytest.approx(at_mode, rel=1e-6)
+
+
+def test_a_drive_above_the_cut_off_is_not_trusted():
+    (margin, *_) = beam_margins(SolutionCache(PAPER), [("segment", 20)], frequency_hz=4276.0)
+    assert margin.size == math.inf
+    assert "20 segments have no answer" in verdict_of([margin]).headline
+
+
+def test_half_a_wave_shorter_than_the_width_is_in_the_condition():
+    margins = by_name(beam_margins(SolutionCache(brass("clamped", "clamped").beam), [], frequency_hz=30e3))
+    assert "half a wave, 6.5" in margins["bending across the width"].condition
+
+
+@pytest.mark.parametrize("at", [{"modes": 9}, {"frequency_hz": 30e3}])
+def test_a_count_without_a_given_one_keeps_one_per_cent_and_one_less_does_not(at):
+    cache = SolutionCache(brass("clamped", "pinned").beam)
+    count = sufficient_count(cache, **at)
+    own = {"mode": at["modes"]} if "modes" in at else at
+    worst = [
+        max(m.size for m in beam_margins(cache, [("segment", n), ("fem", n)], **own)[:2]) for n in (count, count - 1)
+    ]
+    assert worst[0] <= 0.01 < worst[1]
+
+
+def test_charts_of_a_coarse_model_are_marked():
+    margins = beam_margins(SolutionCache(brass("clamped", "clamped").beam), [("segment", 49)], mode=46)
+    assert "49 segments are" in marked("Envelope", margins)
+    assert marked("Envelope", margins[1:]) == "Envelope"
+
+
+def test_linear_theory_ends_with_the_slope():
+    beam = Beam(**BRASS, supports=("clamped", "free"))
+    for force, level in ((0.05, "trusted"), (0.2, "conditional"), (0.5, "not trusted")):
+        field = MODELS["analytic"].build(beam).harmonic([PointForce(position=0.3, amplitude=force)], 1e-3)
+        assert slope_margin("the drive", field, "").level == level
+
+
+def test_a_quantity_has_the_margins_of_its_model_and_its_run():
+    scene = load_scene("paper-slider")
+    cache, arguments = SolutionCache(scene.beam), {"model": "fem", "count": 31, "time": 6e-4}
+    evaluate("slider.displacement", arguments, scene, cache)
+    names = by_name(quantity_margins("slider.displacement", arguments, scene, cache))
+    assert {"discretisation of 31 Hermite elements", "lift-off", "bending across the width"} <= set(names)
+    (run,) = cache.motions.values()
+    assert by_name(run_margins(run, scene.slider, "elements"))["lift-off"].size == run.margins.lift_off

@@ -1,0 +1,226 @@
+"""Margins: the sizes of what a result leaves out, from the beam, the model, its count, and the mode or drive.
+
+Discretisation, shear and rotary inertia, bending across the width, cut-off of the parts, sag and slope under sliders,
+one-way coupling, lift-off, convergence and linearity; `verdict` derives the level from them.
+"""
+
+from bisect import bisect_left
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from math import inf, pi
+from typing import TYPE_CHECKING
+
+from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
+from verify.analysis.verdict import FINE, Margin, per_cent, void
+from verify.errors import InputError
+from verify.exact.closed_forms import theory_ratio, wavenumber_length
+from verify.exact.error_laws import LAWS, error_at
+from verify.exact.plate import FLATNESS, plate_error, stiffening
+from verify.formatting import with_unit
+from verify.linear.registry import EXACT, MODELS, discrete
+
+if TYPE_CHECKING:
+    from verify.dynamics.result import Motion
+    from verify.linear.field import HarmonicField
+    from verify.problem.slider import Slider
+
+MOST_PLATES = 60
+"""Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
+SLOPE = 0.1, 0.3
+"""Slopes up to which linear theory is trusted, and trusted under a condition: their squares are relative lengths."""
+OFF = 0.05
+"""Discretisation error from which a chart is marked."""
+STILL = 1e-4
+"""Frequency of a static load over the first natural frequency: the dynamic part is its square."""
+
+
+def beam_margins(
+    cache: SolutionCache,
+    sizes: Sequence[tuple[str, int | None]],
+    *,
+    mode: int | None = None,
+    frequency_hz: float | None = None,
+    settings: Settings = (),
+) -> list[Margin]:
+    """Margins of a beam and its models (name, count) at a mode, or at the wave of a frequency, Hz; give one of the two.
+
+    Discretisation at a mode is the solved error against the exact beam, at a wave the error of the dispersion at its
+    wavenumber. Raises InputError for a mode that the exact beam does not have.
+    """
+    beam, where = cache.beam, f"at mode {mode}" if mode else f"at {frequency_hz:g} Hz"
+    k = _wavenumber(cache, mode, frequency_hz)
+    found = [_discretisation(cache, model, n, mode, frequency_hz or 0.0, settings, where) for model, n in sizes if n]
+    if k is None:
+        return found
+    if theory_of(settings) == EULER:
+        if any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces):
+            left_out = "shear, rotary inertia and bending across the width may be left out, unknown without a shape"
+            unknown = Margin(name="beam theory", size=0.0, fine=-1.0, condition=left_out, where=where, is_error=False)
+            return [*found, unknown]
+        size, name = 1.0 - theory_ratio(beam.own, k), "shear and rotary inertia"
+        if mode:
+            with suppress(InputError):
+                size = abs(cache.exact_hz(mode, "timoshenko") / cache.exact_hz(mode) - 1.0)
+        found.append(Margin(name=name, size=size, where=where, remedy="use theory = 'timoshenko'"))
+    width = max((one.width for one in (beam, *beam.section) if one.width), default=0.0)
+    if width and beam.thickness and width >= FLATNESS * beam.thickness:  # a strip
+        size, half = stiffening(0.5 * k * width, beam.poissons_ratio), pi / k
+        if mode and mode <= MOST_PLATES:
+            with suppress(InputError):
+                size = abs(plate_error(beam, mode))
+        short = f" (half a wave, {with_unit(half)}, is shorter than the width)" if half < width else ""
+        found.append(Margin(name="bending across the width", size=size, where=where,
+                            condition=f"bending across the width may be left out{short}",
+                            remedy="no beam theory has it: use a plate, or a narrower strip"))  # fmt: skip
+    return found
+
+
+def _wavenumber(cache: SolutionCache, mode: int | None, frequency_hz: float | None) -> float | None:
+    """Of the mode, or of the wave in the beam's own section, 1/m; None where no wave travels."""
+    from verify.linear.field import travelling_wavenumber
+
+    if mode and cache.beam.uniform:
+        return wavenumber_length(cache.beam.supports, mode) / cache.beam.length
+    return travelling_wavenumber(cache.beam, cache.exact_hz(mode) if mode else frequency_hz or 0.0)
+
+
+def _discretisation(
+    cache: SolutionCache, model: str, count: int, mode: int | None, hertz: float, settings: Settings, where: str
+) -> Margin:
+    """Solved error at a mode; error of the dispersion at a driven wave, on beams without one that of the next mode."""
+    beam, title = cache.beam, f"{count} {MODELS[model].title}"
+    name, k = f"discretisation of {title}", None if mode else _wavenumber(cache, None, hertz)
+    try:
+        if mode is None:
+            MODELS[model].build(beam, count).check_propagates(hertz)
+        if k is not None and beam.uniform and model in LAWS:
+            error = error_at(model, beam, k * beam.length / count, count)
+        else:
+            error = cache.frequency_error(model, count, mode or _mode_above(cache, hertz), settings)
+    except InputError as problem:
+        return void(name, f"{title} have no answer {where} ({problem})")
+    remedy, side = "", "low" if error < 0.0 else "high"
+    if abs(error) > FINE and beam.uniform and not settings:  # by the error law, without a scan
+        with suppress(InputError):
+            enough = sufficient_count(cache, modes=mode or 0, frequency_hz=hertz, models=(model,))
+            remedy = f"give more: {enough} are within {per_cent(FINE)}"
+    return Margin(name=name, size=abs(error), where=where, condition=f"{title} may lie too {side}",
+                  failure=f"{title} are {per_cent(error)} too {side} {where}", remedy=remedy)  # fmt: skip
+
+
+def _mode_above(cache: SolutionCache, frequency_hz: float) -> int:
+    """The first mode at or above a frequency."""
+    top = 4
+    while cache.exact_hz(top) < frequency_hz:
+        top *= 2
+    return bisect_left(range(1, top + 1), frequency_hz, key=cache.exact_hz) + 1
+
+
+def sufficient_count(
+    cache: SolutionCache, *, modes: int = 0, frequency_hz: float | None = None, models: Sequence[str] = ()
+) -> int:
+    """The number of parts from which on all models keep 1 % in frequency, at a mode or at a driven wave.
+
+    Raises InputError where no practical number does.
+    """
+    from verify.analysis.sizing import LARGEST, sufficient_size
+
+    names = models or [one.name for one in discrete() if one.name in MODELS.built_in]
+    k = None if modes else _wavenumber(cache, None, frequency_hz)
+    if modes or k is None or not cache.beam.uniform:
+        mode = modes or _mode_above(cache, frequency_hz or 0.0)
+        return max(sufficient_size(cache, name, mode, FINE).count for name in names)
+    turns, last = k * cache.beam.length, 0
+    count = first = max(int(turns / pi) + 1, 2)
+    while count <= max(2 * last, first + 8):  # an error that changes sign is small by accident once
+        if count > LARGEST:
+            raise InputError(f"frequency_hz = {frequency_hz!r}: more than {LARGEST} parts are needed, lower it")
+        if any(abs(error_at(name, cache.beam, turns / count, count)) > FINE for name in names if name in LAWS):
+            last = count
+        count += max(count // 500, 1)
+    return max(last + 1, first)
+
+
+def against_exact(what: str, model: str, value: float, exact: float) -> Margin:
+    """Result of a model against that of the exact beam: near a resonance far off at a small error in frequency."""
+    size = abs(value / exact - 1.0) if exact else 0.0 if value == exact else inf
+    return Margin(name=f"{what} of {model}", size=size, limit=inf,
+                  condition=f"the exact beam answers: {what} of {model} is off by {per_cent(size)}")  # fmt: skip
+
+
+def marked(title: str, margins: Iterable[Margin]) -> str:
+    """The title of a chart, with the discretisation that is more than 5 % off."""
+    off = [one.failure for one in margins if one.name.startswith("discretisation") and one.size > OFF]
+    return f"{title} ({', '.join(off)})" if off else title
+
+
+def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
+    """Linear theory under the deflection of a field: the square of the largest slope is a relative length."""
+    import numpy as np
+
+    x = np.linspace(0.0, field.beam.length, 401)
+    bent, slope = float(abs(field.deflection(x)).max()), float(abs(field.slope(x)).max())
+    failure = f"{what} bends the beam by {with_unit(bent)}, {per_cent(bent / field.beam.length)} of its length"
+    return Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
+                  limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
+                  remedy=remedy, is_error=False)  # fmt: skip
+
+
+def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None = None) -> list[Margin]:
+    """Static sag of the beam under a slider's weight and preload: its slope, and its curvature under the feet.
+
+    The latter over the amplitude of the wave (m), where one-way coupling leaves it out. None of a beam whose rigid
+    motions nothing prevents.
+    """
+    from verify.problem.beam import PointForce
+
+    beam, start = cache.beam, slider.initial_position(cache.beam)
+    loads = [
+        PointForce(position=min(max(start + foot.offset, 0.0), beam.length), amplitude=size)
+        for foot in slider.feet
+        if not foot.mirrored and (size := slider.static_normal_force(foot) * (1.0 if foot.face == "lower" else -1.0))
+    ]
+    if beam.rigid_motions or not loads:
+        return []
+    try:
+        still = MODELS[EXACT].build(beam).harmonic(loads, STILL * cache.exact_hz(1))
+    except InputError:
+        return []
+    what, remedy = "the preload" if slider.preload else "the slider's weight", "press it less, or stiffen the beam"
+    found = [slope_margin(what, still, remedy)]
+    if amplitude and slider.coupling == "one-way":
+        bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
+        found.append(Margin(name="sag under a foot over the wave's amplitude:", size=float(bent) / amplitude,
+                            remedy="use coupling = 'two-way', or shorter feet"))  # fmt: skip
+    return found
+
+
+def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
+    """Coupling, lift-off, linearity and convergence of a slider's run on a model with this title."""
+    from verify.dynamics.step_control import CONVERGED
+
+    status, margins, coupling, found = run.statistics, run.margins, run.coupling, list[Margin]()
+    if not status.finished:
+        end = with_unit(run.end.time, "s")
+        found.append(void("the run", f"the slider {status.stopped} on the {title} after {end}", "give a shorter time"))
+    if slider.contact is None:
+        falls = f"the slider lifts off: the surface falls away with {margins.lift_off:.3g} times its own acceleration"
+        found.append(Margin(name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, failure=falls, is_error=False,
+                            remedy="press it more, or model its contact by [slider.contact]"))  # fmt: skip
+    if coupling is not None and not (coupling.two_way and slider.normal == "bilateral"):
+        size = max(coupling.normal_size, 0.0 if coupling.two_way else coupling.friction_size or 0.0)
+        much = f"by {per_cent(size)}" if size < inf else "where the drive does not move it"
+        remedy = "use slider.normal = 'bilateral'" if coupling.two_way else "use slider.coupling = 'two-way'"
+        found.append(Margin(name="one-way coupling", size=size, condition="the contact need not act on the wave",
+                            failure=f"the contact changes the surface motion {much}", remedy=remedy))  # fmt: skip
+    change, missed = status.step_change or 0.0, status.unconverged / max(status.steps, 1)
+    failure = f"halving the time step changes the displacement by {per_cent(change)}"
+    found += [
+        Margin(name="axial inertia of the links", size=margins.nonlinearity, remedy="drive it less"),
+        Margin(name="time step", size=change, fine=CONVERGED, limit=CONVERGED, failure=failure,
+               remedy="give a shorter step, or a shorter time"),
+        Margin(name="contact forces that did not converge", size=missed, limit=FINE, remedy="raise steps_per_period"),
+        Margin(name="time steps in a period of the contact", size=margins.contact_step**2 / 24.0,
+               remedy="raise steps_per_period"),
+    ]  # fmt: skip
+    return [one for one in found if not one.size <= 0.0]

@@ -1,0 +1,110 @@
+"""Verdicts: how far a result can be trusted, from the margins of the assumptions behind it."""
+
+from collections.abc import Iterable
+from math import isfinite
+from typing import Any, Literal, TypeAlias
+
+import msgspec
+
+Level: TypeAlias = Literal["trusted", "conditional", "not trusted"]
+COLOURS: dict[Level, str] = {"trusted": "green", "conditional": "yellow", "not trusted": "red"}
+"""Of a terminal: green is for results without a condition."""
+LEVELS: tuple[Level, ...] = tuple(COLOURS)
+FINE, LIMIT = 0.01, 0.10
+"""Relative errors up to which a result is trusted, and trusted under a condition."""
+
+
+class Margin(msgspec.Struct, frozen=True, kw_only=True):
+    """One assumption behind a result, with the size of what it leaves out."""
+
+    name: str
+    """'discretisation of 49 segments'."""
+    size: float
+    """Relative error that it leaves in the result, or its fraction of a limit; infinite where there is no result."""
+    where: str = ""
+    """The mode or frequency that answers: 'at mode 22'."""
+    fine: float = FINE
+    """Size above which the result is trusted only under the condition."""
+    limit: float = LIMIT
+    """Size above which the result is not trusted."""
+    condition: str = ""
+    """After 'only if': 'bending across the width may be left out: 2.5 % at mode 22'."""
+    failure: str = ""
+    """After 'not to be trusted': 'the preload bends the beam by 84 mm'."""
+    remedy: str = ""
+    """What to change: 'give 60 segments or more'."""
+    is_error: bool = True
+    """Whether the size is an error of the result, which 'trusted to' names; otherwise a fraction of a limit."""
+
+    @property
+    def level(self) -> Level:
+        """Its own level; a size that is not a number is not trusted."""
+        return "trusted" if self.size <= self.fine else "conditional" if self.size <= self.limit else "not trusted"
+
+    @property
+    def text(self) -> str:
+        """The size in words: 'discretisation of 49 segments 0.43 % at mode 22', 'lift-off 152 times its limit'."""
+        size = per_cent(self.size) if self.is_error else f"{self.size / self.limit:.3g} times its limit"
+        return f"{self.name} {size} {self.where}".rstrip()
+
+
+class Verdict(msgspec.Struct, frozen=True, kw_only=True):
+    """How far a result can be trusted."""
+
+    level: Level
+    headline: str
+    """One sentence with the worst margin in words and per cent, and a remedy where it is not trusted."""
+    margins: tuple[Margin, ...] = ()
+    """Worst first."""
+
+    @property
+    def others(self) -> list[str]:
+        """Further margins that are not trusted, in words: of each name the worst."""
+        worst = {one.name: one.text for one in reversed(self.margins) if one.level != "trusted"}
+        return [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON: level, headline, margins with their sizes and limits."""
+        margins = [msgspec.structs.asdict(one) | {"level": one.level} for one in self.margins]
+        return {"level": self.level, "headline": self.headline, "margins": margins}
+
+
+def verdict_of(margins: Iterable[Margin]) -> Verdict:
+    """The verdict by the worst of the margins, by level, then by size over limit; of like ones the worst counts."""
+    worst_of = {(one.name, one.where): one for one in sorted(margins, key=_badness)}
+    ordered = sorted(worst_of.values(), key=_badness, reverse=True)
+    if not ordered:
+        return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
+    worst, largest = ordered[0], max(ordered, key=lambda one: one.is_error * one.size)
+    if worst.level == "not trusted":
+        headline = f"Not to be trusted: {worst.failure or f'{worst.text}, more than {per_cent(worst.limit)}'}."
+        if worst.remedy:
+            headline += f" {worst.remedy[0].upper()}{worst.remedy[1:]}."
+    elif worst.level == "conditional":
+        others = len({one.name for one in ordered if one.level == "conditional"}) - 1
+        more = f" ({others} more condition{'s' * (others > 1)})" if others else ""
+        size = f": {per_cent(worst.size)} {worst.where}".rstrip() if worst.is_error and isfinite(worst.limit) else ""
+        headline = f"Trusted only if {worst.condition or f'{worst.name} may be left out'}{size}{more}."
+    elif largest.is_error:
+        headline = f"Trusted to {per_cent(largest.size)} ({f'{largest.name} {largest.where}'.rstrip()})."
+    else:
+        headline = "Trusted: no margin is beyond its limit."
+    return Verdict(level=worst.level, headline=headline, margins=tuple(ordered))
+
+
+def void(name: str, failure: str, remedy: str = "") -> Margin:
+    """The margin of a result that does not exist: not converged, diverged, left the beam."""
+    return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy)
+
+
+def per_cent(ratio: float) -> str:
+    """'0.43 %', '110 %': two digits, no exponent where a person reads one badly."""
+    if not isfinite(ratio):
+        return "more than all of it"
+    value = 100.0 * abs(ratio)
+    return f"{float(f'{value:.2g}'):.0f} %" if 100.0 <= value < 1e5 else f"{value:.2g} %"
+
+
+def _badness(margin: Margin) -> tuple[int, float]:
+    share = margin.size / margin.limit if margin.size == margin.size else float("inf")
+    return LEVELS.index(margin.level), share
