@@ -70,7 +70,7 @@ def test_the_observed_order_of_an_exact_power_is_that_power(order):
         ((10, 20), (1e-3, 1e-4), "three or more"),
         ((10, 20, 20), (1e-3, 1e-4, 1e-4), "three or more"),
         ((10, 20, 40), (1e-3, -1e-4, -1e-5), "changes sign"),
-        ((10, 20, 40), (1e-9, 1e-11, 3e-13), "is rounding"),
+        ((10, 20, 40), (1e-9, 1e-11, 3e-13), "within rounding"),
         ((10, 20, 40), (1e-3, float("nan"), 1e-5), "not finite"),
     ],
 )
@@ -141,7 +141,7 @@ def test_values_that_do_not_converge_have_an_infinite_band():
         ((10, 20), (1.0, 1.1), "three different sizes"),
         ((10, 20, 20), (1.0, 1.1, 1.2), "three different sizes"),
         ((10, 20, 30), (1.0, 0.0, 1.2), "other than zero"),
-        ((10, 20, 30), (1.0, 1.1, 1.1 + 1e-14), "rounding alone"),
+        ((10, 20, 30), (1.0, 1.1, 1.1 + 1e-14), "within rounding"),
     ],
 )
 def test_a_grid_convergence_index_needs_three_values(counts, values, message):
@@ -187,7 +187,7 @@ CANTILEVER = load_scene("steel-cantilever").beam
 
 
 def test_a_setting_of_no_model_is_an_input_error():
-    with pytest.raises(InputError, match=r"wall = 'half' is a setting of none of fem: leave it out"):
+    with pytest.raises(InputError, match=r"wall = 'half' is not a setting of fem: leave it out"):
         Rules(wall="half").variants(["fem"])
 
 

@@ -115,9 +115,9 @@ def result_of(
     groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
     about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
     mode, off = max((row.mode for row in rows), default=1), max((abs(row.error) for row in rows), default=0.0)
-    margins = [*beam_margins(SolutionCache(beam), [], mode=mode), Margin(name="the list of frequencies", size=off)]
+    margins = [*beam_margins(SolutionCache(beam), [], mode=mode), Margin(name="error of the list", size=off, condition="this error of the list is acceptable")]
     if not all(check[3] for check in checks):
-        margins.append(void("the list", f"{summary.rstrip('.')}; {', '.join(c[0] for c in checks if not c[3])}"))
+        margins.append(void("the list", f"{', '.join(c[0] for c in checks if not c[3])} beyond the limit"))
     figure = _figure(beam, fits, rows)
     return Result(summary, tables, [figure], warnings=warnings, data=about, margins=margins)
 

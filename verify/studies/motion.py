@@ -161,8 +161,8 @@ def readings(scene: "Scene") -> "Table":
 
     own = scene.slider
     assert own is not None
-    point = replace(own, contact=None, foot=(), pull=0.0, preload_stiffness=0.0)
-    opening = replace(point, kinematics="tangential", normal="held", line="spline", contact=Contact())
+    point = replace(own, contact=None, foot=(), external_force=0.0, preload_stiffness=0.0)
+    opening = replace(point, kinematics="tangential", normal="bilateral", line="spline", contact=Contact())
     rows: list[tuple[Any, ...]] = []
     for name, assumption, slider, times in (
         ("tangential", "stays on the surface and moves along it alone", replace(point, kinematics="tangential"), 1),
