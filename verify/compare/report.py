@@ -115,7 +115,8 @@ def result_of(
     groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
     about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
     mode, off = max((row.mode for row in rows), default=1), max((abs(row.error) for row in rows), default=0.0)
-    margins = [*beam_margins(SolutionCache(beam), [], mode=mode), Margin(name="error of the list", size=off, condition="this error of the list is acceptable")]
+    own = Margin(name="error of the list", size=off, condition="this error of the list is acceptable")
+    margins = [*beam_margins(SolutionCache(beam), [], mode=mode), own]
     if not all(check[3] for check in checks):
         margins.append(void("the list", f"{', '.join(c[0] for c in checks if not c[3])} beyond the limit"))
     figure = _figure(beam, fits, rows)
