@@ -11,6 +11,7 @@ from math import inf, pi
 from typing import TYPE_CHECKING
 
 from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
+from verify.analysis.variants import Variant
 from verify.analysis.verdict import FINE, Margin, per_cent, void
 from verify.errors import InputError
 from verify.exact.closed_forms import theory_ratio, wavenumber_length
@@ -88,7 +89,7 @@ def _discretisation(
     cache: SolutionCache, model: str, count: int, mode: int | None, hertz: float, settings: Settings, where: str
 ) -> Margin:
     """Solved error at a mode; error of the dispersion at a driven wave, on beams without one that of the next mode."""
-    beam, title = cache.beam, f"{count} {MODELS[model].title}"
+    beam, title = cache.beam, f"{count} {Variant(model, settings).title}"
     name, k = f"discretisation of {title}", None if mode else _wavenumber(cache, None, hertz)
     try:
         if mode is None:

@@ -26,7 +26,7 @@ UNITS = {"rad/s": 2 * pi, "mHz": 1e3, "1/min": 60.0, "divided by 2 pi": 0.5 / pi
 FAULTS = {
     "none": ("none", 0.0, 0),
     "unit": ("wrong unit, factor", 5.0, 0),
-    "count": ("another N", 5.0, 1),
+    "count": ("another size", 5.0, 1),
     "missing": ("missing mode", 6.0, 1),
     "extra": ("extra entry", 6.0, 2),
     "factor": ("common factor", 9.0, 1),

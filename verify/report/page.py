@@ -72,7 +72,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
     listed = [(*where, text) for text, where in caveats.items() if text not in above]
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
     columns = [Column("level"), Column("margin")]
-    columns += [Column(name, format=".3g", percent=True) for name in ("size", "fine", "limit")]
+    columns += [Column(name, format=".3g", percent=True) for name in ("size", "trusted up to", "not above")]
     rows: list[Any] = []
     for one in run.verdict.margins:
         texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
@@ -81,6 +81,8 @@ def run_page(run: "RunResult", command: str = "") -> str:
     reasons = Table("Margins", [*columns, Column("condition"), Column("remedy")], rows)
     worst, gates = worst_gate(run), gates_table(run)
     most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
+    if run.failed:
+        most = f"{len(run.failed)} failed: {', '.join(one.gate.id for one in run.failed)}"
     whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
     rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
     sections = [

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from verify.problem.beam import Beam
 
-_WALL_ORDERS = {"half": 2, "welded": 2, "third-order": 3}
+_WALL_ORDERS = {"half": 2, "full": 1, "welded": 2, "third-order": 3}
 """Order of the wall rules, where it is less than 4."""
 
 

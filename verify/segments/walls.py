@@ -13,6 +13,8 @@ WALLS: dict[str, tuple[float, ...]] = {
     "gregory": (-5 / 8, 1 / 6, -1 / 24),
     # the literature's k = 2EI/l, Eq. (1) with a rigid neighbour: order 2
     "half": (-1 / 2,),
+    # the spring EI/l of an inner joint, a frequent mistake: order 1
+    "full": (0.0,),
     # half a segment is part of the wall, and a whole joint EI/l follows it: order 2
     "welded": (),
     # weights 5/12, 13/12: order 3

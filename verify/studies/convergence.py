@@ -59,9 +59,10 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         rows = self._rows(cache, variants, progress)
         bounds, no_bound = self._bounds(cache)
         settled, warnings = self._summarise(cache, rows)
-        first = variants[0].settings
-        sizes = [(one.model, max(self.counts)) for one in variants if one.settings == first]
-        margins = beam_margins(cache, sizes, mode=max(self.modes), settings=first)
+        margins = []
+        for settings in dict.fromkeys(one.settings for one in variants):
+            sizes = [(one.model, max(self.counts)) for one in variants if one.settings == settings]
+            margins += beam_margins(cache, sizes, mode=max(self.modes), settings=settings)
         columns = [Column("mode"), Column("model"), Column("N"), Column("frequency", "Hz", ".8g"), percent("error")]
         columns += [Column("order", format=".2f"), Column("in range"), percent("GCI", ".3g")]
         columns += [percent("extrapolated", "+.3g"), si("solve time", "s", ".3g")]
@@ -71,7 +72,8 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         if bounds:
             columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
             columns += [percent("width", ".4g"), percent("error of the mean")]
-            bound = "Two-sided bound: segments below, Hermite elements above"
+            rule = " with wall half" if "clamped" in cache.beam.supports else ""
+            bound = f"Two-sided bound: segments{rule} below, Hermite elements above"
             note = "The exact frequency lies in it for every N; no reference solution is needed for that."
             tables.append(Table(bound, columns, [tuple(row.values()) for row in bounds], [note]))
         errors = ", ".join(settled)
