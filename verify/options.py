@@ -17,9 +17,9 @@ Wall = Literal["gregory", "half", "full", "welded", "third-order", "five-joint"]
 WALLS: tuple[str, ...] = get_args(Wall)
 """Compliances, in l/EI, of the joints of a chain next to a clamped end (`segments.walls`).
 
-gregory: 3/8, 7/6, 23/24, frequencies of order 4. half: the literature's k = 2EI/l, order 2. full: EI/l, the spring of an
-inner joint, a frequent mistake, order 1. welded: half a segment is
-part of the wall, order 2. third-order: 5/12, 13/12. five-joint: order 4, a smaller error at low modes.
+gregory: 3/8, 7/6, 23/24, frequencies of order 4. half: the literature's k = 2EI/l, order 2. full: EI/l, the spring of
+an inner joint, a frequent mistake, order 1. welded: half a segment is part of the wall, order 2. third-order: 5/12,
+13/12. five-joint: order 4, a smaller error at low modes.
 """
 
 Joints = Literal["series", "printed", "tensioned"]
