@@ -159,6 +159,8 @@ def test_new_scenes_are_valid(call, bare):
     assert call("scenes init mine.toml")[0] == 0
     assert call("plan mine.toml")[0] == 0
     assert call("scenes init copy.toml --from steel-cantilever")[0] == 0
+    shown = call("scenes show steel-cantilever")[1]
+    assert Path("copy.toml").read_text().endswith(shown.partition('name = "steel-cantilever"')[2])
     assert 'name = "copy"' in Path("copy.toml").read_text()
     assert call("scenes init copy.toml --from bare.toml --force")[0] == 0
     assert call("plan copy.toml")[0] == 0

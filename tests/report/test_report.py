@@ -13,13 +13,15 @@ import pytest
 from PIL import Image
 from rich.console import Console
 
+from verify.analysis.verdict import void
 from verify.errors import InputError
 from verify.report import archive
 from verify.report.archive import read_runs, save_run, saved_in
 from verify.report.beam_drawing import beam_figure
 from verify.report.diff import compare_runs
+from verify.report.page import run_page
 from verify.report.plotting import MODEL_COLORS, drawn, figure_files, figure_svg, movie_image
-from verify.report.result import Column, Figure, Table, to_json
+from verify.report.result import Column, Figure, Result, Table, to_json
 from verify.report.summary import run_data, worst_gate
 from verify.report.terminal import print_run
 from verify.scene.load import scene_from
@@ -294,12 +296,6 @@ def test_run_data_is_complete(full_run):
 
 
 def test_a_failed_gate_and_a_stopped_slider_are_never_green(small_run, full_run):
-    import msgspec
-
-    from verify.analysis.verdict import void
-    from verify.report.page import run_page
-    from verify.report.result import Result
-
     assert small_run.verdict.level == "trusted"
     assert full_run.verdict.level == "not trusted"
     assert "elements-lie-above" in full_run.verdict.headline

@@ -6,7 +6,7 @@ import pytest
 
 from verify import Beam, load_scene
 from verify.errors import InputError
-from verify.scene.load import STARTER, copy_with_name, packaged_scenes, read_text, scene_from, tables_of, toml_text
+from verify.scene.load import STARTER, packaged_scenes, scene_from, tables_of, toml_text
 from verify.scene.model import Claim, Scene
 from verify.scene.run import skipped_gates
 from verify.scene.schema import scene_schema, sections
@@ -159,13 +159,6 @@ def test_claim_agrees_within_its_tolerance():
     assert not Claim(**claim, value="positive").agrees(-1e-9)
     assert Claim(**claim, at_least=0.02).agrees(0.03)
     assert not Claim(**claim, at_least=0.02, at_most=0.025).agrees(0.03)
-
-
-def test_copy_keeps_comments_under_another_name():
-    text = read_text(STARTER)
-    copied = copy_with_name(text, "mine")
-    assert copied == text.replace('name = "my-beam"', 'name = "mine"')
-    assert copy_with_name("name = 'a'  # own\n", "b").startswith('#:schema ./verify.schema.json\nname = "b"  # own')
 
 
 @pytest.mark.parametrize(
