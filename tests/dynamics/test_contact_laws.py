@@ -19,14 +19,12 @@ STEEL = Beam(
 )
 
 
-@pytest.mark.parametrize(
-    ("normal", "kinematics"), [("massless", "tangential"), ("massless", "following"), ("bilateral", "tangential")]
-)
+@pytest.mark.parametrize("kinematics", ["tangential", "following"])
 @pytest.mark.parametrize("law", [{"law": "coulomb"}, {"law": "coulomb", "mu_static": 3.7}, {"law": "tanh"}])
-def test_friction_of_a_clamped_mass_creates_no_energy_in_steps_of_an_eighth_of_a_period(law, normal, kinematics):
+def test_friction_of_a_clamped_mass_creates_no_energy_in_steps_of_an_eighth_of_a_period(law, kinematics):
     """100 g under 20.98 N and mu = 3 on 400 segments; friction once put 3.6 times the work of the drive into them."""
     forces = (FORCES[0], replace(FORCES[1], position=0.4884, amplitude=1.0, phase_deg=90.0))
-    slider = Slider(mass=0.1, mu=3.0, preload=20.0, normal=normal, kinematics=kinematics, **law)
+    slider = Slider(mass=0.1, mu=3.0, preload=20.0, normal="massless", kinematics=kinematics, **law)
     given = {"count": 400, "soft_start_periods": 2.0, "slider": slider, "step": 1 / (8 * HERTZ), "samples": 9}
     motion = simulate(STRIP, forces, HERTZ, 3e-3, **given)
     energy = motion.energy
