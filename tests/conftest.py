@@ -1,4 +1,4 @@
-"""Beams that several tests share, and the command line in an empty folder."""
+"""Beams that several tests share, and settings of the libraries."""
 
 import os
 
@@ -24,19 +24,3 @@ def paper_beam():
 @pytest.fixture
 def titanium_strip():
     return Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
-
-
-@pytest.fixture
-def verify(capsys, tmp_path, monkeypatch):
-    """Run a command line in an empty folder: (status, standard output, error output)."""
-    from verify.cli import status_of
-
-    monkeypatch.chdir(tmp_path)
-
-    def call(*words):
-        capsys.readouterr()
-        status = status_of([str(word) for word in words])
-        out, err = capsys.readouterr()
-        return status, out, err
-
-    return call

@@ -38,10 +38,7 @@ def test_numerics_know_nothing_of_scenes_and_reports(room):
     ("words", "unloaded"),
     [
         (["--help"], {"numpy", "scipy", "numba", "matplotlib", "skfem", "rich"}),
-        (
-            ["measure", "paper", "mode.frequency", "model=analytic", "mode=3"],
-            {"numba", "matplotlib", "skfem"},
-        ),
+        (["measure", "paper", "mode.frequency", "model=analytic", "mode=3"], {"numba", "matplotlib", "skfem"}),
         (["scenes"], {"scipy", "numba", "matplotlib", "skfem"}),
     ],
 )

@@ -4,11 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from msgspec.structs import replace
 
-from verify.analytic_modes import ExactModel
 from verify.bench import Method, Question, Row, measure, result, time_at
-from verify.bench.methods import BEAM, Problem, questions
+from verify.bench.methods import Problem, questions
 from verify.cli import status_of
 from verify.errors import InputError
 
@@ -89,16 +87,6 @@ def test_segments_and_elements_converge_at_order_four():
     assert max(row.error for row in rows if row.method == "exact") == 0.0
 
 
-def test_walls_are_methods_on_a_clamped_beam():
-    beam = replace(BEAM, supports=("clamped", "free"))
-    (question,) = questions(["modes"], Problem(beam=beam, mode=2, sizes=(50, 100)))
-    orders = {row.method: row.order for row in measure(question, limit=0.5) if row.size == 100}
-    assert 1.95 < orders["segments, welded wall"] < 2.05
-    assert 2.9 < orders["segments, third-order wall"] < 3.1
-    assert 3.9 < orders["elements"] < 4.1
-    assert ExactModel(beam).frequency_hz(2) == pytest.approx(20.47, rel=0.01)
-
-
 @pytest.mark.parametrize(
     ("name", "bound"), [("field", 2e-2), ("transient", 2e-2), ("slider", 0.1), ("ride", 1e-3), ("chain", 1e-3)]
 )
@@ -124,21 +112,11 @@ def test_command_prints_rows(capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["modez"], "did you mean 'modes'?"),
-        (["modes", "--sizes", "ten"], "--sizes[0] = 'ten'"),
-    ],
+    ("words", "message"), [(["modez"], "did you mean 'modes'?"), (["modes", "--sizes", "ten"], "--sizes[0] = 'ten'")]
 )
 def test_bad_options_are_named(words, message, capsys):
     assert status_of(["bench", *words]) == 2
     assert message in capsys.readouterr().err
-
-
-def test_problem_needs_a_beam_that_the_engines_take():
-    pytest.importorskip("mujoco")
-    with pytest.raises(InputError, match="beam\\.supports"):
-        list(questions(["engines"], Problem(beam=replace(BEAM, supports=("clamped", "free")), mode=2)))
 
 
 def test_undriven_beam_has_modes_alone():

@@ -70,27 +70,17 @@ REFUSED = [
     ("runn", "No such command"),
     ("measure bare.toml", "Missing argument 'QUANTITY'"),
     ("measure nowhere mode.frequency model=fem mode=1 count=4", "neither a packaged scene nor a file"),
-    ("measure bare.toml mode.frequenzy model=fem mode=1 count=4", "did you mean 'mode.frequency'"),
-    ("measure bare.toml mode.frequency model=fem mode=1", "count is missing"),
-    ("measure bare.toml mode.frequency model=fem mode=1 count=4 n=2", "n is not a known key"),
-    ("measure bare.toml mode.frequency model=fem mode=0 count=4", "mode = 0"),
     ("measure bare.toml mode.frequency model=fem mode=40 count=4", "mode = 40"),
-    ("measure bare.toml wave.deflection x=0.5", "off the beam"),
-    ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.lenght=1", "did you mean 'length'"),
     ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.length=-1", "beam.length = -1"),
-    ("measure bare.toml mode.frequency model=fem mode=1 count=4 --set beam.length", "write key=value"),
     ("table bare.toml --study spektrum", "did you mean 'spectrum'"),
     ("table bare.toml --study wave", "[drive]"),
-    ("table bare.toml modes=0 counts=4,8", "modes"),
     ("table bare.toml moods=1", "did you mean 'modes'"),
     ("table bare.toml --csv --json", "exclude each other"),
     ("choose bare.toml --mode 2 --error 5", "per cent"),
     ("choose bare.toml --mode 0 --error 1%", "mode = '0'"),
     ("choose bare.toml --mode 1,3 --error 1%", "one mode, or all of a range"),
-    ("choose bare.toml --mode 2 --error 1% wall=soft", "wall"),
     ("choose bare.toml --mode 2 --error 1% wall", "RULE=VALUE"),
     ("quantities nothing-like-it", "no quantity matches"),
-    ("plan bare.toml --set gate.nowhere.within=1", "gate.nowhere"),
     ("scenes show nowhere", "neither a packaged scene nor a file"),
     ("scenes init bare.toml", "exists"),
     ("scenes init other.toml --from nowhere", "neither a packaged scene nor a file"),
@@ -102,10 +92,8 @@ REFUSED = [
     ("diff here there", "does not exist"),
     ("export bare.toml --to a.doc", "no file type"),
     ("run bare.toml --keep -1", "--keep"),
-    ("run bare.toml --set spectrum.modes=x", "spectrum.modes"),
     ("sweep bare.toml", "sweep"),
     ("sweep bare.toml count=4,8", "QUANTITY is missing"),
-    ("sweep bare.toml mode.frequency model=fem mode=1 cuont=4,8", "did you mean 'count'"),
 ]
 
 
@@ -116,13 +104,6 @@ def test_bad_input_is_one_message(call, bare, tmp_path, line, message):
     assert message in err
     assert "Traceback" not in err
     assert [one.name for one in tmp_path.iterdir()] == ["bare.toml"]
-
-
-def test_all_errors_of_a_scene(call, bare):
-    status, _, err = call("plan bare.toml --set beam.length=0 --set beam.supports=pinned --set spectrum.count=0")
-    assert status == 2
-    assert len(err.splitlines()) >= 2
-    assert all(line.startswith("verify: ") for line in err.splitlines())
 
 
 def test_measure_is_the_closed_form(call, data, bare):
@@ -178,6 +159,8 @@ def test_new_scenes_are_valid(call, bare):
     assert call("scenes init mine.toml")[0] == 0
     assert call("plan mine.toml")[0] == 0
     assert call("scenes init copy.toml --from steel-cantilever")[0] == 0
+    shown = call("scenes show steel-cantilever")[1]
+    assert Path("copy.toml").read_text().endswith(shown.partition('name = "steel-cantilever"')[2])
     assert 'name = "copy"' in Path("copy.toml").read_text()
     assert call("scenes init copy.toml --from bare.toml --force")[0] == 0
     assert call("plan copy.toml")[0] == 0

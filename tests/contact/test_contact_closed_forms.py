@@ -8,9 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from reference.motor import bounces
-from scipy.integrate import solve_ivp
 
-from verify.dynamics import belt
 from verify.errors import InputError
 from verify.exact.contact import impact, layer
 
@@ -114,23 +112,6 @@ def test_restitution_and_contact_time_are_the_published_formulas_in_forty_digits
     assert impact.contact_time(zeta) == pytest.approx(float(time.real), rel=4e-14)
 
 
-@pytest.mark.parametrize("case", [(0.31, 420.0, 0.9, 0.5, 0.013), (1.7, 55.0, 2.3, 2.2, 0.4)])
-def test_stick_and_slip_times_equal_the_integrated_motion_and_the_engine(case):
-    """It starts to slip where the spring force is the static limit, until it is as fast as the belt again."""
-    mass, stiffness, static, kinetic, speed = case
-
-    def slip_speed(t, y):
-        return y[1] - speed
-
-    slip_speed.terminal, slip_speed.direction = True, 1
-    unit = sqrt(mass / stiffness)
-    options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15, "events": slip_speed, "max_step": 0.1 * unit}
-    start = [static / stiffness, speed * (1.0 - 1e-13)]
-    run = solve_ivp(lambda t, y: [y[1], (kinetic - stiffness * y[0]) / mass], (0.0, 100.0 * unit), start, **options)
-    slip, stick = run.t_events[0][-1], (static / stiffness - run.y_events[0][-1][0]) / speed
-    assert belt.stick_slip_times(*case) == pytest.approx((stick, slip), rel=2e-6)
-
-
 @pytest.mark.parametrize(
     ("function", "arguments", "field"),
     [
@@ -140,7 +121,6 @@ def test_stick_and_slip_times_equal_the_integrated_motion_and_the_engine(case):
         (layer.efficiency, (1.0, 0.99), "speed_ratio"),
         (impact.landing_phase, (1.0,), "acceleration_ratio"),
         (impact.restitution, (-0.1,), "damping_ratio"),
-        (belt.stick_slip_times, (1.0, 1.0, 1.0, 1.0, 1.0), "kinetic"),
     ],
 )
 def test_an_impossible_contact_is_refused_by_field(function, arguments, field):

@@ -1,67 +1,12 @@
-"""The contact engine: friction dissipates, a sticking mass has its own reaction, rows of any linear system."""
-
-from typing import Any
+"""The contact engine on the rows of any linear system."""
 
 import numpy as np
-import pytest
 from scipy.linalg import expm
 
 from verify.dynamics import layout as lay
 from verify.dynamics.excitation import CONSTANT, Rows
 from verify.dynamics.linear_system import Stage, Steps
-from verify.dynamics.simulate import simulate
 from verify.dynamics.stepping import Contacts, run_stages
-from verify.problem.beam import Beam, PointForce
-from verify.problem.slider import Slider
-
-STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
-HERTZ = 4276.0
-STEEL = Beam(
-    length=0.5, width=0.02, thickness=0.002, youngs_modulus=206e9, density=7850.0, supports=("clamped", "free")
-)
-
-
-@pytest.mark.parametrize(("per_period", "share"), [(8, 0.06), (64, 0.06)])
-def test_friction_of_a_clamped_mass_dissipates_at_coarse_steps(
-    per_period: int, share: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # the quadrature of the drive's power fails at 8 steps a period, which is refused; contact is exact there
-    monkeypatch.setattr("verify.dynamics.slider_run.check_energy", lambda *_: ())
-    forces = [PointForce(position=0.0116, amplitude=1.0), PointForce(position=0.4884, amplitude=1.0, phase_deg=90.0)]
-    slider = Slider(mass=0.1, mu=3.0, preload=20.0, law="coulomb", coupling="two-way", normal="massless")
-    motion = simulate(
-        STRIP,
-        forces,
-        HERTZ,
-        3e-3,
-        model="segment",
-        count=400,
-        start="rest",
-        soft_start_periods=2.0,
-        slider=slider,
-        step=1.0 / (per_period * HERTZ),
-        samples=2,
-    )
-    energy = motion.energy
-    assert energy is not None
-    assert energy.friction_on_beam + energy.slider <= 1e-12 * energy.drive_work
-    assert 0.0 <= energy.friction_loss < share * energy.drive_work
-
-
-@pytest.mark.parametrize("law", [{"law": "coulomb"}, {"law": "coulomb", "mu_static": 0.08}, {"law": "tanh"}])
-@pytest.mark.parametrize(("amplitude", "least"), [(0.2, 0.8223), (0.0, 0.981)])
-def test_a_sticking_mass_on_a_sagged_beam_has_its_own_reaction(
-    law: dict[str, Any], amplitude: float, least: float
-) -> None:
-    forces = [PointForce(position=0.3, amplitude=amplitude)]
-    slider = Slider(mass=0.1, mu=0.05, position=0.4, coupling="two-way", **law)
-    for step in (1e-4, 6.1e-5):
-        motion = simulate(
-            STEEL, forces, 37.0, 0.2, model="fem", count=8, start="rest", soft_start_periods=1.0, slider=slider,
-            step=step, samples=401,
-        )  # fmt: skip
-        assert motion.normal_force.min() == pytest.approx(least, abs=2e-4)
-        assert motion.largest_friction < 0.0281
 
 
 def test_an_absorber_and_a_circuit_are_further_rows_of_the_engine() -> None:

@@ -9,9 +9,8 @@ from reference.slider import hermite_modes, ridden
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from verify import HermiteModel, simulate
+from verify import simulate
 from verify.dynamics.result import Motion
-from verify.dynamics.validity import couple
 from verify.errors import InputError
 from verify.motor.travelling_wave import terminal_speed
 from verify.problem.beam import Beam, PointForce
@@ -133,34 +132,6 @@ def test_two_way_coupling_vanishes_with_the_mass_as_its_size_does():
         sizes.append([both[1].coupling.friction_size, both[1].coupling.normal_size])
     assert np.array(lost[:-1]) / lost[1:] == pytest.approx(10.0, rel=0.1)
     assert np.array(sizes[:-1]) / sizes[1:] == pytest.approx(10.0, rel=1e-9)
-
-
-def test_the_coupling_size_is_that_of_the_section_under_the_slider():
-    """Full friction is a couple (h/2) mu N, which moves the surface h/2 off: h^2, and h over the drive's speed."""
-    sections = (Section(length=0.17, thickness=0.0013), Section(length=0.09, thickness=0.0026),
-                Section(length=0.17, thickness=0.0013))  # fmt: skip
-    beam, slider = replace(STRIP, section=sections), replace(HEAVY, position=0.21, coupling="one-way")
-    motion = simulate(beam, FORCES, HERTZ, 1e-3, slider=slider, model="fem", count=40, start="steady", samples=2)
-    field = HermiteModel(beam, 40)
-    turned = field.harmonic(couple(beam, 0.21, HERTZ), HERTZ).slope([0.21])[0]
-    driven = field.harmonic(FORCES, HERTZ).slope([0.21])[0]
-    expected = slider.mu * slider.load * 0.0013 * abs(turned) / abs(driven)
-    assert motion.coupling.friction_size == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.parametrize("law", [{"law": "coulomb"}, {"slope": 1e4}])
-@pytest.mark.parametrize("amplitude", [0.0, 0.2])
-def test_a_slider_that_sticks_on_a_sagged_beam_keeps_its_normal_force(law, amplitude):
-    """Statics say 0.981 N; driven an independent solution says at least 0.822 N and friction of at most 0.028 N."""
-    beam = Beam(
-        length=0.5, width=0.02, thickness=0.002, youngs_modulus=206e9, density=7850.0, supports=("clamped", "free")
-    )
-    force = PointForce(position=0.3, amplitude=amplitude)
-    slider = Slider(mass=0.1, mu=0.05, position=0.4, **law)
-    motion = simulate(beam, force, 37.0, 0.2, slider=slider, model="fem", count=8, soft_start_periods=1.0, samples=401)
-    assert motion.normal_force.min() == pytest.approx(0.822 if amplitude else 0.981, abs=2e-3)
-    assert motion.largest_friction < 0.0285
-    assert motion.energy.friction_loss >= 0.0
 
 
 def test_a_continued_run_of_a_held_slider_equals_one_run():

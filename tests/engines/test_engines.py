@@ -10,7 +10,7 @@ from verify.chain.motion import step_limit
 from verify.chain.system import build_system
 from verify.engines import ENGINES, chain_of, missing
 from verify.errors import InputError
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import PointForce
 
 FORCES = (
     PointForce(position=0.0731, amplitude=0.013, phase_deg=-37.0),
@@ -21,11 +21,6 @@ FORCES = (
 FREQUENCY, END = 1234.5, 2e-3
 STEPS = {"Exudyn": 500, "MuJoCo": 50}
 ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2)}
-
-
-@pytest.fixture
-def titanium_strip():
-    return Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 
 
 @pytest.fixture

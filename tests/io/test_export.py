@@ -107,16 +107,10 @@ def test_pictures_open(moving, tmp_path, kind, what, frames):
         assert len(image.convert("RGB").getcolors(1 << 20)) > 10
 
 
-@pytest.mark.parametrize("kind", ["png", "svg"])
-def test_the_chart_of_convergence_is_a_picture(scene, tmp_path, kind):
-    path = tmp_path / f"a.{kind}"
-    title = write(scene, path, Request(what="convergence", mode=2))
+def test_the_chart_of_convergence_is_a_picture(scene, tmp_path):
+    title = write(scene, tmp_path / "a.svg", Request(what="convergence", mode=2))
     assert title.startswith("Frequency error over N. Mode 2")
-    if kind == "svg":
-        assert "number of segments or elements" in path.read_text()
-    else:
-        with Image.open(path) as image:
-            assert len(image.convert("RGB").getcolors(1 << 20)) > 10
+    assert "number of segments or elements" in (tmp_path / "a.svg").read_text()
 
 
 REFUSED = [

@@ -5,14 +5,7 @@ import math
 import pytest
 
 from verify import Beam
-from verify.analysis.margins import (
-    beam_margins,
-    marked,
-    run_margins,
-    sag_margins,
-    slope_margin,
-    sufficient_count,
-)
+from verify.analysis.margins import beam_margins, marked, run_margins, sag_margins, slope_margin, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of, void
 from verify.linear.registry import MODELS
@@ -25,10 +18,7 @@ from verify.studies.sweep import quantity_margins
 
 PAPER = load_scene("paper").beam
 BRASS = {"length": 0.3, "width": 0.012, "thickness": 0.0008, "youngs_modulus": 105e9, "density": 8500.0}
-FORCES = [
-    {"position": 0.01, "amplitude": 1.0},
-    {"position": 0.29, "amplitude": 1.0, "phase_deg": 90.0},
-]
+FORCES = [{"position": 0.01, "amplitude": 1.0}, {"position": 0.29, "amplitude": 1.0, "phase_deg": 90.0}]
 SLIDER = {"mass": 0.005, "mu": 0.3, "preload": 5.0, "coupling": "one-way", "law": "coulomb"}
 
 

@@ -75,18 +75,10 @@ def test_failing_gate_prints_its_sentence(pytester, scene):
     done.stdout.no_fnmatch_line("*Traceback*")
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "sentence"),
-    [
-        ("length = 0.73", "lenght = 0.73", "*beam.lenght is not a known key: did you mean 'length'?*"),
-        ("mode.bracket", "mode.brackt", "*did you mean 'mode.bracket'*"),
-        ('why = "two-sided"', "", "*gate.other.why is missing: give it a value*"),
-    ],
-)
-def test_wrong_scene_is_a_collection_error(pytester, scene, old, new, sentence):
-    done = pytester.runpytest_inprocess(scene(**{old: new}))
+def test_wrong_scene_is_a_collection_error(pytester, scene):
+    done = pytester.runpytest_inprocess(scene(**{"mode.bracket": "mode.brackt"}))
     done.assert_outcomes(errors=1)
-    done.stdout.fnmatch_lines([sentence])
+    done.stdout.fnmatch_lines(["*did you mean 'mode.bracket'*"])
 
 
 def test_other_toml_files_are_left_alone(pytester, scene):

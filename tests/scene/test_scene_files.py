@@ -5,11 +5,10 @@ import json
 import pytest
 
 from verify import Beam, load_scene
-from verify.convert import literal
 from verify.errors import InputError
-from verify.scene.load import STARTER, copy_with_name, packaged_scenes, read_text, scene_from, tables_of, toml_text
+from verify.scene.load import STARTER, packaged_scenes, scene_from, tables_of, toml_text
 from verify.scene.model import Claim, Scene
-from verify.scene.run import plan, skipped_gates
+from verify.scene.run import skipped_gates
 from verify.scene.schema import scene_schema, sections
 from verify.scene.warnings import static_sag, unit_warnings
 
@@ -136,13 +135,6 @@ def test_parts_that_do_not_fit_together_are_listed(tmp_path):
     ]
 
 
-def test_long_list_of_errors_is_cut(tmp_path):
-    wrong = "".join(GATE.replace('"g"', f'"g{i}"').replace("within", "withn") for i in range(44))
-    found = errors(tmp_path, SCENE + wrong)
-    assert len(found) == 31
-    assert found[-1] == "and 14 more"
-
-
 def test_unreadable_files_are_refused(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path, tmp_path / "no" / "folder.toml"):
         with pytest.raises(InputError, match="cannot be read"):
@@ -167,13 +159,6 @@ def test_claim_agrees_within_its_tolerance():
     assert not Claim(**claim, value="positive").agrees(-1e-9)
     assert Claim(**claim, at_least=0.02).agrees(0.03)
     assert not Claim(**claim, at_least=0.02, at_most=0.025).agrees(0.03)
-
-
-def test_copy_keeps_comments_under_another_name():
-    text = read_text(STARTER)
-    copied = copy_with_name(text, "mine")
-    assert copied == text.replace('name = "my-beam"', 'name = "mine"')
-    assert copy_with_name("name = 'a'  # own\n", "b").startswith('#:schema ./verify.schema.json\nname = "b"  # own')
 
 
 @pytest.mark.parametrize(
@@ -253,17 +238,11 @@ def test_schema_describes_every_key():
 
 # --- Overrides ---
 
-SCENE_OVERRIDES = """
-name = "s"
-[beam]
-length = 0.73
-width = 0.031
-thickness = 0.0023
-youngs_modulus = 113e9
-density = 4470
+SCENE_OVERRIDES = f"""
+name = "s"{BEAM}
 [drive]
 frequency_hz = 310
-force = [{ position = 0.11 }, { position = 0.52, phase_deg = 70 }]
+force = [{{ position = 0.11 }}, {{ position = 0.52, phase_deg = 70 }}]
 [slider]
 mass = 0.0031
 mu = 0.17
@@ -271,7 +250,7 @@ slope = 310.0
 [[gate]]
 id = "frequency"
 quantity = "mode.frequency"
-arguments = { model = "analytic", mode = 3 }
+arguments = {{ model = "analytic", mode = 3 }}
 expect = 96.0
 within = 1.0
 reference = "closed form"
@@ -328,12 +307,7 @@ def test_override_reaches_its_value(path, assignment, read):
         ("beam.tension=3mm", r"beam\.tension = '3mm': give a number with one of the units N, mN, kN"),
         ("beam.foundation=3kN", r"beam\.foundation = '3kN': give a number alone, in SI units"),
         ("beam.length=2%", r"beam\.length = '2%': give a finite number"),
-        ("beam.length=0,4", r"beam\.length = \[0, 4\]: give one number, with a point"),
-        ("beam.length=-1", r"beam\.length = -1: give a finite number above 0"),
-        ("beam.length=nan", r"beam\.length = nan: give a finite number"),
-        ("beam.length=-inf", r"beam\.length = -inf: give a finite number"),
         ("beam.supports=cantilever", r"beam\.supports = 'cantilever': give a list"),
-        ("beam.supports=pined,pinned", r"beam\.supports\[0\] = 'pined' is not known: did you mean 'pinned'"),
         ("beam.length.x=1", r"--set beam\.length is a value, not a table"),
         ("gate.wvae.at_least=1", r"--set gate\.wvae is no entry of the list: did you mean 'wave'"),
         ("drive.force.position=0.1", r"--set drive\.force\.position is no entry of the list: known are 0, 1"),
@@ -368,28 +342,6 @@ def test_overrides_are_a_list_of_words(overrides):
         load_scene("paper", overrides)
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("22", 22),
-        ("-0.5", -0.5),
-        ("1e-3", 1e-3),
-        ("-.03", -0.03),
-        ("3.e2", 300.0),
-        ("true", True),
-        ("segment", "segment"),
-        ('"a,b"', "a,b"),
-        ("20,40", [20, 40]),
-        ("[1, 2]", [1, 2]),
-        ("a b", "a b"),
-        (".", "."),
-        ("1.2.3", "1.2.3"),
-    ],
-)
-def test_value_is_a_literal_a_word_or_a_list(text, value):
-    assert literal(text, "x") == value
-
-
 def test_tables_with_overrides_are_written_as_toml(path, tmp_path):
     written = tmp_path / "written.toml"
     written.write_text(toml_text(tables_of(path, ("beam.length=0.9",))))
@@ -414,14 +366,3 @@ def test_gate_applies_to_a_new_band(path):
     assert list(skipped(path, "beam.length=0.8", "gate.frequency.expect=80")) == ["wave"]
     assert list(skipped(path, "beam.length=0.8", "gate.frequency.within=0.5")) == ["frequency", "wave"]
     assert list(skipped(path, "beam.length=0.8", "gate.0.expect=96.0")) == ["wave"]
-
-
-def test_plan_says_what_runs_and_what_is_skipped(path):
-    rows = {(row.kind, row.what): row for row in plan(path, ("drive.frequency_hz=311", "spectrum.modes=3"))}
-    assert rows["gate", "frequency"].runs
-    assert rows["gate", "frequency"].why == "mode.frequency"
-    assert not rows["gate", "wave"].runs
-    assert "drive.frequency_hz" in rows["gate", "wave"].why
-    assert rows["study", "spectrum"].runs
-    assert not rows["study", "motor"].runs
-    assert rows["study", "motor"].why == "no [motor] in the scene"

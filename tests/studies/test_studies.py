@@ -184,17 +184,6 @@ def test_slider_renders(run, slider, renders):
     assert {line.get_label() for line in axes["slider-velocity"].lines} == {"surface under the slider", "slider"}
 
 
-def test_wrong_options_are_refused():
-    for study, change, word in (
-        (Motion, {"duration": 0.0}, "motion.duration"),
-        (Motion, {"start": "steady", "soft_start_periods": 1.0}, "soft_start_periods"),
-        (Motion, {"modal_damping": 1.5}, "modal_damping"),
-        (Motor, {"models": ("segmen",)}, "'segment'"),
-    ):
-        with pytest.raises(InputError, match=word):
-            study(**change)
-
-
 @pytest.mark.parametrize(
     ("study", "scene", "word"),
     [
