@@ -18,15 +18,7 @@ from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.motion import ChainMotion, Method, Progress, check_moved, from_rest, simulate
 from verify.chain.statics import Bent, bend
-from verify.chain.system import (
-    ChainState,
-    ChainSystem,
-    LinkLoad,
-    Rotation,
-    build_system,
-    link_at,
-    straight_chain,
-)
+from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system, link_at, straight_chain
 from verify.errors import InputError
 from verify.options import Inertia, Links, Tip, Wall
 from verify.problem.beam import Beam, PointForce

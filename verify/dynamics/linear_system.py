@@ -235,12 +235,7 @@ def _steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
 
 
 def damped_field(
-    model: str,
-    count: int | None,
-    beam: Beam,
-    forces: Sequence[PointForce],
-    frequency_hz: float,
-    damping: float | None,
+    model: str, count: int | None, beam: Beam, forces: Sequence[PointForce], frequency_hz: float, damping: float | None
 ) -> "HarmonicField":
     """The steady field of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0

@@ -12,12 +12,7 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble, contact_rate
-from verify.dynamics.initial_state import (
-    deepen_between_beams,
-    set_down,
-    static_deflection,
-    steady_with_mass,
-)
+from verify.dynamics.initial_state import deepen_between_beams, set_down, static_deflection, steady_with_mass
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
 from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
@@ -106,11 +101,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         request, contacts, basis = self.request, self._contacts(), self.basis if self.request.two_way else None
         rate, fastest = contact_rate(contacts, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
         stages = stepped(self.stages, feet_step(self.stages[0].steps.dt, rate, fastest, request.step))
-        margins = replace(
-            self.margins,
-            presliding=presliding(request),
-            contact_step=rate * stages[-1].steps.dt,
-        )
+        margins = replace(self.margins, presliding=presliding(request), contact_step=rate * stages[-1].steps.dt)
         return replace(self, stages=stages, margins=margins)
 
     def _with_point_steps(self) -> "SliderRun":

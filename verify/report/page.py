@@ -10,13 +10,7 @@ from verify.analysis import verdict
 from verify.formatting import with_unit
 from verify.report.plotting import figure_files, movie_image
 from verify.report.result import Column, Figure, Movie, Table, plain, to_json
-from verify.report.summary import (
-    environment,
-    gates_table,
-    skipped_table,
-    study_title,
-    worst_gate,
-)
+from verify.report.summary import environment, gates_table, skipped_table, study_title, worst_gate
 
 if TYPE_CHECKING:
     from verify.scene.run import RunResult

@@ -85,11 +85,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
                 *self._shapes(cache, variants, count),
             ],
             warnings=[*warnings, *left_out.values()],
-            data={
-                "count": count,
-                "errors": {one.label: own for one, own in errors.items()},
-                "theories": theories,
-            },
+            data={"count": count, "errors": {one.label: own for one, own in errors.items()}, "theories": theories},
             margins=margins,
         )
 
