@@ -2,25 +2,16 @@
 
 import click
 
-from verify.commands.shared import (
-    BeamCommand,
-    charts_option,
-    format_options,
-    overrides_option,
-    progress,
-    save_charts,
-    scene_argument,
-    show,
-)
+from verify.commands import shared
 from verify.errors import InputError
 
 
-@click.command(cls=BeamCommand)
-@scene_argument
+@click.command(cls=shared.BeamCommand)
+@shared.scene_argument
 @click.argument("words", nargs=-1, metavar="[QUANTITY]... [KEY=VALUES]...")
-@overrides_option
-@charts_option
-@format_options
+@shared.overrides_option
+@shared.charts_option
+@shared.format_options
 def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts: str | None, **formats: bool) -> None:
     """Evaluate QUANTITY over every combination of the lists; without QUANTITY run the [sweep] of SCENE.
 
@@ -53,7 +44,7 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
     over = {key: values for key, values in lists.items() if len(values) > 1 or "." in key}
     arguments = {key: values[0] for key, values in lists.items() if key not in over}
     loaded = load_scene(scene, overrides)
-    with progress(quiet=any(formats.values())) as step:
+    with shared.progress(quiet=any(formats.values())) as step:
         result = run_sweep(loaded, quantities, over, arguments=arguments, progress=step)
-    show(result, **formats)
-    save_charts(result, charts)
+    shared.show(result, **formats)
+    shared.save_charts(result, charts)

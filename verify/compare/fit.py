@@ -202,10 +202,8 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
 
-    def equal_first(one: Fit) -> tuple[int, int]:  # of equal frequencies the one with least fitted
-        return (data.fitted(one), order[one.candidate]) if _same(one, refined[0]) else (9, 0)
-
-    return sorted(refined, key=equal_first)
+    equal = {one.candidate for one in refined if _same(one, refined[0])}  # of these the one with least fitted
+    return sorted(refined, key=lambda f: (data.fitted(f), order[f.candidate]) if f.candidate in equal else (9, 0))
 
 
 def _same(one: Fit, other: Fit) -> bool:

@@ -166,9 +166,8 @@ def _window(
     """The next window, with the errors of its means; those of the first window are not valid. Raises InputError."""
     run = case.run(periods, BATCHES + 1, before, speed)
     if not run.statistics.finished:
-        raise InputError(
-            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped}, give more"
-        )
+        stopped = run.statistics.stopped
+        raise InputError(f"steps_per_period = {case.steps_per_period!r}: the slider {stopped}, give more")
     batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
     assert run.energy is not None
     powers = np.array([run.energy.tangential_work, run.energy.friction_loss]) / run.duration

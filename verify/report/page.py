@@ -21,9 +21,8 @@ DENSE = 6
 """Columns beyond which a table has small print."""
 LEVELS = verdict.LEVELS[::-1]
 """Levels of a verdict, the worst first."""
-MARKS = dict(
-    zip((*LEVELS, "FAIL", "cannot run", "pass"), ("fail", "warn", "pass", "fail", "fail", "pass"), strict=True)
-)
+MARKS = dict.fromkeys((LEVELS[0], "FAIL", "cannot run"), "fail") | dict.fromkeys((LEVELS[2], "pass"), "pass")
+MARKS[LEVELS[1]] = "warn"
 """Class of a cell with this text."""
 SPEEDS = "Speed of the slider"
 """Title of a table that follows the verdict, whichever study it belongs to."""
@@ -134,9 +133,8 @@ def _figure(figure: Figure, page: str) -> dict[str, Any]:
 
 
 def _movie(movie: Movie) -> dict[str, str]:
-    return {
-        key: data_uri("image/webp", image) for key, image in zip(("moving", "still"), movie_image(movie), strict=True)
-    }
+    moving, still = (data_uri("image/webp", image) for image in movie_image(movie))
+    return {"moving": moving, "still": still}
 
 
 def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
@@ -107,44 +108,29 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         size = n if n in counts else max(counts)
         margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
         swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
-        margins += [
-            against_exact("standing-wave ratio", *one, rows[0]["drive"]["standing_wave_ratio"]) for one in swr.items()
-        ]
+        exact_swr = rows[0]["drive"]["standing_wave_ratio"]
+        margins += [against_exact("standing-wave ratio", *one, exact_swr) for one in swr.items()]
         ratios = [f"{name} {value:.5g}" for name, value in swr.items()]
         x, up, magnified, widest = ellipses(fields["analytic"])
         paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
         start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
-        caption = (
-            f"To scale up to {widest:.3g} times as wide as high; motion along the beam magnified {magnified:.2g} times."
-        )
+        draw_paths = partial(plot_lines, lines=[*paths, start], x=("x", "m"), y=("deflection", "m"))
+        caption = f"To scale to {widest:.3g} times as wide as high; along the beam magnified {magnified:.2g} times."
+        envelope = marked(f"Envelope of the wave, N = {n}", margins)
+        ratios_of_best = {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg}
         return Result(
             summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
             tables=[
                 Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
-                _drives(best, exact, rows[0]["drive"]["standing_wave_ratio"]),
+                _drives(best, exact, exact_swr),
             ],
             figures=[
-                Figure(
-                    "wave-envelopes",
-                    marked(f"Envelope of the wave, N = {n}", margins),
-                    ENVELOPES,
-                    lambda ax: _draw_envelopes(ax, fields),
-                ),
-                Figure(
-                    "wave-ellipses",
-                    "Surface ellipses along the beam, exact field",
-                    caption,
-                    lambda ax: plot_lines(ax, [*paths, start], ("x", "m"), ("deflection", "m")),
-                ),
+                Figure("wave-envelopes", envelope, ENVELOPES, lambda ax: _draw_envelopes(ax, fields)),
+                Figure("wave-ellipses", "Surface ellipses along the beam, exact field", caption, draw_paths),
             ],
             movies=[movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{row['name']}: {row['note']}." for row in rows if row["note"]],
-            data={
-                "rows": rows,
-                "other_drive_standing_wave_ratio": ratio,
-                "best_ratio": best.ratio,
-                "best_ratio_phase_deg": best.phase_deg,
-            },
+            data={"rows": rows, "other_drive_standing_wave_ratio": ratio, **ratios_of_best},
             margins=margins,
         )
 
