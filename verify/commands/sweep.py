@@ -18,11 +18,12 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
     A KEY with a dot is a value of the scene, one without is an argument of the quantities.
     Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """
+    from verify.analysis.solution_cache import SolutionCache
     from verify.commands.table import run_study
     from verify.convert import typed
     from verify.quantities.base import QUANTITIES
     from verify.scene.load import load_scene, type_at
-    from verify.studies.sweep import run_sweep
+    from verify.studies.sweep import Sweep
 
     quantities = [word for word in words if "=" not in word]
     pairs = [word.partition("=") for word in words if "=" in word]
@@ -45,6 +46,7 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
     arguments = {key: values[0] for key, values in lists.items() if key not in over}
     loaded = load_scene(scene, overrides)
     with shared.progress(quiet=any(formats.values())) as step:
-        result = run_sweep(loaded, quantities, over, arguments=arguments, progress=step)
+        study = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
+        result = study.run(loaded, SolutionCache(loaded.beam), step)
     shared.show(result, **formats)
     shared.save_charts(result, charts)

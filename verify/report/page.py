@@ -10,7 +10,7 @@ from verify.analysis import verdict
 from verify.formatting import with_unit
 from verify.report.plotting import figure_files, movie_image
 from verify.report.result import Column, Figure, Movie, Table, plain, to_json
-from verify.report.summary import environment, gates_table, skipped_table, study_title, worst_gate
+from verify.report.summary import environment, gates_table, study_title, worst_gate
 
 if TYPE_CHECKING:
     from verify.scene.run import RunResult
@@ -73,6 +73,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         rows.append((one.level, f"{one.name} {one.where}", *map(plain, (one.size, one.fine, one.limit)), *texts))
     reasons = Table("Margins", [*columns, Column("condition"), Column("remedy")], rows)
     worst, gates = worst_gate(run), gates_table(run)
+    skipped = Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
     most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
     whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
     rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
@@ -82,7 +83,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         Section("speeds", SPEEDS, tables=speeds),
         *(_study_section(run, name) for name in run.results),
         Section("gates", "Gates", most, tables=[replace(gates, rows=rest)] * bool(run.gates)),
-        Section("skipped", "Not run", tables=[skipped_table(run)] * bool(run.skipped), folded=True),
+        Section("skipped", "Not run", tables=[skipped] * bool(run.skipped), folded=True),
         Section("inputs", "Inputs", code=to_json(scene), folded=True),
     ]
     return render(

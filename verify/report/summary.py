@@ -65,11 +65,6 @@ def gates_table(run: "RunResult") -> Table:
     return Table("Gates", [*columns, Column("of tolerance", format=".3g", percent=True), Column("why")], rows)
 
 
-def skipped_table(run: "RunResult") -> Table:
-    """Sections and gates that were not run, with the reason."""
-    return Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
-
-
 def environment() -> dict[str, str]:
     """Versions, machine and date."""
     import platform

@@ -69,6 +69,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve the fields of all models. Raises InputError."""
+        import numpy as np
         from msgspec.structs import replace
 
         from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
@@ -116,6 +117,9 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
         draw_paths = partial(plot_lines, lines=[*paths, start], x=("x", "m"), y=("deflection", "m"))
         caption = f"To scale to {widest:.3g} times as wide as high; along the beam magnified {magnified:.2g} times."
+        at = np.linspace(0.0, scene.beam.length, 601)
+        lines = [(MODELS[m].title, at, abs(field.deflection(at)), model_style(m)) for m, field in fields.items()]
+        draw_envelopes = partial(plot_lines, lines=lines, x=("x", "m"), y=("amplitude", "m"))
         envelope = marked(f"Envelope of the wave, N = {n}", margins)
         ratios_of_best = {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg}
         return Result(
@@ -125,7 +129,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 _drives(best, exact, exact_swr),
             ],
             figures=[
-                Figure("wave-envelopes", envelope, ENVELOPES, lambda ax: _draw_envelopes(ax, fields)),
+                Figure("wave-envelopes", envelope, ENVELOPES, draw_envelopes),
                 Figure("wave-ellipses", "Surface ellipses along the beam, exact field", caption, draw_paths),
             ],
             movies=[movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
@@ -197,16 +201,6 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     magnified = float(0.42 * (places[1] - places[0]) / abs(along).max())
     ratio = np.ptp(along, axis=1) / np.maximum(np.ptp(up, axis=1), 1e-300)
     return places[:, None] + magnified * along, up, magnified, float(ratio.max())
-
-
-def _draw_envelopes(ax: "Axes", fields: Fields) -> None:
-    import numpy as np
-
-    from verify.linear.registry import MODELS
-
-    x = np.linspace(0.0, fields["analytic"].beam.length, 601)
-    lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
-    plot_lines(ax, lines, ("x", "m"), ("amplitude", "m"))
 
 
 def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":

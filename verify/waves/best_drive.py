@@ -78,8 +78,8 @@ def best_drive(
     frequencies = np.atleast_1d(hertz)
     unit = unit_waves(case, frequencies, window or middle_half(case.beam))
     known = np.isfinite(unit.k)
-    both = unit.superposed(np.eye(2, dtype=complex))
-    wanted, unwanted = (wave[known] for wave in both[:: 1 if direction > 0 else -1])
+    waves = unit.superposed(np.eye(2, dtype=complex))
+    wanted, unwanted = (wave[known] for wave in waves[:: 1 if direction > 0 else -1])
     if not np.isfinite(wanted).all():
         raise zero_field()  # an actuator acts on a support
     sizes = np.sqrt(abs(wanted) ** 2 + abs(unwanted) ** 2).prod(axis=1)
