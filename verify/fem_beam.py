@@ -147,13 +147,15 @@ class HermiteModel(DiscreteModel):
         for row, value in self._foundation_and_spring_strains():
             rows.append(csr_array((row.data, row.indices + n, row.indptr), shape=(row.shape[0], n + free)))
             stiffness.append(value)
-        mass, bodies = self._mass(), self._bodies()
+        mass, bodies, bound = self._mass(), self._bodies(), 0.0
+        if self.beam.foundation and self.beam.tension >= 0.0 and self.theory == "euler-bernoulli":
+            bound = self._foundation / float(self.mesh.masses_per_length.max())  # k_f / (rho A), without bodies
         return StructuralSystem(
             [sparse_rows(ends, signs, free), vstack(rows, format="csr") if len(rows) > 1 else rows[0]],
             np.concatenate(stiffness),
             mass if bodies is None else (mass + bodies.T @ bodies).tocsc(),
             self._rigid(),
-            self._lower_bound(),
+            bound,
             bodies,
         )
 
@@ -180,13 +182,8 @@ class HermiteModel(DiscreteModel):
 
         Four Gauss points per element integrate the foundation's energy, the square of a cubic, exactly.
         """
-        beam, nodes, lengths, scale = (
-            self.beam,
-            self.mesh.nodes,
-            self.mesh.lengths,
-            self.unit / self.beam.bending_stiffness,
-        )
-        strains = []
+        beam, nodes, lengths, strains = self.beam, self.mesh.nodes, self.mesh.lengths, []
+        scale = self.unit / beam.bending_stiffness
         if beam.foundation:
             points, weights = np.polynomial.legendre.leggauss(4)
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
@@ -235,13 +232,6 @@ class HermiteModel(DiscreteModel):
             shapes[: 2 * len(nodes) : 2, j] = a / self.unit + b * nodes if b else a
             shapes[1 : 2 * len(nodes) : 2, j] = b
         return shapes[self.unknowns >= 0]
-
-    def _lower_bound(self) -> float:
-        """Lower bound k_f / (rho A) of omega^2 due to the foundation, without bodies; 0 under compression."""
-        beam = self.beam
-        if not beam.foundation or beam.tension < 0.0 or self.theory != "euler-bernoulli":
-            return 0.0
-        return self._foundation / float(self.mesh.masses_per_length.max())
 
     def lossy_stiffness(self, omega: float) -> Any:
         """Stiffness d with the beam's loss factor on bending and shear, (m,)."""

@@ -44,7 +44,6 @@ READINGS: tuple[str, ...] = get_args(Reading)
 links."""
 
 Line = Literal["spline", "raw"]
-LINES: tuple[str, ...] = get_args(Line)
 """Contact line of a chain. spline: the paper's C2 spline (Section II.B). raw: the straight edges of the links."""
 
 Links = Literal["rigid", "stretching"]

@@ -13,14 +13,6 @@ VARIABLE = "VERIFY_JOBS"
 """Environment variable with the number of worker processes; 1 where it is unset."""
 
 
-def n_jobs() -> int:
-    """Number of worker processes. Raises InputError unless VERIFY_JOBS is a positive integer."""
-    text = os.environ.get(VARIABLE, "") or "1"
-    if not (text.isascii() and text.isdigit() and int(text)):
-        raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
-    return int(text)
-
-
 def map_processes(
     function: Callable[[Item], Result],
     items: Iterable[Item],
@@ -31,10 +23,14 @@ def map_processes(
 
     `progress` is called with the number of completed items. The first item runs in this process, so that workers
     inherit compiled functions and caches. Function and items must be picklable where the platform cannot fork. Raises
-    the error of the first item that fails; pending items are cancelled.
+    the error of the first item that fails, pending items are cancelled; and InputError unless VERIFY_JOBS is a positive
+    integer.
     """
+    text = str(max_workers or os.environ.get(VARIABLE, "") or 1)
+    if not (text.isascii() and text.isdigit() and int(text)):
+        raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
     todo = list(items)
-    workers = min(max_workers or n_jobs(), len(todo) - 1)
+    workers = min(int(text), len(todo) - 1)
     alone = len(todo) if workers < 2 else 1
     results = []
     for item in todo[:alone]:

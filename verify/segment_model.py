@@ -256,9 +256,8 @@ class SegmentModel(ChainStructure):
             return np.asarray(bent / self.unit**2)
 
         readings = {"corrected": lambda: self._corrected(vectors), "raw": lambda: self._joints(vectors)}
-        places = dict.fromkeys(
-            ("nodes", "points", "curvature_points"), np.clip(self.chain.nodes, 0.0, self.beam.length)
-        )
+        nodes = np.clip(self.chain.nodes, 0.0, self.beam.length)
+        places = dict.fromkeys(("nodes", "points", "curvature_points"), nodes)
         return places | {"readings": readings, "sampled": readings["corrected"], "curvatures": curvatures}
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:

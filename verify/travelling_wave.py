@@ -109,17 +109,12 @@ class WaveMeasures:
 
     @cached_property
     def mean_axis_ratio(self) -> float:
-        """Mean signed axis ratio over whole half wavelengths; -+ `ideal_axis_ratio` in the limit kh -> 0.
+        """Mean signed axis ratio over whole half wavelengths; -+ `Waveguide.axis_ratio` in the limit kh -> 0.
 
         1/|w|^2 has the mean 1/||A+|^2 - |A-|^2| over half a wavelength, and S3 is constant.
         """
         whole, halves = whole_halves(self.window, self.waves.wavenumber.real)
         return mean_over(lambda x: self._ellipse(x)[0], whole, 2 * halves)
-
-    @cached_property
-    def ideal_axis_ratio(self) -> float:
-        """Unsigned axis ratio of a pure travelling wave: k h/2, in Timoshenko theory times psi/w'."""
-        return float(self.guide.axis_ratio(self.omega, self.waves.wavenumber))
 
     @cached_property
     def s3_range(self) -> tuple[float, float, float]:

@@ -64,13 +64,13 @@ def quantities():
 def gates():
     """Every packaged scene with its drawing and its gates."""
     from verify.report.beam_drawing import beam_figure
-    from verify.report.plotting import figure_svg
+    from verify.report.plotting import figure_files
     from verify.report.summary import expected
     from verify.scene.load import load_scene, packaged_scenes
 
     yield GATES
     for scene in map(load_scene, packaged_scenes()):
-        svg = "".join(figure_svg(replace(beam_figure(scene), id=scene.name)).splitlines())
+        svg = "".join(figure_files(replace(beam_figure(scene), id=scene.name), 0.0)[0].splitlines())
         arguments = [" ".join(f"{key}={value}" for key, value in gate.arguments.items()) for gate in scene.gate]
         rows = [
             (f"`{one.id}`", f"{one.quantity} {words}", expected(one), f"{one.reference}: {one.why}")

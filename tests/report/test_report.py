@@ -20,7 +20,7 @@ from verify.report.archive import read_runs, save_run, saved_in
 from verify.report.beam_drawing import beam_figure
 from verify.report.diff import compare_runs
 from verify.report.page import run_page
-from verify.report.plotting import MODEL_COLORS, drawn, figure_files, figure_svg, movie_image
+from verify.report.plotting import MODEL_COLORS, drawn, figure_files, movie_image
 from verify.report.result import Column, Figure, Result, Table, to_json
 from verify.report.summary import run_data, worst_gate
 from verify.report.terminal import print_run
@@ -113,7 +113,7 @@ SECTION = {"width": 0.017, "thickness": 0.0023, "youngs_modulus": 71e9, "density
 
 
 def texts(scene):
-    return re.findall(r"<text[^>]*>([^<]*)</text>", figure_svg(beam_figure(scene)))
+    return re.findall(r"<text[^>]*>([^<]*)</text>", figure_files(beam_figure(scene), 0.0)[0])
 
 
 def scene_of(**tables) -> Scene:
@@ -154,7 +154,7 @@ def test_everything_is_named():
 
 def test_text_does_not_overlap():
     forces = [{"position": 0.2 + 0.004 * i, "amplitude": 1.0 + i} for i in range(5)]
-    svg = figure_svg(beam_figure(scene_of(drive={"frequency_hz": 90.0, "force": forces})))
+    svg = figure_files(beam_figure(scene_of(drive={"frequency_hz": 90.0, "force": forces})), 0.0)[0]
     places = [(float(x), float(y)) for x, y in re.findall(r'<text [^>]*?x="([\d.]+)" y="([\d.]+)"', svg)]
     assert len(places) == len(set(places)) >= 10
     for i, (x, y) in enumerate(places):
@@ -165,7 +165,7 @@ def test_text_does_not_overlap():
 
 
 def test_svg_follows_the_page(figures):
-    svg = figure_svg(figures[0])
+    svg = figure_files(figures[0], 0.0)[0]
     root = ElementTree.fromstring(svg)
     assert root.get("role") == "img"
     assert root.get("aria-label") == "Error over N. Solid: segments."
@@ -205,7 +205,7 @@ def test_names_stand_at_the_ends_of_curves():
 
 def test_both_files_show_one_chart(figures):
     svg, png = figure_files(figures[2], 80.0)
-    assert svg == figure_svg(figures[2])
+    assert svg == figure_files(figures[2], 0.0)[0]
     assert Image.open(BytesIO(png)).size == pytest.approx((80 * 5.4, 80 * 3.5), abs=1)
 
 

@@ -34,12 +34,12 @@ def renders():
     from matplotlib.figure import Figure as Canvas
     from rich.console import Console
 
-    from verify.report.plotting import drawn, figure_svg, style
+    from verify.report.plotting import drawn, figure_files, style
 
     def render(result):
         axes = {}
         for figure in result.figures:
-            assert figure_svg(figure).endswith("</svg>\n")
+            assert figure_files(figure, 0.0)[0].endswith("</svg>\n")
             with style():
                 axes[figure.id] = drawn(figure).axes[0]
             assert axes[figure.id].get_xlabel() or axes[figure.id].get_yticklabels()

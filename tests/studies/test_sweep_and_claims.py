@@ -11,7 +11,7 @@ from verify.scene.load import load_scene
 from verify.scene.model import Claim
 from verify.studies.base import studies_of
 from verify.studies.claims import Claims
-from verify.studies.sweep import run_sweep
+from verify.studies.sweep import Sweep
 
 
 def column(table, name):
@@ -20,6 +20,10 @@ def column(table, name):
 
 PAPER = load_scene("paper")
 FREQUENCY = {"model": "analytic", "mode": 3}
+
+
+def run_sweep(scene, quantities, over, **settings):
+    return Sweep(quantities=tuple(quantities), over=over, **settings).run(scene, None, lambda step: None)
 
 
 def test_rows_follow_the_lists_with_the_first_key_slowest():

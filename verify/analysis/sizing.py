@@ -1,7 +1,7 @@
 """Sufficient number of segments or elements: the frequency error is within a limit for this and all larger numbers."""
 
 from collections.abc import Callable
-from math import ceil
+from math import ceil, pi
 from typing import TypeAlias
 
 import msgspec
@@ -9,7 +9,8 @@ import msgspec
 from verify.analysis.solution_cache import Settings, SolutionCache
 from verify.analysis.variants import Rules, Variant
 from verify.errors import InputError
-from verify.exact.error_laws import LAWS, expected_error, has_law, sine_fits, smallest_count
+from verify.exact.closed_forms import wavenumber_length
+from verify.exact.error_laws import LAWS, expected_error, has_law, sine_fits
 from verify.linear.registry import MODELS, discrete
 from verify.timing import interleaved_medians
 
@@ -101,7 +102,7 @@ def sufficient_size(
     has_guess = model in LAWS and beam.uniform and not settings
     if has_guess:
         # errors fall monotonically beyond 300 parts per clamped end, and for elements below mu = 2.98
-        first = smallest_count(beam, modes[-1])
+        first = max(int(wavenumber_length(beam.supports, modes[-1]) / pi) + 1, modes[-1] + 1, 2)  # on the lower branch
         guess, dip, _ = _scan(lawful, first, max(4 * first, 300 * beam.supports.count("clamped")))
     if has_guess and (sine_fits(beam.supports) or guess >= LAW_FROM) and has_law(beam, modes[-1], guess):
         # start next to the estimate: a correct one costs two solutions

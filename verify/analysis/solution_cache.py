@@ -32,11 +32,6 @@ class Bracket(msgspec.Struct, frozen=True):
         """The middle, at which leading errors cancel: nearer than a bound unless one error is three times the other."""
         return 0.5 * (self.lower + self.upper)
 
-    @property
-    def relative_width(self) -> float:
-        """Width over mean."""
-        return (self.upper - self.lower) / self.mean
-
 
 def theory_of(settings: Settings) -> str:
     """The beam theory among the settings of a model."""
@@ -202,26 +197,6 @@ class SolutionCache:
         mass = sum(piece.mass_per_length * piece.length for piece in self.beam.pieces)
         return shape_error(exact, shape, node_weights(modes.nodes), mass**-0.5)
 
-    def curvature_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
-        """Relative L2 error of the curvature at joints or Gauss points. Raises InputError."""
-        from verify.analysis.comparison import node_weights, shape_error
-
-        modes = self.modes(model, count, mode, settings)
-        exact = self.exact_shape(mode, modes.curvature_points, 2, theory_of(settings))
-        computed = modes.curvatures()[self.paired_index(model, count, mode, settings)]
-        return shape_error(exact, computed, node_weights(modes.curvature_points))
-
     def exact_shape(self, mode: int, x: "Array", derivative: int = 0, theory: str = EULER) -> "Array":
         """The exact mass-normalised shape or a derivative at x (m), (len(x),), by a theory. Raises InputError."""
         return self._exact_model(theory).mode_shape(mode, x, derivative)
-
-    def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
-        """Zeros of a mode between the ends, (n_nodes,), m, ascending. Raises InputError."""
-        from verify.analysis.comparison import zeros
-
-        if count is None:
-            shape = lambda x: self.exact_shape(mode, x, theory=theory_of(settings))  # noqa: E731
-        else:
-            modes, index = self.modes(model, count, mode, settings), self.paired_index(model, count, mode, settings)
-            shape = lambda x: modes.deflection(x)[index]  # noqa: E731
-        return zeros(shape, self.beam.length, mode)

@@ -222,11 +222,10 @@ def engines(problem: Problem) -> Iterator[Question]:
     def frequency(adapter: Any) -> Callable[[int], float]:
         return lambda n: float(adapter.frequencies(chain_of(beam, n, (), hertz))[mode - 1])
 
-    ours = Method(
-        "segments",
-        lambda n: float(MODELS["segment"].build(beam, n).modes(mode).frequencies_hz[mode - 1]),
-        problem.sizes[:4],
-    )
+    def own(n: int) -> float:
+        return float(MODELS["segment"].build(beam, n).modes(mode).frequencies_hz[mode - 1])
+
+    ours = Method("segments", own, problem.sizes[:4])
     theirs = [Method(name, frequency(adapter), problem.sizes[:4]) for name, adapter in adapters.items()]
     title = f"frequency of mode {mode}"
     yield Question("engines-modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, [ours, *theirs])

@@ -160,36 +160,22 @@ def ratios(question: Question, rows: Sequence[Row]) -> dict[str, list[float | No
     return {name: [ratio(line, error) for error in ERRORS] for name, line in lines.items()}
 
 
-COLUMNS = (
-    Column("set"),
-    Column("method"),
-    Column("size"),
-    Column("error", format=".2g"),
-    Column("order", format=".2f"),
-    Column("time", "s", format=".3g", prefix=True),
-    Column("spread", percent=True, format=".0f"),
-)
+COLUMNS = [Column("set"), Column("method"), Column("size"), Column("error", format=".2g")]
+COLUMNS += [Column("order", format=".2f"), Column("time", "s", format=".3g", prefix=True)]
+COLUMNS += [Column("spread", percent=True, format=".0f")]
+REFERENCE_COLUMNS = [*map(Column, ("set", "quantity", "reference")), Column("uncertainty", format=".1g")]
 RATIO_COLUMNS = (Column("set"), Column("method"), *(Column(f"at {error:g}", format=".3g") for error in ERRORS))
-RATIO_NOTE = (
-    "Time of a method over that of the first of its set at the same error, interpolated in log time over log error."
-)
+RATIO_NOTE = "Time of a method over that of the first of its set at the same error, by logarithmic interpolation."
 
 
 def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
     """Tables, a log-log chart for each question, and data."""
     rows = [(q.id, *_cells(row)) for q, rows_of in measured for row in rows_of]
     compared = {q.id: ratios(q, rows_of) for q, rows_of in measured}
-    tables = [
-        Table("Time over error", COLUMNS, rows),
-        Table(
-            "Time ratio", RATIO_COLUMNS, [(t, m, *r) for t, c in compared.items() for m, r in c.items()], [RATIO_NOTE]
-        ),
-    ]
-    references = Table(
-        "References",
-        (Column("set"), Column("quantity"), Column("reference"), Column("uncertainty", format=".1g")),
-        [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured],
-    )
+    times = [(title, method, *own) for title, each in compared.items() for method, own in each.items()]
+    references = [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured]
+    tables = [Table("Time over error", COLUMNS, rows), Table("Time ratio", RATIO_COLUMNS, times, [RATIO_NOTE])]
+    tables.append(Table("References", REFERENCE_COLUMNS, references))
     data = {
         "machine": {"processor": processor(), **environment()},
         "questions": [
@@ -199,7 +185,7 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
         ],
     }
     figures = [_figure(q, rows_of) for q, rows_of in measured]
-    return Result(tables=[*tables, references], figures=figures, data=data)
+    return Result(tables=tables, figures=figures, data=data)
 
 
 def _cells(row: Row) -> tuple[Any, ...]:

@@ -18,15 +18,7 @@ from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.motion import ChainMotion, Method, Progress, check_moved, from_rest, simulate
 from verify.chain.statics import Bent, bend
-from verify.chain.system import (
-    ChainState,
-    ChainSystem,
-    LinkLoad,
-    Rotation,
-    build_system,
-    link_at,
-    straight_chain,
-)
+from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system, link_at, straight_chain
 from verify.errors import InputError
 from verify.options import Inertia, Links, Tip, Wall
 from verify.problem.beam import Beam, PointForce
@@ -169,15 +161,15 @@ def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
     """
     from verify.analytic_modes import ExactModel
     from verify.segment_model import SegmentModel
-    from verify.segments.reading import contact_piece
+    from verify.segments.reading import contact_line
 
     check_integer("segments", count, 2)
     system, exact = build_system(beam, count), ExactModel(beam)
     joints = SegmentModel(beam, count).modes(mode).readings["raw"]()[mode - 1]
     link, _ = link_at(system, x)
     edges, xi = system.nodes[link - 1 : link + 1], np.linspace(0.0, 1.0, 17)
-    piece = contact_piece(straight_chain(system), joints[None], link - 1)[0]
-    slope = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(piece)) / np.ptp(edges)
+    powers = contact_line(straight_chain(system), joints[None]).c[::-1, link - 1, 0] * np.ptp(edges) ** np.arange(4)
+    slope = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(powers)) / np.ptp(edges)
     error = slope - exact.mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
     return float(abs(error).max()) / float(abs(exact.mode_shape(mode, system.nodes, 1)).max())
 

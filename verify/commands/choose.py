@@ -1,7 +1,5 @@
 """`verify choose`: the smallest sufficient number of segments and elements."""
 
-from typing import Any
-
 import click
 
 from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
@@ -26,22 +24,28 @@ def choose(
     from verify.analysis.margins import beam_margins
     from verify.analysis.sizing import choose as choose_sizes
     from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.variants import Rules
+    from verify.convert import convert, literal
     from verify.report.result import Column, Result, Table
     from verify.scene.load import load_scene
 
-    modes, largest, chosen = _modes(mode), _error(error), _rules(rules)
+    pairs = [rule.partition("=") for rule in rules]
+    for key, equals, _ in pairs:
+        if not equals:
+            raise InputError(f"rule = {key!r}: write it as RULE=VALUE, wall=half")
+    chosen = convert({key: literal(text, key) for key, _, text in pairs}, Rules)
+    modes, largest = _modes(mode), _error(error)
     cache = SolutionCache(load_scene(scene, overrides).beam)
     choices, skipped = choose_sizes(cache, modes, largest, chosen)
     first = choices[0].variant.settings
     sizes = [(one.variant.model, one.size.count) for one in choices if one.variant.settings == first]
     margins = beam_margins(cache, sizes, mode=modes if isinstance(modes, int) else modes[-1], settings=first)
-    rows = [
-        (
-            *(one.variant.title, one.size.count, one.size.mode, one.unknowns, one.error, one.expected_error),
-            *(one.run_time_s, one.size.smaller, ", ".join(map(str, one.lower))),
-        )
-        for one in choices
-    ]
+    rows: list[tuple[object, ...]] = []
+    for one in choices:
+        size, errors = one.size, (one.error, one.expected_error)
+        lower = ", ".join(map(str, one.lower))
+        cost = one.unknowns, *errors, one.run_time_s
+        rows.append((one.variant.title, size.count, size.mode, *cost, size.smaller, lower))
     columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
     columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
@@ -75,14 +79,3 @@ def _error(text: str) -> float:
     if not isinstance(value, float | int) or not 1e-12 <= value < (1.0 if text.endswith("%") else 0.1):
         raise InputError(f"error = {text!r}: give a relative error from 1e-12, below 0.1 or with a per cent sign: 1%")
     return value
-
-
-def _rules(words: tuple[str, ...]) -> Any:
-    from verify.analysis.variants import Rules
-    from verify.convert import convert, literal
-
-    pairs = [word.partition("=") for word in words]
-    for key, equals, _ in pairs:
-        if not equals:
-            raise InputError(f"rule = {key!r}: write it as RULE=VALUE, wall=half")
-    return convert({key: literal(text, key) for key, _, text in pairs}, Rules)

@@ -4,25 +4,16 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import (
-    GATE_FAILED,
-    BeamCommand,
-    charts_option,
-    format_options,
-    overrides_option,
-    save_charts,
-    scene_argument,
-    show,
-)
+from verify.commands import shared
 
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
 
 
-@click.command(cls=BeamCommand)
-@scene_argument
+@click.command(cls=shared.BeamCommand)
+@shared.scene_argument
 @click.argument("given", nargs=-1, metavar="FILE | FREQUENCIES...")
-@overrides_option
+@shared.overrides_option
 @click.option(
     "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any."
 )
@@ -39,8 +30,8 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
     show_default=True,
     help="Of the exact beam.",
 )
-@charts_option
-@format_options
+@shared.charts_option
+@shared.format_options
 def compare(
     scene: str,
     given: tuple[str, ...],
@@ -66,19 +57,24 @@ def compare(
     from verify.compare.compare import Options
     from verify.compare.compare import compare as compare_list
     from verify.compare.reading import listed, read_frequencies, read_shapes, solve_model
+    from verify.convert import typed
     from verify.errors import InputError
     from verify.scene.load import load_scene
+    from verify.validation import Relative
 
     if bool(given) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
+    limit = None if within is None else typed(within, Relative, "within")
+    if limit is not None and not (isinstance(limit, float | int) and limit > 0.0):
+        raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
     loaded = load_scene(scene, overrides)
-    options = Options(count=count, kind=kind, mode=mode, within=_ratio(within), theory=theory)
+    options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory)
     numbers = [_number(word) for word in given]
     if model is not None:
         result = compare_list(loaded, solve_model(model, loaded.beam, count, mode), None, options)
     elif all(number is not None for number in numbers):
-        typed = listed("frequencies", [n for n in numbers if n is not None], given, unit=unit or "Hz")
-        result = compare_list(loaded, typed, None, options)
+        frequencies = listed("frequencies", [n for n in numbers if n is not None], given, unit=unit or "Hz")
+        result = compare_list(loaded, frequencies, None, options)
     elif len(given) > 1:
         raise InputError(f"frequencies = {' '.join(given)}: give one file, or numbers alone")
     elif Path(given[0]).suffix.lower() in TEXT:
@@ -90,10 +86,10 @@ def compare(
         from verify.compare.shapes import compare_shapes
 
         result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
-    show(result, **formats)
-    save_charts(result, charts)
+    shared.show(result, **formats)
+    shared.save_charts(result, charts)
     if not result.data["passed"]:
-        raise SystemExit(GATE_FAILED)
+        raise SystemExit(shared.GATE_FAILED)
 
 
 def _number(word: str) -> float | None:
@@ -101,15 +97,3 @@ def _number(word: str) -> float | None:
         return float(word)
     except ValueError:
         return None
-
-
-def _ratio(text: str | None) -> float | None:
-    """A relative error such as 1% or 0.01. Raises InputError."""
-    from verify.convert import typed
-    from verify.errors import InputError
-    from verify.validation import Relative
-
-    value = None if text is None else typed(text, Relative, "within")
-    if value is not None and not (isinstance(value, float | int) and value > 0.0):
-        raise InputError(f"within = {text!r}: give a relative error such as 1% or 0.01")
-    return value

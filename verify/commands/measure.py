@@ -2,23 +2,15 @@
 
 import click
 
-from verify.commands.shared import (
-    BeamCommand,
-    console,
-    json_option,
-    overrides_option,
-    print_json,
-    progress,
-    scene_argument,
-)
+from verify.commands import shared
 
 
-@click.command(cls=BeamCommand)
-@scene_argument
+@click.command(cls=shared.BeamCommand)
+@shared.scene_argument
 @click.argument("quantity")
 @click.argument("arguments", nargs=-1, metavar="[KEY=VALUE]...")
-@overrides_option
-@json_option
+@shared.overrides_option
+@shared.json_option
 def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tuple[str, ...], as_json: bool) -> None:
     """Evaluate QUANTITY of SCENE. `verify quantities` lists quantities and their arguments.
 
@@ -32,7 +24,7 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
 
     given = parse_arguments(quantity, arguments)
     loaded = load_scene(scene, overrides)
-    with progress(quiet=as_json) as step:
+    with shared.progress(quiet=as_json) as step:
         step(quantity)
         value = evaluate(quantity, given, loaded, cache := SolutionCache(loaded.beam))
         margins = quantity_margins(quantity, given, loaded, cache)
@@ -40,6 +32,6 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
     result = Result(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"), margins=margins)
     if as_json:
         own = {"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit}
-        print_json(own | ({"verdict": result.verdict.to_dict()} if result.verdict else {}))
+        shared.print_json(own | ({"verdict": result.verdict.to_dict()} if result.verdict else {}))
     else:
-        result.print(console())
+        result.print(shared.console())

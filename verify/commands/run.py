@@ -82,9 +82,8 @@ def _run_several(tasks: list[Task], as_json: bool, command: str, expected: str) 
     start = perf_counter()
     with progress(len(tasks), quiet=as_json, lines=True) as step:
         step(f"{len(tasks)} scenes{expected}")
-        lines = map_processes(
-            _line_of, tasks, lambda done: step(f"{done} of {len(tasks)} scenes: {tasks[done - 1].scene}")
-        )
+        n = len(tasks)
+        lines = map_processes(_line_of, tasks, lambda done: step(f"{done} of {n} scenes: {tasks[done - 1].scene}"))
     reports = tasks[0].reports
     if reports is not None:
         write_index(lines, reports / "index.html", command, perf_counter() - start)

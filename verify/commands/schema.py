@@ -27,15 +27,10 @@ def schema(section: str | None, as_json: bool) -> None:
     else:
         wanted = scene_schema(section)
         required = wanted.get("required", ())
-        keys = [
-            (
-                key,
-                type_text(one),
-                "required" if key in required else str(one.get("default", "")),
-                one.get("description", ""),
-            )
-            for key, one in wanted["properties"].items()
-        ]
+        keys = []
+        for key, one in wanted["properties"].items():
+            default = "required" if key in required else str(one.get("default", ""))
+            keys.append((key, type_text(one), default, one.get("description", "")))
         columns = [Column(name) for name in ("key", "type", "default", "meaning")]
         Table(section, columns, keys).print(console())
 

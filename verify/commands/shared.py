@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
 GATE_FAILED = 1
 """Exit status where a gate or check failed."""
-DEFAULT = "paper"
-"""The scene where none is named."""
 
 scene_argument = click.argument("scene")
 
@@ -109,9 +107,8 @@ def console() -> "Console":
     """Standard output for rich: as wide as the terminal, 100 columns where it is none, without markup."""
     from rich.console import Console
 
-    return Console(
-        file=sys.stdout, markup=False, highlight=False, emoji=False, width=None if sys.stdout.isatty() else 100
-    )
+    width = None if sys.stdout.isatty() else 100
+    return Console(file=sys.stdout, markup=False, highlight=False, emoji=False, width=width)
 
 
 @contextmanager

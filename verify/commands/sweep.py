@@ -2,36 +2,28 @@
 
 import click
 
-from verify.commands.shared import (
-    BeamCommand,
-    charts_option,
-    format_options,
-    overrides_option,
-    progress,
-    save_charts,
-    scene_argument,
-    show,
-)
+from verify.commands import shared
 from verify.errors import InputError
 
 
-@click.command(cls=BeamCommand)
-@scene_argument
+@click.command(cls=shared.BeamCommand)
+@shared.scene_argument
 @click.argument("words", nargs=-1, metavar="[QUANTITY]... [KEY=VALUES]...")
-@overrides_option
-@charts_option
-@format_options
+@shared.overrides_option
+@shared.charts_option
+@shared.format_options
 def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts: str | None, **formats: bool) -> None:
     """Evaluate QUANTITY over every combination of the lists; without QUANTITY run the [sweep] of SCENE.
 
     A KEY with a dot is a value of the scene, one without is an argument of the quantities.
     Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """
+    from verify.analysis.solution_cache import SolutionCache
     from verify.commands.table import run_study
     from verify.convert import typed
     from verify.quantities.base import QUANTITIES
     from verify.scene.load import load_scene, type_at
-    from verify.studies.sweep import run_sweep
+    from verify.studies.sweep import Sweep
 
     quantities = [word for word in words if "=" not in word]
     pairs = [word.partition("=") for word in words if "=" in word]
@@ -53,7 +45,8 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
     over = {key: values for key, values in lists.items() if len(values) > 1 or "." in key}
     arguments = {key: values[0] for key, values in lists.items() if key not in over}
     loaded = load_scene(scene, overrides)
-    with progress(quiet=any(formats.values())) as step:
-        result = run_sweep(loaded, quantities, over, arguments=arguments, progress=step)
-    show(result, **formats)
-    save_charts(result, charts)
+    with shared.progress(quiet=any(formats.values())) as step:
+        study = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
+        result = study.run(loaded, SolutionCache(loaded.beam), step)
+    shared.show(result, **formats)
+    shared.save_charts(result, charts)

@@ -2,25 +2,16 @@
 
 import click
 
-from verify.commands.shared import (
-    BeamCommand,
-    charts_option,
-    format_options,
-    overrides_option,
-    progress,
-    save_charts,
-    scene_argument,
-    show,
-)
+from verify.commands import shared
 
 
-@click.command(cls=BeamCommand)
-@scene_argument
+@click.command(cls=shared.BeamCommand)
+@shared.scene_argument
 @click.argument("options", nargs=-1, metavar="[KEY=VALUE]...")
 @click.option("--study", default="convergence", show_default=True, metavar="NAME", help="Section of the study.")
-@overrides_option
-@charts_option
-@format_options
+@shared.overrides_option
+@shared.charts_option
+@shared.format_options
 def table(
     scene: str, options: tuple[str, ...], study: str, overrides: tuple[str, ...], charts: str | None, **formats: bool
 ) -> None:
@@ -49,7 +40,7 @@ def run_study(
     loaded = load_scene(scene, (*overrides, *(f"{name}.{option}" for option in options)))
     study = dict(studies_of(loaded)).get(name) or convert({}, STUDIES[name], name)
     study.check(loaded)
-    with progress(quiet=any(formats.values())) as step:
+    with shared.progress(quiet=any(formats.values())) as step:
         result = study.run(loaded, SolutionCache(loaded.beam), step)
-    show(result, **formats)
-    save_charts(result, charts)
+    shared.show(result, **formats)
+    shared.save_charts(result, charts)

@@ -15,14 +15,6 @@ STIFFNESSES = np.geomspace(0.3, 1e4, 400)
 """Range of k_r L/EI: softer equals a hinge, stiffer a clamp, within the digits of a list."""
 
 
-def clamped_ends(beam: Beam) -> tuple[tuple[str, ...], ...]:
-    """Sets of compliant clamped ends: each end and both; for a symmetric beam the left one and both."""
-    ends = tuple(name for name, held in zip(("left", "right"), beam.supports, strict=True) if held == "clamped")
-    if len(ends) < 2:
-        return (ends,) if ends else ()
-    return (("left",), ends) if beam.mirrored() == beam else (("left",), ("right",), ends)
-
-
 def softened(beam: Beam, ends: tuple[str, ...], stiffness: float) -> Beam:
     """The beam with hinges and springs k_r = `stiffness` EI/L at the ends `ends`."""
     rotational = stiffness * beam.bending_stiffness / beam.length

@@ -10,7 +10,7 @@ import numpy as np
 from verify.analysis.variants import is_uneven
 from verify.arrays import Array, Indices
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
-from verify.compare.clamp import clamp_effect, clamped_ends, fit_clamp
+from verify.compare.clamp import clamp_effect, fit_clamp
 from verify.errors import InputError
 from verify.problem.beam import Beam
 
@@ -176,7 +176,9 @@ def _faults(data: Data) -> Iterator[Fault]:
     if len(entries) < FEWEST:
         return
     yield Fault("factor", entries, modes, factor=None)
-    for ends in clamped_ends(data.beam):
+    clamped = tuple(n for n, held in zip(("left", "right"), data.beam.supports, strict=True) if held == "clamped")
+    symmetric = data.beam.mirrored() == data.beam  # there the left end alone equals the right one
+    for ends in dict.fromkeys([*((one,) for one in clamped[: 1 if symmetric else None]), clamped] if clamped else []):
         yield Fault("clamp", entries, modes, " and ".join(ends), ends=ends)
     for i in range(n if data.ordered else 0):
         yield Fault("missing", entries, np.delete(np.arange(n + 1), i), f"mode {i + 1}")
@@ -202,10 +204,8 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
 
-    def equal_first(one: Fit) -> tuple[int, int]:  # of equal frequencies the one with least fitted
-        return (data.fitted(one), order[one.candidate]) if _same(one, refined[0]) else (9, 0)
-
-    return sorted(refined, key=equal_first)
+    equal = {one.candidate for one in refined if _same(one, refined[0])}  # of these the one with least fitted
+    return sorted(refined, key=lambda f: (data.fitted(f), order[f.candidate]) if f.candidate in equal else (9, 0))
 
 
 def _same(one: Fit, other: Fit) -> bool:

@@ -53,7 +53,12 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
         raise InputError(f"{source} has no finite vectors or numbers at its points: write the modes as point data")
     sizes = np.ptp(points, axis=0)
     along = int(np.argmax(sizes))
-    across, wide = _thickness(sizes, along, list(vectors.values()))
+    others = sorted((axis for axis in range(len(sizes)) if axis != along), key=lambda axis: sizes[axis])
+    first = next(iter(vectors.values()))
+    if len(others) == 2 and sizes[others[1]] <= 1.01 * sizes[others[0]] and first.shape[1] == 3:  # the one with motion
+        moved = sum((v**2).sum(axis=0) / (v**2).sum() for v in vectors.values() if v.any())
+        others.sort(key=lambda axis: -float(np.asarray(moved)[axis]))
+    across, wide = others[0], others[-1]
     if max(sizes[across], sizes[wide]) > SLENDER * sizes[along]:
         raise InputError(f"{source} is {sizes[along]:.4g} long and {sizes[wide]:.4g} wide: give the mesh of a beam")
     unit = next((u for u, factor in UNITS.items() if abs(sizes[along] / (factor * length) - 1.0) < LENGTH), None)
@@ -83,15 +88,6 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     chosen = [list(vectors).index(name) for name in bent]
     frequencies = _frequencies(field, len(vectors), chosen, source)
     return MeshShapes(source, checked_shapes(shapes, length, source), tuple(bent), frequencies, tuple(notes))
-
-
-def _thickness(sizes: Array, along: int, vectors: list[Array]) -> tuple[int, int]:
-    """(axis of the thickness, of the width): the thinner first, for equal sizes the one with more motion."""
-    others = sorted((axis for axis in range(len(sizes)) if axis != along), key=lambda axis: sizes[axis])
-    if len(others) == 2 and sizes[others[1]] <= 1.01 * sizes[others[0]] and vectors[0].shape[1] == 3:
-        moved = sum((v**2).sum(axis=0) / (v**2).sum() for v in vectors if v.any())
-        others.sort(key=lambda axis: -float(np.asarray(moved)[axis]))
-    return others[0], others[-1]
 
 
 def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:

@@ -80,9 +80,7 @@ def result_of(
         (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
         for one in fits.ranking[:SHOWN]
     ]
-    notes = [
-        "rms: log frequency differences. Equivalent: equal frequencies. Alternative: rms below twice that of the best."
-    ]
+    notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: rms below twice the best."]
     columns = [Column("candidate"), Column("N"), Column("order"), *RMS, Column("status")]
     tables = [_modes(best, rows), Table("Candidates", columns, lines, notes)]
     if len(fits.tested) > 1:

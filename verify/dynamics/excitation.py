@@ -82,9 +82,8 @@ def modal_rows(basis: TimeBasis, forces: Sequence[PointForce], damping: Ratio) -
     )
 
 
-NO_ROWS = Rows(
-    rates=np.empty(0, dtype=complex), participations=np.empty(0, dtype=complex), loads=np.empty(0, dtype=complex)
-)
+_NONE = np.empty(0, dtype=complex)
+NO_ROWS = Rows(rates=_NONE, participations=_NONE, loads=_NONE)
 
 
 def forced_response(rows: Rows, omega: float, envelope: Array, unit_s: float, origin: float = 0.0) -> Forced:

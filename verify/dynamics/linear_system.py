@@ -49,17 +49,13 @@ class Growth(msgspec.Struct, frozen=True, eq=False):
     coefficients: Array
 
 
-def _no_shapes(x: Array, derivative: int) -> Array:
-    return np.empty((0, len(x)))
-
-
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """An interval with one polynomial envelope of the forces; its time t starts at 0."""
 
     rows: Rows = NO_ROWS
     forced: Forced | None = None
     """None where the drive's rows are a steady field."""
-    shapes: Callable[[Array, int], Any] = _no_shapes
+    shapes: Callable[[Array, int], Any] = lambda x, derivative: np.empty((0, len(x)))
     """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 without free modes."""
     field: Callable[[Array, int, Any], ComplexArray]
     """(x, derivative, psi) -> shapes of the drive, one for each power of t, (degree + 1, len(x)), m."""
@@ -98,9 +94,14 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.concatenate([psi.real, imaginary, interleaved(self.field(x, derivative, psi).T).T])
 
     def factors(self, z: ComplexArray, t: Array) -> Array:
-        """Factors of the columns at times t, (len(t), columns), for free rows z (len(t), n)."""
+        """Factors of the columns at times t, (len(t), columns), for free rows z (len(t), n).
+
+        Those of the drive are a real part and minus an imaginary part for each power of t.
+        """
+        powers = 1 if self.forced is None else self.forced.forward.shape[1]
+        drive = (t[:, None] / self.unit_s) ** np.arange(powers) * np.exp(1j * self.omega * (t[:, None] + self.origin))
         imaginary = z[:, z.shape[1] - self.complex_rows :].imag
-        return np.concatenate([z.real, -imaginary, self.drive_factors(t)], axis=1)
+        return np.concatenate([z.real, -imaginary, interleaved(drive.conj())], axis=1)
 
     def table(self, first: int, last: int) -> Array:
         """Polynomial coefficients of pieces first..last-1, (pieces, degree + 1, columns)."""
@@ -109,12 +110,6 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def drive_shapes(self, x: Array, derivative: int) -> ComplexArray:
         """Shapes of the drive, one for each power of t, (degree + 1, len(x)), m per metre^derivative."""
         return self.field(x, derivative, self.shapes(x, derivative))
-
-    def drive_factors(self, t: Array) -> Array:
-        """Factors of the drive's columns, (len(t), 2 (degree + 1)): real part and minus the imaginary part."""
-        powers = 1 if self.forced is None else self.forced.forward.shape[1]
-        factors = (t[:, None] / self.unit_s) ** np.arange(powers) * np.exp(1j * self.omega * (t[:, None] + self.origin))
-        return interleaved(factors.conj())
 
     def rates_at_start(self, z: ComplexArray) -> Array:
         """Time derivatives of the factors at time 0 for free rows z, (columns,)."""
@@ -235,12 +230,7 @@ def _steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
 
 
 def damped_field(
-    model: str,
-    count: int | None,
-    beam: Beam,
-    forces: Sequence[PointForce],
-    frequency_hz: float,
-    damping: float | None,
+    model: str, count: int | None, beam: Beam, forces: Sequence[PointForce], frequency_hz: float, damping: float | None
 ) -> "HarmonicField":
     """The steady field of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0

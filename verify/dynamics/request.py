@@ -216,7 +216,9 @@ def _longest_step(
     check_integer("steps_per_period", per_period, 1)
     longest = 1.0 / (per_period * frequency_hz) if step is None else step
     check_number("step", longest, "seconds", above=0)
-    check_step(longest, frequency_hz)
+    if longest * frequency_hz > COARSEST:
+        most = f"{COARSEST / frequency_hz:.3g} s"
+        raise InputError(f"step = {longest!r} s does not resolve the drive: give at most {most}")
     check_steps(duration, longest)
     return longest
 
@@ -227,12 +229,6 @@ def check_steps(duration: float, step: float) -> None:
         raise InputError(
             f"duration = {written(duration)} s: {duration / step:.2g} steps are too many, shorten it or lengthen step"
         )
-
-
-def check_step(step: float, frequency_hz: float) -> None:
-    """Raise InputError for a step, s, that does not resolve the drive period."""
-    if step * frequency_hz > COARSEST:
-        raise InputError(f"step = {step!r} s does not resolve the drive: give at most {COARSEST / frequency_hz:.3g} s")
 
 
 def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:

@@ -11,37 +11,13 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
+from verify.dynamics import step_control, validity
 from verify.dynamics.contact_assembly import assemble, contact_rate
-from verify.dynamics.initial_state import (
-    deepen_between_beams,
-    set_down,
-    static_deflection,
-    steady_with_mass,
-)
+from verify.dynamics.initial_state import deepen_between_beams, set_down, static_deflection, steady_with_mass
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
 from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
-from verify.dynamics.step_control import (
-    COMPARED,
-    CONVERGED,
-    UNRESOLVED,
-    change,
-    check_energy,
-    feet_step,
-    point_step,
-    stepped,
-    unresolved,
-)
 from verify.dynamics.stepping import Contacts, Run, run_stages
-from verify.dynamics.validity import (
-    Coupling,
-    Margins,
-    coupling_of,
-    field_receptance,
-    margins_of,
-    modal_receptance,
-    presliding,
-)
 from verify.errors import InputError
 from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
@@ -68,8 +44,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     basis: TimeBasis | None
     """None without free modes."""
     stages: list[Stage]
-    coupling: Coupling
-    margins: Margins
+    coupling: validity.Coupling
+    margins: validity.Margins
     notes: tuple[str, ...]
     sequence: bool
     """Whether the result has an axis of sliders."""
@@ -82,15 +58,15 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         beam, hertz, starts = request.beam, request.frequency_hz, request.starts
         stages = [stage.within(contact_range(beam, starts[0])) for stage in stages]
         if basis is not None and request.start == "rest":
-            receptance = modal_receptance(basis, request.omega, request.damping_in(basis))
+            receptance = validity.modal_receptance(basis, request.omega, request.damping_in(basis))
         else:
-            receptance = field_receptance(beam, request.model, request.count, hertz, request.modal_damping)
+            receptance = validity.field_receptance(beam, request.model, request.count, hertz, request.modal_damping)
         run = cls(
             request=request,
             basis=basis,
             stages=stages,
-            coupling=coupling_of(beam, request.sliders, starts, stages[-1], receptance),
-            margins=margins_of(request, stages[-1]),
+            coupling=validity.coupling_of(beam, request.sliders, starts, stages[-1], receptance),
+            margins=validity.margins_of(request, stages[-1]),
             notes=notes,
             sequence=sequence,
         )
@@ -105,19 +81,17 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def _with_feet_steps(self) -> "SliderRun":
         request, contacts, basis = self.request, self._contacts(), self.basis if self.request.two_way else None
         rate, fastest = contact_rate(contacts, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
-        stages = stepped(self.stages, feet_step(self.stages[0].steps.dt, rate, fastest, request.step))
-        margins = replace(
-            self.margins,
-            presliding=presliding(request),
-            contact_step=rate * stages[-1].steps.dt,
-        )
+        step = step_control.feet_step(self.stages[0].steps.dt, rate, fastest, request.step)
+        stages, slips = step_control.stepped(self.stages, step), validity.presliding(request)
+        margins = replace(self.margins, presliding=slips, contact_step=rate * stages[-1].steps.dt)
         return replace(self, stages=stages, margins=margins)
 
     def _with_point_steps(self) -> "SliderRun":
         request, stages, length, rate = self.request, self.stages, self.request.beam.length, 0.0
         z, longest = self._initial(self._contacts(), loaded=False), max(stage.steps.dt for stage in stages)
         if request.step is not None:
-            share, enough = unresolved(stages, z, length, longest), point_step(stages, z, length, longest, 0.0)
+            share = step_control.unresolved(stages, z, length, longest)
+            enough = step_control.point_step(stages, z, length, longest, 0.0)
             note = f"step: {100 * share:.2g} % of the surface speed is not resolved, give at most {enough:.2g} s"
             return replace(self, notes=(*self.notes, *(note,) * (enough < longest)))
         if request.two_way:
@@ -125,7 +99,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             rate = max(rates, default=0.0)
             if request.sliders[0].normal == "bilateral":
                 longest *= 0.5  # the contact excites waves
-        return replace(self, stages=stepped(stages, point_step(stages, z, length, longest, rate)))
+        step = step_control.point_step(stages, z, length, longest, rate)
+        return replace(self, stages=step_control.stepped(stages, step))
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
         """Free rows at the start, (n,), sliders in equilibrium or in the state of an earlier run. Raises InputError."""
@@ -158,13 +133,13 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         request, stages = self.request, self.stages
         if request.feet or not request.two_way or request.step is not None:
             return self._checked(self.run(stages, progress))
-        closer = ceil(COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
+        closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
-        rough = stepped(stages, 2.0 * dt, closer)
+        rough = step_control.stepped(stages, 2.0 * dt, closer)
         close = [one.stepped(0.5 * of.steps.dt, closer) for one, of in zip(stages, rough, strict=True)]  # samples fit
         coarse = self.run(rough, lambda part: progress(part / 3.0))
         fine = self.run(close, lambda part: progress((1.0 + 2.0 * part) / 3.0))
-        moved, cost = change(coarse, fine), coarse.statistics
+        moved, cost = step_control.change(coarse, fine), coarse.statistics
         note = f"step: not converged, doubling it changes the slider's displacement by {100.0 * moved:.2g} %"
         statistics = replace(
             fine.statistics,
@@ -173,7 +148,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             loop_s=cost.loop_s + fine.statistics.loop_s,
         )
         kept: dict[str, Any] = {name: getattr(fine, name)[::closer] for name in SAMPLED}
-        notes = (*fine.notes, *(note,) * (moved > CONVERGED))
+        notes = (*fine.notes, *(note,) * (moved > step_control.CONVERGED))
         return self._checked(replace(fine, statistics=statistics, notes=notes, **kept))
 
     def _checked(self, motion: Motion) -> Motion:
@@ -184,8 +159,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         dt = statistics.step_s
         if request.step is not None:
             z = self._initial(self._contacts(), loaded=False)
-            resolved = unresolved(self.stages, z, request.beam.length, dt) <= UNRESOLVED
-        notes = check_energy(motion.energy, dt, request.frequency_hz, request.feet, resolved)
+            resolved = step_control.unresolved(self.stages, z, request.beam.length, dt) <= step_control.UNRESOLVED
+        notes = step_control.check_energy(motion.energy, dt, request.frequency_hz, request.feet, resolved)
         if statistics.unconverged:
             notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)
         return replace(motion, notes=(*motion.notes, *notes))
@@ -204,7 +179,12 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             kept[0, still, lay.KEPT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
         heights = np.concatenate([heights, recorded.heights])
-        end = _time_after(stages, recorded.n_steps)
+        steps = recorded.n_steps
+        for stage in stages:
+            if steps <= stage.steps.n:
+                break
+            steps -= stage.steps.n
+        end = stage.origin + steps * stage.steps.dt
         seconds, sums, margins = end - stages[0].origin, recorded.sums, self.margins
         mean = 1.0 / seconds if seconds > 0.0 else float("nan")
         if not request.feet:
@@ -295,15 +275,6 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         if contacts.law == lay.BILATERAL:
             twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2
         return 0.5 * float(twice)
-
-
-def _time_after(stages: list[Stage], steps: int) -> float:
-    """Time after a number of steps, s."""
-    for stage in stages:
-        if steps <= stage.steps.n:
-            break
-        steps -= stage.steps.n
-    return stage.origin + steps * stage.steps.dt
 
 
 def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:

@@ -107,11 +107,6 @@ def wall_residual(mu: float) -> float:
     return sums + sum(a * square for a, square in zip(_GREGORY, squares, strict=True))
 
 
-def smallest_count(beam: Beam, mode: int) -> int:
-    """Smallest number of parts with the mode on the lower branch."""
-    return max(int(wavenumber_length(beam.supports, mode) / pi) + 1, mode + 1, 2)
-
-
 class Law(msgspec.Struct, frozen=True, kw_only=True):
     """The dispersion and the error law of a discrete model of equal parts."""
 

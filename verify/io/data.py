@@ -96,18 +96,12 @@ def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | 
 
 
 def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.waves.driven_case import DrivenCase, driven
+    from verify.quantities.waves import FieldOptions, driven_case
+    from verify.waves.driven_case import driven
 
     if scene.drive is None or not scene.forces:
         raise InputError("what = 'wave': the scene has no drive with forces, add [drive] or export modes")
-    case = DrivenCase(
-        model=MODELS[request.model].build(scene.beam, count),
-        forces=scene.forces,
-        frequency_hz=scene.drive.frequency_hz,
-        kind=scene.drive.kind,
-        devices=scene.devices,
-    )
-    field_ = driven(case, cache)
+    field_ = driven(driven_case(scene, FieldOptions(model=request.model, count=count)), cache)
     w, slope, n = field_.deflection(x), field_.slope(x), request.samples or PHASES
     turns = np.exp(2j * np.pi * np.arange(n) / n)
     points = {"real": w.real, "imaginary": w.imag, "amplitude": np.abs(w), "phase_deg": np.rad2deg(np.angle(w))}

@@ -54,7 +54,7 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
 
         write_picture(scene, data_, path, request)
     else:
-        writers = {"vtu": _vtu, "xdmf": _xdmf, "csv": _csv, "json": _json, "npz": _npz}
+        writers = {"vtu": _vtu, "xdmf": _xdmf, "csv": _csv, "json": _arrays, "npz": _arrays}
         writers[kind](data_, path)
     return data_.title
 
@@ -103,12 +103,6 @@ def _vtu(data: Dataset, path: Path) -> None:
         meshio.write(part, _mesh(data, points), file_format="vtu")
 
 
-def _step(data: Dataset, i: int) -> "dict[str, Array]":
-    """Values at the points at a step."""
-    slider = {name: np.full(len(data.x), values[i]) for name, values in data.histories.items()}
-    return {"deflection": _vectors(data.deflection[i]), **slider}
-
-
 def _xdmf(data: Dataset, path: Path) -> None:
     """A series in one file, its numbers as text: HDF5 is not needed."""
     import meshio
@@ -117,7 +111,8 @@ def _xdmf(data: Dataset, path: Path) -> None:
         mesh = _mesh(data, {})
         writer.write_points_cells(mesh.points, mesh.cells)
         for i, step in enumerate(data.steps):
-            writer.write_data(float(step), point_data=_step(data, i))
+            slider = {name: np.full(len(data.x), values[i]) for name, values in data.histories.items()}
+            writer.write_data(float(step), point_data={"deflection": _vectors(data.deflection[i]), **slider})
 
 
 def _csv(data: Dataset, path: Path) -> None:
@@ -134,15 +129,12 @@ def _csv(data: Dataset, path: Path) -> None:
     write_whole(path, out.getvalue(), "to")
 
 
-def _arrays(data: Dataset) -> "dict[str, Array]":
+def _arrays(data: Dataset, path: Path) -> None:
+    """All arrays, as JSON or compressed."""
     series = {data.step_name: data.steps, "deflection": data.deflection}
-    return {"x": data.x, **data.points, **series, **data.histories}
-
-
-def _json(data: Dataset, path: Path) -> None:
-    write_whole(path, to_json({"what": data.what, "title": data.title, **_arrays(data)}), "to")
-
-
-def _npz(data: Dataset, path: Path) -> None:
+    arrays: dict[str, Any] = {"x": data.x, **data.points, **series, **data.histories}
+    if path.suffix.lower() == ".json":
+        write_whole(path, to_json({"what": data.what, "title": data.title, **arrays}), "to")
+        return
     with whole(path, "to") as part, part.open("wb") as stream:
-        np.savez_compressed(stream, title=np.array(data.title), **_arrays(data))  # type: ignore[arg-type]
+        np.savez_compressed(stream, title=np.array(data.title), **arrays)

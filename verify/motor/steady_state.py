@@ -150,7 +150,12 @@ def steady_state(
 
     A force with a relative error below `relative` counts as converged. Raises InputError where the motion diverges.
     """
-    first = copysign(max(abs(speed), presliding_speed(case.slider, FIRST * case.period)), speed) if speed else 0.0
+    slider, contact = case.slider, case.slider.contact
+    stiffnesses = [contact.along(foot.length) / foot.points for foot in slider.feet] if contact else []
+    softest = min((one for one in stiffnesses if one), default=np.inf)
+    # all points slip in the first window: 8 times the deformation of the softest under the limit of the whole slider
+    least = SLIPS * slider.mu * slider.normal_force / softest / (FIRST * case.period)
+    first = copysign(max(abs(speed), least), speed) if speed else 0.0
     state = _window(case, first, FIRST, before, None)
     state = _window(case, speed, FIRST, state.run, state)
     while state.not_converged and 2 * state.periods <= periods:
@@ -166,9 +171,8 @@ def _window(
     """The next window, with the errors of its means; those of the first window are not valid. Raises InputError."""
     run = case.run(periods, BATCHES + 1, before, speed)
     if not run.statistics.finished:
-        raise InputError(
-            f"steps_per_period = {case.steps_per_period!r}: the slider {run.statistics.stopped}, give more"
-        )
+        stopped = run.statistics.stopped
+        raise InputError(f"steps_per_period = {case.steps_per_period!r}: the slider {stopped}, give more")
     batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
     assert run.energy is not None
     powers = np.array([run.energy.tangential_work, run.energy.friction_loss]) / run.duration
@@ -200,14 +204,3 @@ def batch_error(batches: Array) -> Array:
 def balanced(slider: Slider) -> bool:
     """Whether the mean normal force equals the load: neither preload springs nor a second beam."""
     return not slider.preload_stiffness and not any(foot.mirrored for foot in slider.feet)
-
-
-def presliding_speed(slider: Slider, seconds: float) -> float:
-    """Speed at which all points slip within `seconds`, m/s; 0 for tangentially rigid contact.
-
-    The displacement is 8 times the deformation of the softest point under the friction limit of the whole slider.
-    """
-    contact = slider.contact
-    stiffnesses = [contact.along(foot.length) / foot.points for foot in slider.feet] if contact else []
-    softest = min((one for one in stiffnesses if one), default=np.inf)
-    return SLIPS * slider.mu * slider.normal_force / softest / seconds

@@ -10,11 +10,7 @@ from verify.errors import InputError
 from verify.options import Shape
 from verify.validation import check_number, unit, validate
 
-SIZES = {
-    "rectangle": ("width", "thickness"),
-    "round": ("diameter",),
-    "tube": ("diameter", "wall_thickness"),
-}
+SIZES = {"rectangle": ("width", "thickness"), "round": ("diameter",), "tube": ("diameter", "wall_thickness")}
 """The sizes of each shape."""
 ALL_SIZES = {size for sizes in SIZES.values() for size in sizes}
 Metres = Annotated[float, unit("m", gt=0)]

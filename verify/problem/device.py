@@ -1,6 +1,5 @@
 """A device on a driven beam: an impedance against deflection and rotation, and a blocked force. Values, no numerics."""
 
-from collections.abc import Sequence
 from typing import Annotated
 
 import msgspec
@@ -79,12 +78,6 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         check_position("device.position", self.position, beam.length)
         across, turning = ({name: getattr(self, name) for name in names} for names in (ACROSS, TURNING))
         check_free("device", self.position, beam.length, beam.supports, across, turning)
-
-
-def check_drives(forces: Sequence[PointForce], beam: Beam) -> None:
-    """Raise InputError for a driving force on a support without deflection."""
-    for force in forces:
-        check_free("drive.force", force.position, beam.length, beam.supports, {"amplitude": force.amplitude})
 
 
 def of_impedance(position: float, impedance: complex, omega: float, *, turning: bool = False) -> Device:

@@ -1,7 +1,8 @@
 """Quantities of modes: frequencies, shapes, errors, orders, bounds, required N; the paper's drive rule; buckling."""
 
+from functools import partial
 from math import pi, sqrt
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import Meta
 
@@ -68,7 +69,12 @@ def shape_error(cache: "SolutionCache", of: opt.OneDiscreteMode, *, reading: Rea
 @quantity("mode.curvature_error", unit="1", reads=BEAM)
 def curvature_error(cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
     """Relative L2 error of the curvature at joints or Gauss points."""
-    return cache.curvature_error(of.model, of.count, of.mode, of.settings)
+    from verify.analysis.comparison import node_weights, shape_error
+
+    modes = cache.modes(of.model, of.count, of.mode, of.settings)
+    exact = cache.exact_shape(of.mode, modes.curvature_points, 2, of.theory)
+    computed = modes.curvatures()[cache.paired_index(of.model, of.count, of.mode, of.settings)]
+    return shape_error(exact, computed, node_weights(modes.curvature_points))
 
 
 @quantity("mode.node_position", unit="m", reads=BEAM)
@@ -79,7 +85,14 @@ def node_position(
     node: Annotated[int, Meta(ge=1, description="number of the node from the left, without the ends")] = 1,
 ) -> float:
     """Position of a node of a mode, from the left end."""
-    positions = cache.node_positions(of.model, of.count, of.mode, of.settings)
+    from verify.analysis.comparison import zeros
+
+    shape: Any = partial(cache.exact_shape, of.mode, theory=of.theory)
+    if of.count is not None:
+        modes = cache.modes(of.model, of.count, of.mode, of.settings)
+        index = cache.paired_index(of.model, of.count, of.mode, of.settings)
+        shape = lambda x: modes.deflection(x)[index]  # noqa: E731
+    positions = zeros(shape, cache.beam.length, of.mode)
     if node > len(positions):
         raise InputError(f"node = {node}: mode {of.mode} has {len(positions)} nodes between the ends, give fewer")
     return float(positions[node - 1])
@@ -121,9 +134,8 @@ def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None =
     """Observed order of the shape error in N; an error outside the asymptotic range."""
     from verify.analysis.comparison import asymptotic_order
 
-    return asymptotic_order(
-        of.counts, [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts]
-    )
+    errors = [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts]
+    return asymptotic_order(of.counts, errors)
 
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)

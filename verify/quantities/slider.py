@@ -166,9 +166,8 @@ def order(
     if by.count is not None or not MODELS.named(by.model).sized:
         raise InputError(f"counts = {list(counts)}: give a discrete model and leave count out")
     exact = displacement(replace(by, model="analytic"))
-    return asymptotic_order(
-        counts, [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
-    )
+    errors = [relative_error(displacement(replace(by, count=n, modes=None)), exact) for n in counts]
+    return asymptotic_order(counts, errors)
 
 
 @quantity("slider.deflection", unit="m")

@@ -10,7 +10,7 @@ from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
 
 if TYPE_CHECKING:
-    from verify.problem.beam import Beam
+    pass
 
 WIDTH, EDGE = 8.4, 0.83
 """Of the drawing and of the room at each end of the beam, inches."""
@@ -69,7 +69,12 @@ class _Sketch:
             self.support(self.at(x), self.half(x), support, out)
         self.slider(scene.slider)
         if len(self.beam.pieces) == 1:
-            self.text(0.5 * WIDTH, -self.heights[0], [_section(self.beam)], down=True)
+            size = f"EI = {self.beam.bending_stiffness:.4g} N m²"
+            if self.beam.thickness is not None and self.beam.width is not None:
+                size = f"{_length(self.beam.width)} × {_length(self.beam.thickness)}"
+            elif self.beam.diameter is not None:
+                size = f"⌀ {_length(self.beam.diameter)}"
+            self.text(0.5 * WIDTH, -self.heights[0], [size], down=True)
         for device in scene.devices:
             words = [f"{value:.4g} {u}" for name, u in DEVICE_UNITS.items() if (value := getattr(device, name))]
             self.dashpot(self.at(device.position), self.half(device.position), words)
@@ -219,9 +224,3 @@ class _Sketch:
             tops.append(far)
         rows = [f"slider {with_unit(1e3 * slider.mass, 'g', '.4g')}, feet: {len(slider.foot)}"]
         self.text(self.at(start), max(tops) + 0.08, rows)
-
-
-def _section(beam: "Beam") -> str:
-    if beam.thickness is not None and beam.width is not None:
-        return f"{_length(beam.width)} × {_length(beam.thickness)}"
-    return f"⌀ {_length(beam.diameter)}" if beam.diameter is not None else f"EI = {beam.bending_stiffness:.4g} N m²"

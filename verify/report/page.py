@@ -10,13 +10,7 @@ from verify.analysis import verdict
 from verify.formatting import with_unit
 from verify.report.plotting import figure_files, movie_image
 from verify.report.result import Column, Figure, Movie, Table, plain, to_json
-from verify.report.summary import (
-    environment,
-    gates_table,
-    skipped_table,
-    study_title,
-    worst_gate,
-)
+from verify.report.summary import environment, gates_table, study_title, worst_gate
 
 if TYPE_CHECKING:
     from verify.scene.run import RunResult
@@ -27,9 +21,8 @@ DENSE = 6
 """Columns beyond which a table has small print."""
 LEVELS = verdict.LEVELS[::-1]
 """Levels of a verdict, the worst first."""
-MARKS = dict(
-    zip((*LEVELS, "FAIL", "cannot run", "pass"), ("fail", "warn", "pass", "fail", "fail", "pass"), strict=True)
-)
+MARKS = dict.fromkeys((LEVELS[0], "FAIL", "cannot run"), "fail") | dict.fromkeys((LEVELS[2], "pass"), "pass")
+MARKS[LEVELS[1]] = "warn"
 """Class of a cell with this text."""
 SPEEDS = "Speed of the slider"
 """Title of a table that follows the verdict, whichever study it belongs to."""
@@ -80,6 +73,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         rows.append((one.level, f"{one.name} {one.where}", *map(plain, (one.size, one.fine, one.limit)), *texts))
     reasons = Table("Margins", [*columns, Column("condition"), Column("remedy")], rows)
     worst, gates = worst_gate(run), gates_table(run)
+    skipped = Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
     most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
     if run.failed:
         most = f"{len(run.failed)} failed: {', '.join(one.gate.id for one in run.failed)}"
@@ -91,7 +85,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         Section("speeds", SPEEDS, tables=speeds),
         *(_study_section(run, name) for name in run.results),
         Section("gates", "Gates", most, tables=[replace(gates, rows=rest)] * bool(run.gates)),
-        Section("skipped", "Not run", tables=[skipped_table(run)] * bool(run.skipped), folded=True),
+        Section("skipped", "Not run", tables=[skipped] * bool(run.skipped), folded=True),
         Section("inputs", "Inputs", code=to_json(scene), folded=True),
     ]
     return render(
@@ -142,9 +136,8 @@ def _figure(figure: Figure, page: str) -> dict[str, Any]:
 
 
 def _movie(movie: Movie) -> dict[str, str]:
-    return {
-        key: data_uri("image/webp", image) for key, image in zip(("moving", "still"), movie_image(movie), strict=True)
-    }
+    moving, still = (data_uri("image/webp", image) for image in movie_image(movie))
+    return {"moving": moving, "still": still}
 
 
 def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:

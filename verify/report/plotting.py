@@ -1,7 +1,7 @@
 """Charts as SVG and PNG, movies as animated images: colours and style for both, in one place.
 
 Studies draw on the `Axes` that they receive, in `MODEL_COLORS` and the colour cycle. Colours of text, axes and paper
-are placeholders that `figure_svg` turns into CSS variables, so that one SVG serves light and dark pages.
+are placeholders that `figure_files` turns into CSS variables, so that one SVG serves light and dark pages.
 """
 
 import io
@@ -115,11 +115,6 @@ def distinguish(ax: "Axes", size: tuple[float, float]) -> None:
     else:
         columns = min(max(int(12.0 * size[0] / (max(map(len, names)) + 6.0)), 1), 4)
         ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, frameon=False)
-
-
-def figure_svg(figure: "Figure") -> str:
-    """The chart as an SVG element without scripts; see `figure_files`."""
-    return figure_files(figure, 0.0)[0]
 
 
 def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:

@@ -56,26 +56,13 @@ def value_text(value: Any, form: str = ".7g") -> str:
 def gates_table(run: "RunResult") -> Table:
     """All gates, failed ones first."""
     gates = sorted(run.gates, key=lambda gate: gate.passed is not False)
-    rows = [
-        (
-            VERDICTS[one.passed],
-            one.gate.id,
-            " ".join([one.gate.quantity, *(f"{key}={value}" for key, value in one.gate.arguments.items())]),
-            expected(one.gate),
-            value_text(one.value),
-            "" if one.unit == "1" else one.unit,
-            one.fraction,
-            one.reason or one.gate.why,
-        )
-        for one in gates
-    ]
+    rows: list[tuple[Any, ...]] = []
+    for one in gates:
+        quantity = " ".join([one.gate.quantity, *(f"{key}={value}" for key, value in one.gate.arguments.items())])
+        measured = expected(one.gate), value_text(one.value), "" if one.unit == "1" else one.unit, one.fraction
+        rows.append((VERDICTS[one.passed], one.gate.id, quantity, *measured, one.reason or one.gate.why))
     columns = [Column(name) for name in ("verdict", "gate", "quantity", "expected", "measured", "unit")]
     return Table("Gates", [*columns, Column("of tolerance", format=".3g", percent=True), Column("why")], rows)
-
-
-def skipped_table(run: "RunResult") -> Table:
-    """Sections and gates that were not run, with the reason."""
-    return Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
 
 
 def environment() -> dict[str, str]:

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.analysis.verdict import COLOURS
-from verify.report.result import MISSING, Column, Table
+from verify.report.result import Column, Table
 from verify.report.summary import VERDICTS, expected, study_title, value_text, worst_gate
 
 if TYPE_CHECKING:
@@ -49,19 +49,10 @@ def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None
 
 def gates_in_short(run: "RunResult") -> Table:
     """The gates in five columns that fit 80 characters; the page has them in full."""
-    rows = [
-        (
-            VERDICTS[one.passed],
-            one.gate.id,
-            _with_unit(value_text(one.value), one.unit),
-            expected(one.gate),
-            one.fraction,
-        )
-        for one in run.gates
-    ]
+    rows = []
+    for one in run.gates:
+        unit = "" if one.unit == "1" or one.value is None else f" {one.unit}"
+        measured = (value_text(one.value) + unit).rstrip()
+        rows.append((VERDICTS[one.passed], one.gate.id, measured, expected(one.gate), one.fraction))
     names = ("verdict", "gate", "measured", "expected")
     return Table("Gates", [*map(Column, names), Column("of tolerance", format=".3g", percent=True)], rows)
-
-
-def _with_unit(text: str, unit: str) -> str:
-    return text if unit in ("", "1") or text == MISSING else f"{text} {unit}"

@@ -10,8 +10,9 @@ from msgspec import Meta
 from verify.errors import InputError, raise_all
 from verify.options import DriveKind, Reference
 from verify.problem.beam import Beam, PointForce, check_frequency
-from verify.problem.device import Device, check_drives
+from verify.problem.device import Device
 from verify.problem.slider import Slider
+from verify.problem.supports import check_free
 from verify.validation import check_number, unit
 
 
@@ -223,7 +224,14 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 if ids.count(one) > 1:
                     yield f"{table}.{one} occurs twice: give every {table} its own id"
         try:
-            self._check_drive_and_slider()
+            if self.drive is not None:
+                check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
+            forces, _ = self.forces, self.devices
+            for force in forces if self.drive is not None and self.drive.kind == "force" else ():
+                supports, amplitude = self.beam.supports, {"amplitude": force.amplitude}
+                check_free("drive.force", force.position, self.beam.length, supports, amplitude)
+            if self.slider is not None:
+                self.slider.initial_position(self.beam)
         except InputError as error:
             yield from error.sentences
             return
@@ -234,16 +242,6 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 study.check(self)
             except InputError as error:
                 yield from error.sentences
-
-    def _check_drive_and_slider(self) -> None:
-        """Raise InputError for a drive or a slider that does not fit the beam."""
-        if self.drive is not None:
-            check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
-        forces, _ = self.forces, self.devices
-        if self.drive is not None and self.drive.kind == "force":
-            check_drives(forces, self.beam)
-        if self.slider is not None:
-            self.slider.initial_position(self.beam)
 
     @property
     def motion(self) -> Any:

@@ -16,12 +16,8 @@ _WALL_ORDERS = {"half": 2, "full": 1, "welded": 2, "third-order": 3}
 
 def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: str, attachment: str) -> int | None:
     """Order of the frequencies of a chain; None where it depends on the number of links."""
-    graded, thick, sheared, lever = (
-        grading != 1.0,
-        theory != "euler-bernoulli",
-        theory == "timoshenko",
-        attachment == "lever",
-    )
+    graded, lever = grading != 1.0, attachment == "lever"
+    thick, sheared = theory != "euler-bernoulli", theory == "timoshenko"
     ends = (0.0, beam.length)
     tips = [end for end, support in zip(ends, beam.supports, strict=True) if support == "free"]
     lateral = [m.position for m in beam.mass if m.mass] + [s.position for s in beam.spring if s.stiffness]

@@ -75,10 +75,3 @@ def rigid_links(chain: Chain, middles: Any, rotations: Any, *, both_sides: bool 
 def contact_line(chain: Chain, joints: Array) -> Any:
     """The paper's C2 contact line (Section II.B) through corrected joint positions (k, N + 1), as a `spline`."""
     return spline(chain, corrected_reading(chain, joints))
-
-
-def contact_piece(chain: Chain, joints: Array, piece: int) -> Array:
-    """Contact line of joints (k, N + 1) on one piece: coefficients of powers of xi, 0 to 1 on the piece, (k, 4)."""
-    length = float(chain.lengths[piece]) * chain.unit
-    powers = contact_line(chain, joints).c[::-1, piece]
-    return np.asarray((powers * length ** np.arange(4)[:, None]).T)

@@ -19,27 +19,20 @@ _LEAST = 1e-9
 """Relative slip compliance of an attachment, so that no unknown is massless."""
 
 
-def shear_factors(chain: Chain, wall: str, loaded: tuple[bool, bool]) -> Array:
-    """Factors on the slip compliances of joints 0..N, (N + 1,).
-
-    Clamped end: the wall's correction; pinned end: 1/2, exact by reflection; guided and free ends transmit no shear
-    force unless `loaded` by an attachment.
-    """
-    left, right = ({"pinned": "guided", "guided": "free"}.get(support, support) for support in chain.supports)
-    return wall_factors((left, right), chain.n_segments, wall, loaded)
-
-
 def slip_compliances(
     chain: Chain, softness: Array, bodies: Sequence[Body], weights: Array, wall: str
 ) -> tuple[Array, Array]:
     """Slip compliances of joints 0..N, (N + 1,), infinite without slip, and of bodies, (bodies,), 0 without slip.
 
-    A body at a free end has the slip of the end joint; a massless spring is in series with its slip. `weights`
-    (bodies, N + 1) are those of the joints.
+    Clamped end: the wall's correction; pinned end: 1/2, exact by reflection; guided and free ends transmit no shear
+    force unless loaded. A body at a free end has the slip of the end joint; a massless spring is in series with its
+    slip. `weights` (bodies, N + 1) are those of the joints.
     """
     tips = [b for b in bodies if b.end is not None and chain.supports[b.end] == "free" and b.mass + b.stiffness > 0.0]
     loaded = {body.end for body in tips}
-    slips, at_bodies = softness * shear_factors(chain, wall, (0 in loaded, 1 in loaded)), np.zeros(len(weights))
+    left, right = ({"pinned": "guided", "guided": "free"}.get(support, support) for support in chain.supports)
+    factors = wall_factors((left, right), chain.n_segments, wall, (0 in loaded, 1 in loaded))
+    slips, at_bodies = softness * factors, np.zeros(len(weights))
     for i, body in enumerate(bodies):
         if body in tips:
             if not body.mass:
@@ -93,17 +86,14 @@ def _harmonic_means(links: Array) -> Array:
     return np.concatenate([links[:1], inner, links[-1:]])
 
 
-def shear_angles(motions: Motions, softness: Array, unknowns: Any) -> Any:
-    """Shear angle gamma of the beam at joints 0..N, (N + 1, k), from the shear force; independent of wall factors."""
-    slipping, angles = motions.sliding, motions.joint_slips @ unknowns
-    angles[slipping] *= (softness[slipping] / motions.slips[slipping])[:, None]
-    return angles / motions.chain.spans[:, None]
-
-
 def shear_change(motions: Motions, softness: Array, unknowns: Any) -> Any:
-    """Derivative gamma' of the shear angle at joints 0..N, (k, N + 1), per unit length."""
-    chain = motions.chain
-    return np.gradient(shear_angles(motions, softness, unknowns), chain.nodes / chain.unit, axis=0, edge_order=2).T
+    """Derivative gamma' of the shear angle at joints 0..N, (k, N + 1), per unit length.
+
+    From the shear force; independent of wall factors.
+    """
+    chain, slipping, angles = motions.chain, motions.sliding, motions.joint_slips @ unknowns
+    angles[slipping] *= (softness[slipping] / motions.slips[slipping])[:, None]
+    return np.gradient(angles / chain.spans[:, None], chain.nodes / chain.unit, axis=0, edge_order=2).T
 
 
 def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: Array, values: Array) -> Array:

@@ -160,12 +160,7 @@ def material_scale(ratio: float) -> float:
 
 
 def matrix_check(
-    id: str,
-    parameter: str,
-    values: Sequence[float],
-    mode: int,
-    models: Mapping[str, str] = DISCRETE,
-    **more: Any,
+    id: str, parameter: str, values: Sequence[float], mode: int, models: Mapping[str, str] = DISCRETE, **more: Any
 ) -> Callable[[Callable[[float], Any]], Any]:
     """Register a mode of `case(value)` = (beam, lengths of parts, grading if any) against its matrices in 60 digits."""
 

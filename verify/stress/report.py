@@ -27,12 +27,11 @@ def result(outcomes: Sequence[Outcome]) -> Result:
     """Table and data of the outcomes."""
     records = [record(one) for one in outcomes]
     failed = [one["id"] for one in records if not one["passed"]]
-    rows = [
-        [one["id"], one["parameter"], f"{one['from']:.3g} .. {one['to']:.3g}", one["tolerance"], one["worst"]]
-        for one in records
-    ]
-    for row, one in zip(rows, records, strict=True):
-        row += [f"{one['breaks_at']:.3g} {one['breaks_by']}" if one["breaks_by"] else None, one["baseline"]]
+    rows = []
+    for one in records:
+        breaks = f"{one['breaks_at']:.3g} {one['breaks_by']}" if one["breaks_by"] else None
+        values = f"{one['from']:.3g} .. {one['to']:.3g}", one["tolerance"], one["worst"], breaks, one["baseline"]
+        rows.append((one["id"], one["parameter"], *values))
     return Result(
         summary=f"{len(records) - len(failed)} of {len(records)} checks are within their tolerance.",
         tables=[Table("Stress checks", COLUMNS, rows, [NOTE])],

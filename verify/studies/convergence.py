@@ -178,7 +178,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 except InputError:  # one of the models has no such mode, which its row says
                     continue
                 row = {"mode": mode, "N": count, "lower_hz": bound.lower, "upper_hz": bound.upper}
-                rows.append(row | {"width": bound.relative_width, "mean_error": mean})
+                rows.append(row | {"width": (bound.upper - bound.lower) / bound.mean, "mean_error": mean})
         return rows, list(reasons)
 
     def _summarise(self, cache: "SolutionCache", rows: list[Row]) -> tuple[list[str], list[str]]:
@@ -223,9 +223,8 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         ax.xaxis.set_minor_locator(NullLocator())
         ax.set(xlabel="number of segments or elements N", ylabel="|frequency error|, %")
         ax.legend(ncols=2)
-        guides = {
-            one.expected_order(cache.beam): [r for r in rows if r["variant"] == one and r["error"]] for one in colors
-        }
+        solved = [row for row in rows if row["error"]]
+        guides = {one.expected_order(cache.beam): [r for r in solved if r["variant"] == one] for one in colors}
         means = [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]]
         if len(means) > 1 and means[-1]["N"] > means[-2]["N"]:  # of the highest mode
             ratio, growth = (means[-2]["error"] / means[-1]["error"], means[-1]["N"] / means[-2]["N"])

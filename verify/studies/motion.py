@@ -170,22 +170,15 @@ def readings(scene: "Scene") -> "Table":
         (f"{own.kinematics}, long", "the same after its start", point, LONG),
         ("contact that opens", "lifts off and lands", own if own.contact else opening, LONG),
     ):
+        duration = times * scene.motion.duration
         try:
-            options = TimeOptions(model="analytic", time=times * scene.motion.duration)
-            run = simulate(**motion_arguments(scene, options), slider=slider, samples=2)
-            found, speed = verdict_of(run_margins(run, slider, "exact beam")), run.mean_speed
-            rows.append(
-                (
-                    name,
-                    assumption,
-                    times * scene.motion.duration,
-                    speed,
-                    found.level,
-                    found.margins[0].text if found.margins else "",
-                )
-            )
+            arguments = motion_arguments(scene, TimeOptions(model="analytic", time=duration))
+            run = simulate(**arguments, slider=slider, samples=2)
+            found = verdict_of(run_margins(run, slider, "exact beam"))
+            worst = found.margins[0].text if found.margins else ""
+            rows.append((name, assumption, duration, run.mean_speed, found.level, worst))
         except InputError as error:
-            rows.append((name, assumption, times * scene.motion.duration, None, "not trusted", str(error)))
+            rows.append((name, assumption, duration, None, "not trusted", str(error)))
     columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
     valid = ", ".join(row[0] for row in rows if row[4] != "not trusted")
     note = f"Valid by its own margins: {valid or 'none'}. A mean over the start is not the speed of a motor."

@@ -131,10 +131,8 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         name = sized_title(case.model, case.count)
         progress(f"force over speed, {name}")
         still: SteadyState = cached(cache, steady_state, case, 0.0, PERIODS)
-        way = copysign(1.0, still.means.force)
-        speeds = [at.speed for at in like] or [
-            way * crest_speed(case) * k / (self.speeds - 1) for k in range(self.speeds)
-        ]
+        crest = copysign(crest_speed(case), still.means.force)
+        speeds = [at.speed for at in like] or [crest * k / (self.speeds - 1) for k in range(self.speeds)]
         curve = [still, *(steady_state(case, speed, PERIODS, still.run) for speed in speeds[1:])]
         missing: list[str] = list(dict.fromkeys(one for at in curve for one in at.not_converged))
         unloaded = None
@@ -158,8 +156,6 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             ends = ("start", free, free.speed), ("stop", stop, 0.0), ("reversal", reversal, -free.speed)
             times |= {key: one.time_constant(target) if one else None for key, one, target in ends}
             missing += [key for key, one, _ in ends if one and times[key] is None]
-        else:
-            missing.append("free speed" if finished else "left")
         missing += ["ringing"] * rings
         return Field(case, name, curve, unloaded, free, stop, reversal, times, missing)
 

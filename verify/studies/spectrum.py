@@ -67,29 +67,19 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         own = dict(variants[0].settings)
         sizes = [(one.model, count) for one in variants if dict(one.settings) == own]
         margins = beam_margins(cache, sizes, mode=self.modes, settings=variants[0].settings)
-        summary = ", ".join(f"{title} {100 * error:+.4g} %" for title, error in known.items())
+        summary = ", ".join(f"{name} {100 * error:+.4g} %" for name, error in known.items())
         columns = [Column("mode"), Column(f"exact {theory_name(theory)}", "Hz", ".7g")]
         columns += [percent(one.title) for one in variants] + [percent(f"{theory_name(t)} theory") for t in theories]
         note = "Theory: change of the exact frequency against Euler-Bernoulli theory."
-        size = f"N = {count}"
+        size, draw = f"N = {count}", partial(draw_errors, errors, theories)
+        title = marked(f"Frequency error over mode number, {size}", margins)
+        shapes = self._shapes(cache, variants, count)
         return Result(
             summary=f"Mode {self.modes}, {size}, against the exact beam: {summary}." if known else "",
             tables=[Table(f"Frequency errors, {size}", columns, rows, [note] * bool(theories))],
-            figures=[
-                Figure(
-                    "mode-errors",
-                    marked(f"Frequency error over mode number, {size}", margins),
-                    CAPTIONS["mode-errors"],
-                    partial(draw_errors, errors, theories),
-                ),
-                *self._shapes(cache, variants, count),
-            ],
+            figures=[Figure("mode-errors", title, CAPTIONS["mode-errors"], draw), *shapes],
             warnings=[*warnings, *left_out.values()],
-            data={
-                "count": count,
-                "errors": {one.label: own for one, own in errors.items()},
-                "theories": theories,
-            },
+            data={"count": count, "errors": {one.label: own for one, own in errors.items()}, "theories": theories},
             margins=margins,
         )
 

@@ -61,72 +61,45 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError("sweep.claims = true, and the scene has no [[claim]]: add one, or leave it out")
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
-        """Evaluate every combination; one without a value is a row with the reason. Raises InputError."""
-        return run_sweep(
-            scene, self.quantities, self.over, arguments=self.arguments, claims=self.claims, progress=progress
+        """Evaluate the quantities over every combination of the lists in `over`, the first key slowest.
+
+        Runs on as many processes as VERIFY_JOBS says, else as there are cores. Returns one table with a row for each
+        combination, and a chart of each quantity over one or two lists. Raises InputError for an unknown quantity, key
+        or argument; a combination that raises it is a row with the reason.
+        """
+        from verify.parallel import VARIABLE, map_processes
+        from verify.report.result import Column, Figure, Result, Table
+
+        self.check(scene)
+        tables = _tables(scene)
+        combinations = _combinations(self.over)
+        values = map_processes(
+            _evaluate,
+            [(tables, self, one) for one in combinations],
+            lambda done: progress(f"combination {done} of {len(combinations)}"),
+            max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
         )
-
-
-def run_sweep(
-    scene: "Scene",
-    quantities: Sequence[str],
-    over: Mapping[str, Sequence[Any]],
-    *,
-    arguments: Mapping[str, Any] | None = None,
-    claims: bool = False,
-    progress: Progress = lambda step: None,
-) -> "Result":
-    """Evaluate quantities over every combination of the lists in `over`, the first key slowest.
-
-    `over`, `arguments` and `claims` are those of `Sweep`. Runs on as many processes as VERIFY_JOBS says, else as there
-    are cores. Returns one table with a row for each combination, and a chart of each quantity over one or two lists.
-    Raises InputError for an unknown quantity, key or argument; a combination that raises it is a row with the reason.
-    """
-    from verify.parallel import VARIABLE, map_processes
-    from verify.report.result import Column, Figure, Result, Table
-
-    study = Sweep(
-        quantities=tuple(quantities),
-        over={key: list(values) for key, values in over.items()},
-        arguments=dict(arguments or {}),
-        claims=claims,
-    )
-    study.check(scene)
-    tables = _tables(scene)
-    combinations = _combinations(study.over)
-    values = map_processes(
-        _evaluate,
-        [(tables, study, one) for one in combinations],
-        lambda done: progress(f"combination {done} of {len(combinations)}"),
-        max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
-    )
-    rows = [one | found for one, found in zip(combinations, values, strict=True)]
-    margins = [margin for row in rows for margin in row.pop("margins")]
-    if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
-        margins = [margin for margin in margins if not margin.name.startswith("discretisation")]
-    wanted, failed = _quantities(quantities), sum(row["reason"] is not None for row in rows)
-    columns = [Column(key, format=".6g") for key in combinations[0]]
-    columns += [Column(one.name, "" if one.unit == "1" else one.unit, ".7g") for one in wanted]
-    columns += [Column(AGREE)] * claims + [Column("reason")] * bool(failed)
-    where = " and ".join(over)
-    return Result(
-        summary=f"{len(rows)} combinations, {failed} without a value.",
-        tables=[
-            Table(
-                f"Sweep over {where}",
-                columns,
-                [tuple(_cell(row[column.name]) for column in columns) for row in rows],
-                [f"Claims of the scene: {len(scene.claim)}."] * claims,
-            )
-        ],
-        figures=[
-            Figure(f"sweep-{one.name}", f"{one.name} over {where}", one.summary, partial(_draw, study, rows, one))
-            for one in wanted
-            if len(over) <= 2 and any(_number(row[one.name]) for row in rows)
-        ],
-        data={"rows": rows},
-        margins=margins,
-    )
+        rows = [one | found for one, found in zip(combinations, values, strict=True)]
+        margins = [margin for row in rows for margin in row.pop("margins")]
+        if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
+            margins = [margin for margin in margins if not margin.name.startswith("discretisation")]
+        wanted, failed = _quantities(self.quantities), sum(row["reason"] is not None for row in rows)
+        columns = [Column(key, format=".6g") for key in combinations[0]]
+        columns += [Column(one.name, "" if one.unit == "1" else one.unit, ".7g") for one in wanted]
+        columns += [Column(AGREE)] * self.claims + [Column("reason")] * bool(failed)
+        cells = [tuple(_cell(row[column.name]) for column in columns) for row in rows]
+        note, where = f"Claims of the scene: {len(scene.claim)}.", " and ".join(self.over)
+        return Result(
+            summary=f"{len(rows)} combinations, {failed} without a value.",
+            tables=[Table(f"Sweep over {where}", columns, cells, [note] * self.claims)],
+            figures=[
+                Figure(f"sweep-{one.name}", f"{one.name} over {where}", one.summary, partial(_draw, self, rows, one))
+                for one in wanted
+                if len(self.over) <= 2 and any(_number(row[one.name]) for row in rows)
+            ],
+            data={"rows": rows},
+            margins=margins,
+        )
 
 
 def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:

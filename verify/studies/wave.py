@@ -1,5 +1,6 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
@@ -68,6 +69,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve the fields of all models. Raises InputError."""
+        import numpy as np
         from msgspec.structs import replace
 
         from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
@@ -107,44 +109,32 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         size = n if n in counts else max(counts)
         margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
         swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
-        margins += [
-            against_exact("standing-wave ratio", *one, rows[0]["drive"]["standing_wave_ratio"]) for one in swr.items()
-        ]
+        exact_swr = rows[0]["drive"]["standing_wave_ratio"]
+        margins += [against_exact("standing-wave ratio", *one, exact_swr) for one in swr.items()]
         ratios = [f"{name} {value:.5g}" for name, value in swr.items()]
         x, up, magnified, widest = ellipses(fields["analytic"])
         paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
         start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
-        caption = (
-            f"To scale up to {widest:.3g} times as wide as high; motion along the beam magnified {magnified:.2g} times."
-        )
+        draw_paths = partial(plot_lines, lines=[*paths, start], x=("x", "m"), y=("deflection", "m"))
+        caption = f"To scale to {widest:.3g} times as wide as high; along the beam magnified {magnified:.2g} times."
+        at = np.linspace(0.0, scene.beam.length, 601)
+        lines = [(MODELS[m].title, at, abs(field.deflection(at)), model_style(m)) for m, field in fields.items()]
+        draw_envelopes = partial(plot_lines, lines=lines, x=("x", "m"), y=("amplitude", "m"))
+        envelope = marked(f"Envelope of the wave, N = {n}", margins)
+        ratios_of_best = {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg}
         return Result(
             summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
             tables=[
                 Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
-                _drives(best, exact, rows[0]["drive"]["standing_wave_ratio"]),
+                _drives(best, exact, exact_swr),
             ],
             figures=[
-                Figure(
-                    "wave-envelopes",
-                    marked(f"Envelope of the wave, N = {n}", margins),
-                    ENVELOPES,
-                    lambda ax: _draw_envelopes(ax, fields),
-                ),
-                Figure(
-                    "wave-ellipses",
-                    "Surface ellipses along the beam, exact field",
-                    caption,
-                    lambda ax: plot_lines(ax, [*paths, start], ("x", "m"), ("deflection", "m")),
-                ),
+                Figure("wave-envelopes", envelope, ENVELOPES, draw_envelopes),
+                Figure("wave-ellipses", "Surface ellipses along the beam, exact field", caption, draw_paths),
             ],
             movies=[movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{row['name']}: {row['note']}." for row in rows if row["note"]],
-            data={
-                "rows": rows,
-                "other_drive_standing_wave_ratio": ratio,
-                "best_ratio": best.ratio,
-                "best_ratio_phase_deg": best.phase_deg,
-            },
+            data={"rows": rows, "other_drive_standing_wave_ratio": ratio, **ratios_of_best},
             margins=margins,
         )
 
@@ -211,16 +201,6 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     magnified = float(0.42 * (places[1] - places[0]) / abs(along).max())
     ratio = np.ptp(along, axis=1) / np.maximum(np.ptp(up, axis=1), 1e-300)
     return places[:, None] + magnified * along, up, magnified, float(ratio.max())
-
-
-def _draw_envelopes(ax: "Axes", fields: Fields) -> None:
-    import numpy as np
-
-    from verify.linear.registry import MODELS
-
-    x = np.linspace(0.0, fields["analytic"].beam.length, 601)
-    lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
-    plot_lines(ax, lines, ("x", "m"), ("amplitude", "m"))
 
 
 def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":

@@ -74,14 +74,12 @@ def best_drive(
     two forces (displacements), and NoFigureError where no frequency has a wave.
     """
     check_two(case)
-    frequencies = np.atleast_1d(
-        case.frequency_hz if frequencies_hz is None else np.asarray(frequencies_hz, dtype=float)
-    )
+    hertz = case.frequency_hz if frequencies_hz is None else np.asarray(frequencies_hz, dtype=float)
+    frequencies = np.atleast_1d(hertz)
     unit = unit_waves(case, frequencies, window or middle_half(case.beam))
     known = np.isfinite(unit.k)
-    wanted, unwanted = (
-        wave[known] for wave in unit.superposed(np.eye(2, dtype=complex))[:: 1 if direction > 0 else -1]
-    )
+    waves = unit.superposed(np.eye(2, dtype=complex))
+    wanted, unwanted = (wave[known] for wave in waves[:: 1 if direction > 0 else -1])
     if not np.isfinite(wanted).all():
         raise zero_field()  # an actuator acts on a support
     sizes = np.sqrt(abs(wanted) ** 2 + abs(unwanted) ** 2).prod(axis=1)

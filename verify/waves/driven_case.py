@@ -12,7 +12,7 @@ from verify.linear.base import BeamModel
 from verify.linear.field import HarmonicField, unit_response, wavenumber
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
-from verify.waves.two_waves import ROUNDING, amplitudes_of, window_rule, zero_field
+from verify.waves.two_waves import ROUNDING, wave_basis, window_rule, zero_field
 from verify.waves.window import Window, check_span, check_waves
 
 if TYPE_CHECKING:
@@ -135,7 +135,9 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
         except NoFigureError as error:
             missing.append(error)
     waves, known = np.full((len(k), 2, len(positions)), np.nan, dtype=complex), np.isfinite(k)
-    waves[known] = amplitudes_of(rule, k[known], responses[known], 0.5 * sum(window))
+    basis = wave_basis(rule.x, k[known], 0.5 * sum(window))  # amplitudes at the middle
+    adjoint = np.conj(np.swapaxes(basis, 1, 2)) * rule.weights
+    waves[known] = np.linalg.solve(adjoint @ basis, adjoint @ np.swapaxes(responses[known], 1, 2))
     forward, backward = waves[:, 0], waves[:, 1]
     return UnitWaves(case, frequencies_hz, k, forward, backward, tuple(missing))
 

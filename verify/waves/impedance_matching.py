@@ -43,13 +43,7 @@ class Ending(msgspec.Struct, frozen=True):
 
 
 def ending(
-    beam: Beam,
-    frequency_hz: float,
-    distance: float,
-    support: str = "pinned",
-    *,
-    turning: bool = False,
-    name: str = "",
+    beam: Beam, frequency_hz: float, distance: float, support: str = "pinned", *, turning: bool = False, name: str = ""
 ) -> Ending:
     """A half-infinite beam with a device at `distance` (m) from its end, against rotation if `turning`.
 

@@ -97,10 +97,8 @@ def maximum_crest_speed(case: DrivenCase, limit: float, span: float = SEARCH_SPA
         for _ in range(_LEVELS):
             drives = np.stack([np.full_like(phases, first), second * np.exp(1j * phases)], axis=1)
             forward, backward = waves.superposed(drives)
-            gammas, speeds = (
-                reflections(forward, backward),
-                guide.crest_speed(omega, waves.k[:, None], forward, backward),
-            )
+            gammas = reflections(forward, backward)
+            speeds = guide.crest_speed(omega, waves.k[:, None], forward, backward)
             ranks = np.nan_to_num(np.where(gammas <= limit + ROUNDING, abs(speeds), -gammas), nan=-1.0)
             best = ranks.argmax(axis=1)
             phase, gamma, speed, rank = (values[rows, best] for values in (phases, gammas, speeds, ranks))

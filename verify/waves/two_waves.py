@@ -77,13 +77,6 @@ def window_rule(window: Window, k: float) -> Rule:
     return gauss_rule((start, end), max(int(np.ceil(2.0 * (end - start) * k / np.pi)), 1))
 
 
-def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle: float) -> ComplexArray:
-    """Forward and backward amplitudes at the middle, (n, 2, m), of fields (n, m, len(rule.x)) with wavenumbers (n,)."""
-    basis = wave_basis(rule.x, k, middle)
-    adjoint = np.conj(np.swapaxes(basis, 1, 2)) * rule.weights
-    return np.asarray(np.linalg.solve(adjoint @ basis, adjoint @ np.swapaxes(deflections, 1, 2)), dtype=complex)
-
-
 def two_waves(field: HarmonicField, window: Window, wave_number: complex | None = None) -> TwoWaves:
     """The two waves of a field in a window, fitted in the mean square. Errors as in `travelling_wave.measure`."""
     check_type("field", field, HarmonicField)
