@@ -235,6 +235,9 @@ class StructuralSystem(FactoredSystem):
         from scipy.sparse.linalg import splu
 
         m, n, (elastic, rigid) = len(d), self.n, self._coordinates
+        # rigid-body inertia of order one beside the stiffness, whatever the frequency
+        small = np.sqrt(omega2) if omega2 and self.n_rigid else 1.0
+        rigid = rigid / small
         matrix, change, split = self.augmented(-omega2, d), hstack([elastic, csc_array(rigid)]), elastic.shape[1]
         if self.n_rigid:
             kept = np.concatenate([np.arange(m), m + elastic.indices])
@@ -245,7 +248,7 @@ class StructuralSystem(FactoredSystem):
             wide = hstack([csc_array((1, m)), row @ change], format="csr")
             matrix = matrix + z * (wide.T @ wide).tocsc()
         if rows is not None:
-            wide = hstack([csc_array((rows.shape[0], m)), rows @ change])
+            wide = small * hstack([csc_array((rows.shape[0], m)), rows @ change])
             matrix = block_array([[matrix, wide.T], [wide, None]], format="csc")
         try:
             factor = splu(matrix.astype(d.dtype))
@@ -256,10 +259,10 @@ class StructuralSystem(FactoredSystem):
             still = np.zeros((0, load.shape[1])) if displacements is None else displacements
 
             def step(load: Any, strained: Any, still: Any) -> list[Any]:
-                right = np.concatenate([np.zeros((m, load.shape[1])), change.T @ load, still]).astype(d.dtype)
+                right = np.concatenate([np.zeros((m, load.shape[1])), change.T @ load, small * still]).astype(d.dtype)
                 right[m : m + split] -= strained
                 y = factor.solve(right)[m:]
-                return [elastic @ y[:split], rigid @ y[split:n], y[n:]]
+                return [elastic @ y[:split], rigid @ y[split:n], small * y[n:]]
 
             bent, moved, forces = step(load, 0.0, still)
             lost = np.inf
