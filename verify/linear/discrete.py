@@ -20,7 +20,7 @@ from verify.linear.base import BeamModel, Devices
 from verify.linear.field import HarmonicField, phasor, point_force
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, frequencies_on, vector_on
-from verify.linear.system import FEW, SUPERPOSED, StructuralSystem, memory
+from verify.linear.system import FEW, LOST, SUPERPOSED, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import PointForce
 from verify.problem.device import Device
@@ -362,28 +362,40 @@ class DiscreteModel(BeamModel):
 
         Rigid-body motions have no curvature; that of their rounded sum with bending is rounding at low frequency.
         """
-        one, moves = np.ndim(frequency_hz) == 0, bool(self.stable_system.n_rigid)
+        one, sampled = np.ndim(frequency_hz) == 0, np.linspace(0.0, self.beam.length, 33)
 
-        def joined(line: Callable[[Any], Any], last: int) -> Any:
-            if (bent := line(parts[0].T)) is None:
-                return None
-            moved = line(parts[1].T) if moves else None
+        def joined(lines: Sequence[Any], shift: int) -> Callable[[Array, int], Any]:
+            checked = {0}
+
+            def both(lines: Sequence[Any], x: Array, derivative: int, order: int) -> Any:
+                return sum(line(x, derivative) for line in (lines if order < 2 else lines[:1]))
 
             def read(x: Array, derivative: int) -> Any:
-                values = bent(x, derivative)
-                values = values + moved(x, derivative) if moved is not None and derivative <= last else values
+                if (order := derivative + shift) not in checked:
+                    # rounding of deflections over the length of a part, measured as a few units of the last place
+                    noise = abs(both(deflections, sampled, 0, order)).max(axis=1) * 8.0 * 2.0**-52 / self.unit**order
+                    size = abs(both(lines, sampled, derivative, order)).max(axis=1)
+                    if (bad := np.flatnonzero((noise > LOST * size) & (size > 0.0))).size:
+                        raise NoFigureError(
+                            f"frequency_hz = {float(np.atleast_1d(frequency_hz)[bad[0]])!r} leaves derivative {order} "
+                            f"of the {self.name} model's deflection fewer than four digits: raise it or lower count"
+                        )
+                    checked.add(order)
+                values = both(lines, x, derivative, order)
                 return values[0] if one else values
 
             return read
 
+        moving = parts if self.stable_system.n_rigid else parts[:1]
+        deflections, rotations = ([line(part.T) for part in moving] for line in (self.line, self.rotation_line))
         return HarmonicField(
             model=self.name,
             count=self.count,
             beam=self.beam,
             frequency_hz=float(frequency_hz) if one else as_vector("frequency_hz", frequency_hz),
             forces=forces,
-            shapes=joined(self.line, 1),
+            shapes=joined(deflections, 0),
             theory=self.theory,
-            rotation_shapes=joined(self.rotation_line, 0),
+            rotation_shapes=None if rotations[0] is None else joined(rotations, 1),
             couples=tuple(device.position for device in devices if device.turning),
         )
