@@ -20,7 +20,7 @@ from verify.linear.base import BeamModel, Devices
 from verify.linear.field import HarmonicField, phasor, point_force
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Numbers, as_vector, frequencies_on, vector_on
-from verify.linear.system import FEW, SUPERPOSED, StructuralSystem, memory
+from verify.linear.system import FEW, LOST, SUPERPOSED, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import PointForce
 from verify.problem.device import Device
@@ -225,18 +225,19 @@ class DiscreteModel(BeamModel):
                 f"modal_damping = {modal_damping!r} with {coupling}: the modes are coupled, give one of the two"
             )
         if loss is not None:
-            unknowns = self.stable_system.harmonic_sweep(loads, omega2, loss, modal_damping)[:, :, 0]
-            if (at := np.flatnonzero(np.isnan(unknowns[:, 0]))).size:
+            parts = self.stable_system.harmonic_sweep(loads, omega2, loss, modal_damping)[..., 0]
+            if (at := np.flatnonzero(np.isnan(parts[0, :, 0]))).size:
                 raise self._at_resonance(float(frequencies[at[0]]))
         else:
-            unknowns, rows = np.empty((len(omegas), len(loads)), dtype=complex), [each[1:] for each in impedances]
+            parts, rows = np.empty((2, len(omegas), len(loads)), dtype=complex), [each[1:] for each in impedances]
             for i, (omega, w2) in enumerate(zip(omegas.tolist(), omega2.tolist(), strict=True)):
                 try:
-                    unknowns[i] = self.stable_system.harmonic(loads, w2, self.lossy_stiffness(omega), rows)[:, 0]
+                    steady = self.stable_system.steady(loads, w2, self.lossy_stiffness(omega), rows)
                 except np.linalg.LinAlgError:
                     raise self._at_resonance(float(frequencies[i])) from None
-        reactions = self._reactions(impedances, unknowns[0])
-        return self._field(unknowns, frequency_hz, (*acting, *own, *reactions), stationed)
+                parts[:, i] = steady[0][:, 0], steady[1][:, 0]
+        reactions = self._reactions(impedances, parts[:, 0].sum(axis=0))
+        return self._field(parts, frequency_hz, (*acting, *own, *reactions), stationed)
 
     def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
         """The steady field under imposed harmonic displacements, which are constraint rows of the system.
@@ -259,22 +260,24 @@ class DiscreteModel(BeamModel):
             )
         impedances = self._impedances(stationed, omega)
         try:
-            responses, forces = self.stable_system.prescribed(
-                rows,
-                np.eye(p, p + 1),
+            bent, moved, forces = self.stable_system.steady(
                 np.hstack([np.zeros((self.n_unknowns, p)), self._loads((), own)]),
                 (omega / self._omega_unit) ** 2,
                 self.lossy_stiffness(omega),
                 [each[1:] for each in impedances],
+                rows,
+                np.eye(p, p + 1),
             )
         except np.linalg.LinAlgError:
             raise self._at_resonance(frequency_hz) from None
-        read, scale = self.line(responses)(places, 0), self.beam.bending_stiffness / self.unit**3
+        read, scale = self.line(bent + moved)(places, 0), self.beam.bending_stiffness / self.unit**3
         shares = np.linalg.solve(read[:p].T, np.array([phasor(drive) for drive in drives]) - read[p])
-        unknowns, forces = (each @ np.append(shares, 1.0) for each in (responses, forces))
+        bent, moved, forces = (each @ np.append(shares, 1.0) for each in (bent, moved, forces))
         holding = [point_force(at, force * scale) for at, force in zip(places.tolist(), forces, strict=True)]
-        reactions = self._reactions(impedances, unknowns)
-        return self._field(unknowns[None], float(frequency_hz), (*holding, *own, *reactions), stationed)
+        reactions = self._reactions(impedances, bent + moved)
+        return self._field(
+            np.stack([bent, moved])[:, None], float(frequency_hz), (*holding, *own, *reactions), stationed
+        )
 
     def receptance(self, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> ComplexArray:
         """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)), m/N."""
@@ -331,8 +334,8 @@ class DiscreteModel(BeamModel):
 
     def _at_resonance(self, frequency_hz: float) -> ResonanceError:
         return ResonanceError(
-            f"frequency_hz = {frequency_hz!r} is an undamped resonance of the {self.name} model: give the beam a "
-            "loss_factor or choose another frequency"
+            f"frequency_hz = {frequency_hz!r} is an undamped resonance of the {self.name} model, or leaves it fewer "
+            "than four digits: give the beam a loss_factor, choose another frequency or lower count"
         )
 
     def _impedances(self, devices: Sequence[Device], omega: float) -> list[tuple[float | None, Any, complex]]:
@@ -353,22 +356,46 @@ class DiscreteModel(BeamModel):
                 if at is not None]  # fmt: skip
 
     def _field(
-        self, unknowns: ComplexArray, frequency_hz: Any, forces: tuple[PointForce, ...], devices: Sequence[Device]
+        self, parts: ComplexArray, frequency_hz: Any, forces: tuple[PointForce, ...], devices: Sequence[Device]
     ) -> HarmonicField:
-        """The field for unknowns (n_frequencies, n); of one frequency if `frequency_hz` is a number."""
-        line, rotation, one = self.line(unknowns.T), self.rotation_line(unknowns.T), np.ndim(frequency_hz) == 0
+        """The field for elastic and rigid-body unknowns (2, n_frequencies, n); of one frequency if a number.
 
-        def first(read: Callable[[Array, int], Any]) -> Callable[[Array, int], Any]:
-            return (lambda x, derivative: read(x, derivative)[0]) if one else read
+        Rigid-body motions have no curvature; that of their rounded sum with bending is rounding at low frequency.
+        """
+        one, sampled = np.ndim(frequency_hz) == 0, np.linspace(0.0, self.beam.length, 33)
 
+        def joined(lines: Sequence[Any], shift: int) -> Callable[[Array, int], Any]:
+            checked = {0}
+
+            def both(lines: Sequence[Any], x: Array, derivative: int, order: int) -> Any:
+                return sum(line(x, derivative) for line in (lines if order < 2 else lines[:1]))
+
+            def read(x: Array, derivative: int) -> Any:
+                if (order := derivative + shift) not in checked:
+                    # rounding of deflections over the length of a part, measured as a few units of the last place
+                    noise = abs(both(deflections, sampled, 0, order)).max(axis=1) * 8.0 * 2.0**-52 / self.unit**order
+                    size = abs(both(lines, sampled, derivative, order)).max(axis=1)
+                    if (bad := np.flatnonzero((noise > LOST * size) & (size > 0.0))).size:
+                        raise NoFigureError(
+                            f"frequency_hz = {float(np.atleast_1d(frequency_hz)[bad[0]])!r} leaves derivative {order} "
+                            f"of the {self.name} model's deflection fewer than four digits: raise it or lower count"
+                        )
+                    checked.add(order)
+                values = both(lines, x, derivative, order)
+                return values[0] if one else values
+
+            return read
+
+        moving = parts if self.stable_system.n_rigid else parts[:1]
+        deflections, rotations = ([line(part.T) for part in moving] for line in (self.line, self.rotation_line))
         return HarmonicField(
             model=self.name,
             count=self.count,
             beam=self.beam,
             frequency_hz=float(frequency_hz) if one else as_vector("frequency_hz", frequency_hz),
             forces=forces,
-            shapes=first(line),
+            shapes=joined(deflections, 0),
             theory=self.theory,
-            rotation_shapes=None if rotation is None else first(rotation),
+            rotation_shapes=None if rotations[0] is None else joined(rotations, 1),
             couples=tuple(device.position for device in devices if device.turning),
         )

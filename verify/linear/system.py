@@ -26,6 +26,8 @@ HARD = 100.0
 """Lower bound over the lowest bending eigenvalue, about, above which a foundation clusters the eigenvalues."""
 REFINED = 6
 """Largest number of iterative refinements: one for equal parts, more on soft supports."""
+LOST = 1e-4
+"""Largest last correction of a refinement, relative: fewer digits are no answer."""
 FEW = 4
 """Largest number of frequencies solved one by one: all modes cost more than a few factorisations."""
 SUPERPOSED = 600
@@ -212,58 +214,124 @@ class StructuralSystem(FactoredSystem):
 
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
-    def _factor(self, omega2: float, stiffness: Any, devices: Sequence[tuple[Any, complex]], rows: Any = None) -> Any:
-        """Factors of K + devices - omega^2 M; `rows` (p, n) are constraints. Raises LinAlgError where singular."""
+    def _coordinates(self, omega2: float) -> tuple[Any, Array]:
+        """Coordinates of the elastic and of the rigid-body part of v = P e + R q: sparse P (n, n - r), R (n, r).
+
+        e = 0 at r unknowns that prevent rigid-body motions. B R = 0 is exact, B v is rounding of a large R q. Above the
+        first bending modes r = 0: the sum costs decayed waves their digits.
+        """
+        from scipy.sparse import eye_array
+
+        if not self.n_rigid or omega2 > (3.0 / self.n) ** 4:
+            return eye_array(self.n, format="csc"), np.zeros((self.n, 0))
+        return eye_array(self.n, format="csc")[:, np.delete(np.arange(self.n), self._grounded())], self.rigid
+
+    def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Any]:
+        """Elastic and rigid-body part (n, k), forces (p, k) of K + devices - omega^2 M under p constraints `rows`.
+
+        Iterative refinement: the factors lose soft supports beside bending, factored strains do not. Raises LinAlgError
+        where the matrix is singular, and where the last correction of a response exceeds `LOST`.
+        """
         from scipy.sparse import block_array, csc_array, hstack
         from scipy.sparse.linalg import splu
 
-        matrix, m = self.augmented(-omega2, stiffness), len(self.stiffness)
+        m, n, (elastic, rigid) = len(d), self.n, self._coordinates(omega2)
+        # rigid-body inertia of order one beside the stiffness, whatever the frequency
+        small = np.sqrt(omega2) if omega2 and rigid.size else 1.0
+        rigid = rigid / small
+        matrix, change, split = self.augmented(-omega2, d), hstack([elastic, csc_array(rigid)]), elastic.shape[1]
+        if rigid.size:
+            kept = np.concatenate([np.arange(m), m + elastic.indices])
+            inertia = -omega2 * (self.mass @ rigid)
+            border = csc_array(np.vstack([np.zeros((m, rigid.shape[1])), elastic.T @ inertia]))
+            matrix = block_array([[matrix[kept][:, kept], border], [border.T, rigid.T @ inertia]], format="csc")
         for row, z in devices:
-            wide = hstack([csc_array((1, m)), row], format="csr")
-            matrix = matrix + (z if np.iscomplexobj(stiffness) else complex(z).real) * (wide.T @ wide).tocsc()
+            wide = hstack([csc_array((1, m)), row @ change], format="csr")
+            matrix = matrix + z * (wide.T @ wide).tocsc()
         if rows is not None:
-            wide = hstack([csc_array((rows.shape[0], m)), rows])
+            wide = small * hstack([csc_array((rows.shape[0], m)), rows @ change])
             matrix = block_array([[matrix, wide.T], [wide, None]], format="csc")
         try:
-            return splu(matrix)
+            factor = splu(matrix.astype(d.dtype))
         except RuntimeError:  # exactly singular
             raise np.linalg.LinAlgError(0.0) from None
+
+        def solve(load: Any, displacements: Any = None, most: float = LOST) -> Any:
+            still = np.zeros((0, load.shape[1])) if displacements is None else displacements
+
+            def step(load: Any, strained: Any, still: Any) -> list[Any]:
+                right = np.concatenate([np.zeros((m, load.shape[1])), change.T @ load, small * still]).astype(d.dtype)
+                right[m : m + split] -= strained
+                y = factor.solve(right)[m:]
+                return [elastic @ y[:split], rigid @ y[split:n], small * y[n:]]
+
+            bent, moved, forces = step(load, 0.0, still)
+            lost = np.inf
+            for _ in range(REFINED):
+                whole = bent + moved
+                rest = load + omega2 * (self.mass @ whole)
+                for row, z in devices:
+                    rest = rest - z * (row.T @ (row @ whole))
+                if rows is not None:
+                    rest, still = rest - rows.T @ forces, displacements - rows @ whole
+                more = step(rest, elastic.T @ (self.transposed @ (d[:, None] * self.strain(bent))), still)
+                bent, moved, forces = bent + more[0], moved + more[1], forces + more[2]
+                # a correction is what the factors lose; the next is as much smaller
+                sizes = [(abs(c).max(axis=0), abs(v).max(axis=0))
+                         for c, v in ((more[0], bent), (more[0] + more[1], bent + moved))]  # fmt: skip
+                lost = max(float((c / np.where(v == 0.0, 1.0, v)).max(initial=0.0)) for c, v in sizes)
+                if lost <= 1e-8:
+                    break
+            if not lost <= most:
+                raise np.linalg.LinAlgError(lost)
+            return bent, moved, forces
+
+        return solve
+
+    def steady(
+        self,
+        loads: Any,
+        omega2: float,
+        stiffness: Any = None,
+        devices: Sequence[tuple[Any, complex]] = (),
+        rows: Any = None,
+        displacements: Any = None,
+    ) -> tuple[Any, Any, Any]:
+        """The steady response to loads (n, k), (K + devices - omega^2 M) v = load, in an elastic and a rigid-body part.
+
+        Both are (n, k); the third result are the forces (p, k) of constraints rows (p, n) @ v = displacements (p, k).
+        `stiffness` is d with losses, complex (m,). A device is the sparse row (1, n) of its displacement and a dynamic
+        stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of an undamped resonance, and where
+        rounding leaves fewer than four digits.
+        """
+        d, k = self.stiffness if stiffness is None else stiffness, loads.shape[1]
+        if np.iscomplexobj(d) or any(complex(z).imag for _, z in devices):
+            solve = self._solver(omega2, np.asarray(d, dtype=complex), devices, rows)
+            bent, moved, forces = solve(loads, displacements)
+            return bent, moved, -forces
+        solve = self._solver(omega2, d, [(row, complex(z).real) for row, z in devices], rows)
+        nothing = None if rows is None else np.zeros((rows.shape[0], 1))
+
+        def respond(load: Any) -> Any:
+            # inertia of rigid-body motions bends nothing: no digits of bending
+            bent, moved, _ = solve(load, nothing, np.inf)
+            return bent + moved
+
+        self._check_resonance(respond, respond(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
+        if not np.iscomplexobj(loads):
+            bent, moved, forces = solve(loads, displacements)
+            return bent, moved, -forces
+        both = None if rows is None else np.hstack([displacements, np.zeros(displacements.shape)])
+        parts = solve(np.hstack([loads.real, loads.imag]), both)
+        bent, moved, forces = (part[:, :k] + 1j * part[:, k:] for part in parts)
+        return bent, moved, -forces
 
     def harmonic(
         self, loads: Any, omega2: float, stiffness: Any = None, devices: Sequence[tuple[Any, complex]] = ()
     ) -> Any:
-        """The steady response (n, k) to loads (n, k): (K + devices - omega^2 M) v = load.
-
-        `stiffness` is d with losses, complex (m,). A device is the sparse row (1, n) of its displacement and a dynamic
-        stiffness k + i omega c - omega^2 m. Raises LinAlgError within `RESONANCE` of an undamped resonance.
-        """
-        d, k, m = self.stiffness if stiffness is None else stiffness, loads.shape[1], len(self.stiffness)
-        undamped = not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices)
-        factor = self._factor(omega2, d if undamped else np.asarray(d, dtype=complex), devices)
-
-        def solve(load: Any) -> Any:
-            # iterative refinement: the factors lose soft supports beside bending, factored strains do not
-            right = np.concatenate([np.zeros((m, load.shape[1]), dtype=load.dtype), load])
-            response = factor.solve(right)[m:]
-            for _ in range(REFINED):
-                right[m:] = (
-                    load + omega2 * (self.mass @ response) - self.transposed @ (d[:, None] * self.strain(response))
-                )
-                for row, z in devices:
-                    right[m:] -= (z.real if undamped else z) * (row.T @ (row @ response))
-                correction = factor.solve(right)[m:]
-                response = response + correction
-                # a correction is what the factors lose; the next is as much smaller
-                if abs(correction).max(initial=0.0) <= 1e-8 * abs(response).max(initial=0.0):
-                    break
-            return response
-
-        if not undamped:
-            return solve(loads.astype(complex))
-        start = np.random.default_rng(0).standard_normal((self.n, 1))
-        parts = solve(np.hstack([start, loads.real, loads.imag] if np.iscomplexobj(loads) else [start, loads]))
-        self._check_resonance(solve, parts[:, :1], omega2)
-        return parts[:, 1 : k + 1] + 1j * parts[:, k + 1 :] if np.iscomplexobj(loads) else parts[:, 1:]
+        """The response (n, k) of `steady` to loads (n, k), without constraints. Raises LinAlgError."""
+        bent, moved, _ = self.steady(loads, omega2, stiffness, devices)
+        return bent + moved
 
     def _check_resonance(self, solve: Callable[[Any], Any], response: Any, omega2: float) -> None:
         """Raise LinAlgError within `RESONANCE` of a resonance, from the response (n, 1) to a random load.
@@ -278,14 +346,16 @@ class StructuralSystem(FactoredSystem):
     def harmonic_sweep(
         self, loads: Any, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
     ) -> ComplexArray:
-        """The response (n_frequencies, n, k) to loads (n, k) by superposition of all modes, with a common loss factor.
+        """Elastic and rigid-body response (2, n_frequencies, n, k) to loads (n, k): all modes, a common loss factor.
 
         `modal_damping` is the damping ratio of every mode. NaN at the frequencies of undamped resonances.
         """
         receptances, acting, responding = self.modal_receptances(omega2, loss_factor, modal_damping)
         shares = (acting.T @ loads)[None] * receptances[:, :, None]
-        response = responding @ shares.transpose(1, 0, 2).reshape(acting.shape[1], -1)
-        return np.asarray(response.reshape(self.n, len(omega2), -1).transpose(1, 0, 2))
+        shares = shares.transpose(1, 0, 2).reshape(acting.shape[1], -1)
+        r = self.n_rigid
+        response = np.stack([responding[:, r:] @ shares[r:], responding[:, :r] @ shares[:r]])
+        return np.asarray(response.reshape(2, self.n, len(omega2), -1).transpose(0, 2, 1, 3))
 
     def modal_receptances(
         self, omega2: Array, loss_factor: float = 0.0, modal_damping: float = 0.0
@@ -306,33 +376,6 @@ class StructuralSystem(FactoredSystem):
         receptances = 1.0 / denominators
         receptances[near.any(axis=1)] = np.nan
         return receptances, acting, responding
-
-    def prescribed(
-        self,
-        rows: Any,
-        displacements: Any,
-        loads: Any,
-        omega2: float,
-        stiffness: Any = None,
-        devices: Sequence[tuple[Any, complex]] = (),
-    ) -> tuple[ComplexArray, ComplexArray]:
-        """(steady response (n, k) to loads (n, k) with rows (p, n) @ response = displacements, their forces (p, k)).
-
-        Raises LinAlgError within `RESONANCE` of an undamped resonance of the constrained system.
-        """
-        m, d = len(self.stiffness), self.stiffness if stiffness is None else stiffness
-        factor = self._factor(omega2, np.asarray(d, dtype=complex), devices, rows)
-
-        def solve(loads: Any, displacements: Any) -> Any:
-            right = np.concatenate([np.zeros((m, loads.shape[1])), loads, displacements])
-            return factor.solve(right.astype(complex))[m:]
-
-        if not np.iscomplexobj(d) and not any(complex(z).imag for _, z in devices):
-            start, nothing = np.random.default_rng(0).standard_normal((self.n, 1)), np.zeros((rows.shape[0], 1))
-            response = solve(start, nothing)[: self.n].real
-            self._check_resonance(lambda load: solve(load, nothing)[: self.n].real, response, omega2)
-        solution = solve(loads, displacements)
-        return solution[: self.n], -solution[self.n :]
 
     # --- Buckling ------------------------------------------------------------------------------------------------
 
