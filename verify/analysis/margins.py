@@ -10,6 +10,8 @@ from contextlib import suppress
 from math import inf, pi
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
 from verify.analysis.variants import Variant
 from verify.analysis.verdict import FINE, Margin, per_cent, void
@@ -73,7 +75,19 @@ def beam_margins(
         found.append(Margin(name="bending across the width", size=size, where=where,
                             condition=f"bending across the width may be left out{short}",
                             remedy="no beam theory has it: use a plate, or a narrower strip"))  # fmt: skip
-    return found
+    return found if mode else [_against_spacing(one, 2.0 * pi / (k * beam.length)) for one in found]
+
+
+def _against_spacing(margin: Margin, spacing: float) -> Margin:
+    """A frequency error at a driven wave, limited by half the relative spacing of the modes, 2 pi / (k L)."""
+    limit = min(margin.limit, 0.5 * spacing)
+    if not margin.is_error or margin.size <= limit:
+        return replace(margin, limit=limit, fine=min(margin.fine, limit)) if margin.is_error else margin
+    failure = (
+        f"{margin.name} changes frequencies by {per_cent(margin.size)} {margin.where}, where modes are "
+        f"{per_cent(spacing)} apart: the wave may be a standing one or travel the other way"
+    )
+    return replace(margin, limit=limit, fine=min(margin.fine, limit), failure=margin.failure or failure)
 
 
 def _wavenumber(cache: SolutionCache, mode: int | None, frequency_hz: float | None) -> float | None:
