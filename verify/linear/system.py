@@ -142,11 +142,13 @@ class StructuralSystem(FactoredSystem):
             ) from None
         strains, vectors = solve(self.mass @ vectors, refined=True)
         energies, masses = strains.T @ (self.stiffness[:, None] * strains), vectors.T @ (self.mass @ vectors)
-        slow = np.flatnonzero(energies.diagonal() < 1e-3 * bending * masses.diagonal())
-        if slow.size > 1:
-            # two motions on soft supports, one eigenvalue after the shift: Rayleigh-Ritz in their plane
-            plane = eigh(energies[np.ix_(slow, slow)], masses[np.ix_(slow, slow)])[1]
-            strains[:, slow], vectors[:, slow] = strains[:, slow] @ plane, vectors[:, slow] @ plane
+        slow = energies.diagonal() < 1e-3 * bending * masses.diagonal()
+        for group in (np.flatnonzero(slow), np.flatnonzero(~slow)):
+            if group.size > 1:
+                # Rayleigh-Ritz: two motions on soft supports are one eigenvalue after the shift, and K^-1 amplifies the
+                # rounding of higher vectors along lower ones
+                span = eigh(energies[np.ix_(group, group)], masses[np.ix_(group, group)])[1]
+                strains[:, group], vectors[:, group] = strains[:, group] @ span, vectors[:, group] @ span
         return strains, vectors
 
     def _count_below(self, shift: float) -> int:
