@@ -221,3 +221,40 @@ def test_a_mode_that_does_not_exist_is_an_input_error(beam, mode):
     for verb in (ExactModel(beam).frequency_hz, lambda mode: ExactModel(beam).mode_shape(mode, 0.1)):
         with pytest.raises(InputError, match="mode = "):
             verb(mode)
+
+
+# --- Nearly free beams at low frequency ------------------------------------------------------------------------------
+
+
+def low_fields(beam, model, ratio, verb="harmonic"):
+    """Field of 400 parts and of the exact beam at a fraction of the first mode of the free beam."""
+    force = PointForce(position=0.31 * L, amplitude=1.7)
+    hertz = ratio * frequency(on("FF"), 1)
+    return [getattr(one, verb)(force, hertz) for one in (model(beam, 400), ExactModel(beam))]
+
+
+@pytest.mark.parametrize("verb", ["harmonic", "imposed"])
+@pytest.mark.parametrize("loss", [0.0, 0.013])
+@pytest.mark.parametrize("model", [SegmentModel, HermiteModel])
+@pytest.mark.parametrize("ratio", [1e-2, 1e-4, 1e-7])
+def test_a_free_beam_keeps_its_bending_beside_its_rigid_motion(model, loss, ratio, verb):
+    here, exact = low_fields(on("FF", loss_factor=loss), model, ratio, verb)
+    x = np.linspace(0.04, 0.97, 17) * L
+    for order, most in ((0, 1e-11), (2, 3e-5)):
+        wanted = exact.derivative(x, order)
+        assert abs(here.derivative(x, order) - wanted).max() < most * abs(wanted).max()
+
+
+@pytest.mark.parametrize("model", [SegmentModel, HermiteModel])
+def test_fewer_than_four_digits_are_refused(model):
+    """On soft ground curvature goes before deflection; both are right a little above."""
+    beam, x = on("FF", foundation=1e-10 * EI / L**4, loss_factor=0.013), np.linspace(0.04, 0.97, 17) * L
+    here, exact = low_fields(beam, model, 1e-3)
+    wanted = exact.derivative(x, 2)
+    assert abs(here.derivative(x, 2) - wanted).max() < 1e-4 * abs(wanted).max()
+    here, exact = low_fields(beam, model, 1e-4)
+    assert here.deflection(x) == pytest.approx(exact.deflection(x), rel=1e-9)
+    with pytest.raises(InputError, match=r"derivative 2 .* lower count"):
+        here.derivative(x, 2)
+    with pytest.raises(InputError, match="lower count"):
+        low_fields(beam, model, 1e-7)

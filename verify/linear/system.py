@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray
+from verify.arrays import Array, ComplexArray, Indices
 from verify.errors import InputError
 from verify.linear.factored import FactoredSystem
 
@@ -142,11 +142,13 @@ class StructuralSystem(FactoredSystem):
             ) from None
         strains, vectors = solve(self.mass @ vectors, refined=True)
         energies, masses = strains.T @ (self.stiffness[:, None] * strains), vectors.T @ (self.mass @ vectors)
-        slow = np.flatnonzero(energies.diagonal() < 1e-3 * bending * masses.diagonal())
-        if slow.size > 1:
-            # two motions on soft supports, one eigenvalue after the shift: Rayleigh-Ritz in their plane
-            plane = eigh(energies[np.ix_(slow, slow)], masses[np.ix_(slow, slow)])[1]
-            strains[:, slow], vectors[:, slow] = strains[:, slow] @ plane, vectors[:, slow] @ plane
+        slow = energies.diagonal() < 1e-3 * bending * masses.diagonal()
+        for group in (np.flatnonzero(slow), np.flatnonzero(~slow)):
+            if group.size > 1:
+                # Rayleigh-Ritz: two motions on soft supports are one eigenvalue after the shift, and K^-1 amplifies the
+                # rounding of higher vectors along lower ones
+                span = eigh(energies[np.ix_(group, group)], masses[np.ix_(group, group)])[1]
+                strains[:, group], vectors[:, group] = strains[:, group] @ span, vectors[:, group] @ span
         return strains, vectors
 
     def _count_below(self, shift: float) -> int:
@@ -214,17 +216,15 @@ class StructuralSystem(FactoredSystem):
 
     # --- Harmonic response ---------------------------------------------------------------------------------------
 
-    def _coordinates(self, omega2: float) -> tuple[Any, Array]:
-        """Coordinates of the elastic and of the rigid-body part of v = P e + R q: sparse P (n, n - r), R (n, r).
+    def _coordinates(self, omega2: float) -> tuple[Indices, Array]:
+        """Coordinates of the elastic and the rigid-body part of v = e + R q: unknowns of e that are not 0, R (n, r).
 
         e = 0 at r unknowns that prevent rigid-body motions. B R = 0 is exact, B v is rounding of a large R q. Above the
         first bending modes r = 0: the sum costs decayed waves their digits.
         """
-        from scipy.sparse import eye_array
-
         if not self.n_rigid or omega2 > (3.0 / self.n) ** 4:
-            return eye_array(self.n, format="csc"), np.zeros((self.n, 0))
-        return eye_array(self.n, format="csc")[:, np.delete(np.arange(self.n), self._grounded())], self.rigid
+            return np.arange(self.n), np.zeros((self.n, 0))
+        return np.delete(np.arange(self.n), self._grounded()), self.rigid
 
     def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Any]:
         """Elastic and rigid-body part (n, k), forces (p, k) of K + devices - omega^2 M under p constraints `rows`.
@@ -235,21 +235,26 @@ class StructuralSystem(FactoredSystem):
         from scipy.sparse import block_array, csc_array, hstack
         from scipy.sparse.linalg import splu
 
-        m, n, (elastic, rigid) = len(d), self.n, self._coordinates(omega2)
+        m, n, (free, rigid) = len(d), self.n, self._coordinates(omega2)
         # rigid-body inertia of order one beside the stiffness, whatever the frequency
         small = np.sqrt(omega2) if omega2 and rigid.size else 1.0
         rigid = rigid / small
-        matrix, change, split = self.augmented(-omega2, d), hstack([elastic, csc_array(rigid)]), elastic.shape[1]
+        matrix, split = self.augmented(-omega2, d), len(free)
+
+        def widened(rows: Any) -> Any:
+            parts = rows if split == n else hstack([csc_array(rows)[:, free], csc_array(rows @ rigid)])
+            return hstack([csc_array((rows.shape[0], m)), parts], format="csr")
+
         if rigid.size:
-            kept = np.concatenate([np.arange(m), m + elastic.indices])
+            kept = np.concatenate([np.arange(m), m + free])
             inertia = -omega2 * (self.mass @ rigid)
-            border = csc_array(np.vstack([np.zeros((m, rigid.shape[1])), elastic.T @ inertia]))
+            border = csc_array(np.vstack([np.zeros((m, rigid.shape[1])), inertia[free]]))
             matrix = block_array([[matrix[kept][:, kept], border], [border.T, rigid.T @ inertia]], format="csc")
         for row, z in devices:
-            wide = hstack([csc_array((1, m)), row @ change], format="csr")
+            wide = widened(row)
             matrix = matrix + z * (wide.T @ wide).tocsc()
         if rows is not None:
-            wide = small * hstack([csc_array((rows.shape[0], m)), rows @ change])
+            wide = small * widened(rows)
             matrix = block_array([[matrix, wide.T], [wide, None]], format="csc")
         try:
             factor = splu(matrix.astype(d.dtype))
@@ -260,10 +265,12 @@ class StructuralSystem(FactoredSystem):
             still = np.zeros((0, load.shape[1])) if displacements is None else displacements
 
             def step(load: Any, strained: Any, still: Any) -> list[Any]:
-                right = np.concatenate([np.zeros((m, load.shape[1])), change.T @ load, small * still]).astype(d.dtype)
-                right[m : m + split] -= strained
-                y = factor.solve(right)[m:]
-                return [elastic @ y[:split], rigid @ y[split:n], small * y[n:]]
+                right = np.concatenate(
+                    [np.zeros((m, load.shape[1])), (load - strained)[free], rigid.T @ load, small * still]
+                )
+                y, bent = factor.solve(right.astype(d.dtype))[m:], np.zeros(load.shape, dtype=d.dtype)
+                bent[free] = y[:split]
+                return [bent, rigid @ y[split:n], small * y[n:]]
 
             bent, moved, forces = step(load, 0.0, still)
             lost = np.inf
@@ -274,7 +281,7 @@ class StructuralSystem(FactoredSystem):
                     rest = rest - z * (row.T @ (row @ whole))
                 if rows is not None:
                     rest, still = rest - rows.T @ forces, displacements - rows @ whole
-                more = step(rest, elastic.T @ (self.transposed @ (d[:, None] * self.strain(bent))), still)
+                more = step(rest, self.transposed @ (d[:, None] * self.strain(bent)), still)
                 bent, moved, forces = bent + more[0], moved + more[1], forces + more[2]
                 # a correction is what the factors lose; the next is as much smaller
                 sizes = [(abs(c).max(axis=0), abs(v).max(axis=0))
