@@ -203,10 +203,8 @@ def steady_stage(
     else:
         softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
         cells = int(np.ceil(beam.length * abs(harmonic.wavenumber) * softest**0.25 / 0.3)) + 1
-        jumps = [
-            *(one.position for one in (*beam.attached, *harmonic.forces)),
-            *np.cumsum([p.length for p in beam.pieces[:-1]]),
-        ]
+        jumps = [*np.cumsum([piece.length for piece in beam.pieces[:-1]])]
+        jumps += [one.position for one in (*beam.attached, *harmonic.forces)]
         edges, degree = np.union1d(np.linspace(0.0, beam.length, cells + 1), jumps), EXACT_DEGREE
     if basis:
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
