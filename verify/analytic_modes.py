@@ -186,9 +186,7 @@ class ExactModel(BeamModel):
         """The field under forces (N) and imposed displacements (`drives`, m), with devices."""
         beam, frequencies, one = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
         if (devices or drives) and not one:
-            raise InputError(
-                "frequency_hz has several values: give one frequency with devices or imposed displacements"
-            )
+            raise InputError("frequency_hz has several values: give one with devices or imposed displacements")
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
         self._check_resonance(frequencies, drives, devices)

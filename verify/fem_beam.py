@@ -329,10 +329,9 @@ class HermiteModel(DiscreteModel):
         omega^2 = (1680/17) EI/(rho A l^4) without tension, foundation or shear; in other cases that of one element
         whose ends move in opposite phase.
         """
-        plain = self.theory == "euler-bernoulli" and not (
-            self.beam.section or self.beam.tension or self.beam.foundation
-        )
-        if plain:  # scene validation calls it: neither scipy nor scikit-fem is imported
+        beam = self.beam
+        if self.theory == "euler-bernoulli" and not (beam.section or beam.tension or beam.foundation):
+            # scene validation calls it: neither scipy nor scikit-fem is imported
             return float(np.sqrt(1680.0 / 17.0) * self._omega_unit / (2.0 * pi) / self.mesh.lengths.max() ** 2)
         from scipy.linalg import eigh
 

@@ -13,13 +13,8 @@ from verify.linear.registry import MODELS, discrete
 from verify.options import Attachment, Joints, Theory, Wall
 from verify.problem.beam import Beam
 
-DEFAULTS: dict[str, str | float] = {
-    "wall": "gregory",
-    "joints": "series",
-    "grading": 1.0,
-    "theory": "euler-bernoulli",
-    "attachment": "reciprocal",
-}
+DEFAULTS: dict[str, str | float] = {"wall": "gregory", "joints": "series", "grading": 1.0}
+DEFAULTS |= {"theory": "euler-bernoulli", "attachment": "reciprocal"}
 """Settings on which frequencies depend, in the order of labels."""
 Grading: TypeAlias = Annotated[float, Meta(gt=0)]
 

@@ -253,15 +253,8 @@ def engines(problem: Problem) -> Iterator[Question]:
     yield Question("engines-chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
 
 
-SETS: dict[str, Callable[[Problem], Iterator[Question]]] = {
-    "modes": modes,
-    "field": field,
-    "transient": transient,
-    "slider": slider,
-    "ride": ride,
-    "chain": chain,
-    "engines": engines,
-}
+_ALL: tuple[Callable[[Problem], Iterator[Question]], ...] = modes, field, transient, slider, ride, chain, engines
+SETS = {one.__name__: one for one in _ALL}
 
 
 def questions(names: Sequence[str], problem: Problem) -> Iterator[Question]:

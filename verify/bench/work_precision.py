@@ -3,7 +3,7 @@
 Times are processor seconds of one thread, medians over the rounds, from the beam to the result.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from math import exp, isfinite, log
@@ -101,11 +101,15 @@ def measure(question: Question, limit: float = 5.0) -> list[Row]:
             break
         for (method, size, _, repeats), own in zip(jobs, times, strict=True):
             own.append(_timed(method, size, repeats))
-    rows = [
-        Row(m.name, m.size_name, float(size), error, None, median(own), spread(own) / median(own), m.model)
-        for (m, size, error, _), own in zip(jobs, times, strict=True)
-    ]
-    return list(_with_orders(rows, ABOVE_REFERENCE * question.uncertainty))
+    rows, floor = list[Row](), ABOVE_REFERENCE * question.uncertainty
+    for (m, size, error, _), own in zip(jobs, times, strict=True):
+        order, before = None, rows[-1] if rows else None
+        if before and before.method == m.name and min(error, before.error) > floor and before.size != size:
+            order = log(before.error / error) / abs(log(before.size / size))
+        rows.append(
+            Row(m.name, m.size_name, float(size), error, order, median(own), spread(own) / median(own), m.model)
+        )
+    return rows
 
 
 def _timed(method: Method, size: Any, repeats: int) -> float:
@@ -117,15 +121,6 @@ def _timed(method: Method, size: Any, repeats: int) -> float:
         method.run(size)
         total += process_time() - start
     return total / repeats
-
-
-def _with_orders(rows: Sequence[Row], floor: float) -> Iterator[Row]:
-    for before, row in pairwise([None, *rows]):
-        assert row is not None
-        order = None
-        if before and before.method == row.method and min(row.error, before.error) > floor and before.size != row.size:
-            order = log(before.error / row.error) / abs(log(before.size / row.size))
-        yield Row(**{**asdict(row), "order": order})
 
 
 def time_at(rows: Sequence[Row], error: float) -> float | None:

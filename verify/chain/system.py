@@ -187,9 +187,7 @@ def build_system(
     if wall == "welded":
         raise InputError("wall = 'welded' is for the linear chain: choose another wall")
     if beam.loss_factor:
-        raise InputError(
-            f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain has no complex modulus in time, give 0"
-        )
+        raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: a nonlinear chain has no complex modulus, give 0")
     beam.check_features("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = SegmentModel(beam, n_segments, wall=wall, joints=joints).chain
@@ -211,9 +209,7 @@ def build_system(
     loads = []
     for force in forces:
         if force.position > system.length * (1.0 + 1e-12):
-            raise InputError(
-                f"force.position = {force.position!r} lies off the beam: give a position up to {system.length!r} m"
-            )
+            raise InputError(f"force.position = {force.position!r} lies off the beam: give up to {system.length!r} m")
         if load == "lever":
             shares = [(*link_at(system, force.position), 1.0)]
         else:

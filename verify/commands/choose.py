@@ -42,9 +42,8 @@ def choose(
     margins = beam_margins(cache, sizes, mode=modes if isinstance(modes, int) else modes[-1], settings=first)
     rows: list[tuple[object, ...]] = []
     for one in choices:
-        size, errors = one.size, (one.error, one.expected_error)
+        size, cost = one.size, (one.unknowns, one.error, one.expected_error, one.run_time_s)
         lower = ", ".join(map(str, one.lower))
-        cost = one.unknowns, *errors, one.run_time_s
         rows.append((one.variant.title, size.count, size.mode, *cost, size.smaller, lower))
     columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands import shared
+from verify.options import THEORIES
 
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
@@ -24,11 +25,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", help="Acceptance: largest error against the exact beam, for instance 1%.")
 @click.option(
-    "--theory",
-    type=click.Choice(["euler-bernoulli", "rayleigh", "timoshenko"]),
-    default="euler-bernoulli",
-    show_default=True,
-    help="Of the exact beam.",
+    "--theory", type=click.Choice(THEORIES), default=THEORIES[0], show_default=True, help="Of the exact beam."
 )
 @shared.charts_option
 @shared.format_options

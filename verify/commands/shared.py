@@ -41,13 +41,8 @@ class BeamCommand(click.Command):
         return super().parse_args(ctx, args)
 
 
-overrides_option = click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Override a value of the scene: beam.length=0.4, gate.ID.within=1%.",
-)
+_SET = "Override a value of the scene: beam.length=0.4, gate.ID.within=1%."
+overrides_option = click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help=_SET)
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
 csv_option = click.option("--csv", "as_csv", is_flag=True, help="Print the first table as CSV, in SI units.")
 markdown_option = click.option("--markdown", "as_markdown", is_flag=True, help="Print the first table as Markdown.")

@@ -1,5 +1,7 @@
 """`verify sweep`: quantities over values of the scene and of their arguments."""
 
+from typing import Any
+
 import click
 
 from verify.commands import shared
@@ -28,13 +30,10 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
     quantities = [word for word in words if "=" not in word]
     pairs = [word.partition("=") for word in words if "=" in word]
     kinds = {key: kind for name in quantities for key, kind in QUANTITIES.named(name).types.items()}
-    lists = {
-        key: [
-            typed(one, type_at(key) if "." in key else kinds.get(key), key) if isinstance(one, str) else one
-            for one in typed(text, tuple[int, ...], key)
-        ]
-        for key, _, text in pairs
-    }
+    lists: dict[str, list[Any]] = {}
+    for key, _, text in pairs:
+        kind, values = type_at(key) if "." in key else kinds.get(key), typed(text, tuple[int, ...], key)
+        lists[key] = [typed(one, kind, key) if isinstance(one, str) else one for one in values]
     if len(lists) < len(pairs):
         raise InputError("KEY = VALUES: one key occurs twice, give each once")
     if not quantities:

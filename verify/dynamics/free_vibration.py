@@ -154,9 +154,7 @@ def _start(
     rates = rest[0] if velocity is None else _projected(basis, "velocity", velocity)[0]
     if not isinstance(shape, int) or isinstance(shape, bool):
         if amplitude is not None:
-            raise InputError(
-                f"amplitude = {amplitude!r} belongs to a mode: give a mode number as shape, or leave it out"
-            )
+            raise InputError(f"amplitude = {amplitude!r} belongs to a mode: give a mode number as shape, or drop it")
         q, truncation = rest if shape is None else _projected(basis, "shape", shape)
         return q, rates, truncation
     check_integer("shape", shape, 1, len(basis.omegas))

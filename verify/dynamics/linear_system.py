@@ -194,7 +194,18 @@ def steady_stage(
     harmonic: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio
 ) -> Stage:
     """A beam in its steady state; the modes of `basis` start at rest and respond to contact forces."""
-    edges, degree = _steady_edges(harmonic)
+    beam, degree = harmonic.beam, 3
+    if harmonic.count is not None:
+        from verify.linear.mesh import divide
+
+        parts = divide(beam, harmonic.count)
+        edges = np.asarray(parts.nodes * parts.unit)
+    else:
+        softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
+        cells = int(np.ceil(beam.length * abs(harmonic.wavenumber) * softest**0.25 / 0.3)) + 1
+        jumps = [*np.cumsum([piece.length for piece in beam.pieces[:-1]])]
+        jumps += [one.position for one in (*beam.attached, *harmonic.forces)]
+        edges, degree = np.union1d(np.linspace(0.0, beam.length, cells + 1), jumps), EXACT_DEGREE
     if basis:
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
 
@@ -211,22 +222,6 @@ def steady_stage(
 def _to_the_end(edges: Array, beam: Beam) -> Array:
     """Edges with the last one set exactly to the beam's end."""
     return np.append(edges[:-1], beam.length)
-
-
-def _steady_edges(harmonic: "HarmonicField") -> tuple[Array, int]:
-    """(edges of the polynomial pieces of a steady field, m, their degree)."""
-    beam = harmonic.beam
-    if harmonic.count is not None:
-        from verify.linear.mesh import divide
-
-        parts: Any = divide(beam, harmonic.count)
-        return np.asarray(parts.nodes * parts.unit), 3
-    softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
-    cells = int(np.ceil(beam.length * abs(harmonic.wavenumber) * softest**0.25 / 0.3)) + 1
-    steps = np.cumsum([piece.length for piece in beam.pieces[:-1]])
-    attached = [*(m.position for m in beam.mass), *(s.position for s in beam.spring)]
-    places = [*(f.position for f in harmonic.forces), *steps, *attached]
-    return np.union1d(np.linspace(0.0, beam.length, cells + 1), places), EXACT_DEGREE
 
 
 def damped_field(

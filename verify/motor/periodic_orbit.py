@@ -29,12 +29,7 @@ class PeriodicOrbit(Struct, frozen=True, eq=False, kw_only=True):
     residual: float
     """Largest change of a coordinate over the period, relative to its scale."""
     multipliers: ComplexArray
-    """(n,), eigenvalues of the Jacobian of the period map (Floquet multipliers)."""
-
-    @property
-    def stable(self) -> bool:
-        """Whether small perturbations decay."""
-        return bool(np.abs(self.multipliers).max() < 1.0)
+    """(n,), eigenvalues of the Jacobian of the period map (Floquet multipliers); stable below 1."""
 
 
 def periodic_orbit(

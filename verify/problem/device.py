@@ -86,9 +86,7 @@ def of_impedance(position: float, impedance: complex, omega: float, *, turning: 
     Raises InputError for an active impedance.
     """
     if impedance.real < 0.0:
-        raise InputError(
-            f"impedance = {impedance!r} is active, a dashpot is not: give one whose real part is at least 0"
-        )
+        raise InputError(f"impedance = {impedance!r} is active, a dashpot is not: give a real part of at least 0")
     spring, mass, dashpot = TURNING if turning else ("stiffness", "mass", "dashpot")
     reactive = {spring: -impedance.imag * omega} if impedance.imag < 0.0 else {mass: impedance.imag / omega}
     return Device(position=position, **{dashpot: impedance.real}, **reactive)

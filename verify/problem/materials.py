@@ -2,8 +2,6 @@
 
 import msgspec
 
-from verify.errors import InputError, near_name
-
 
 class Material(msgspec.Struct, frozen=True):
     """Elastic constants and density, SI."""
@@ -29,12 +27,3 @@ MATERIALS = {
     "concrete": Material(33e9, 2500.0, 0.2, "C30/37, EN 1992-1-1, table 3.1; EN 1991-1-1, table A.1"),
 }
 SPELLINGS = {"aluminum": "aluminium", "stainless steel": "stainless"}
-
-
-def material_named(name: str) -> Material:
-    """A material by its name. Raises InputError."""
-    plain = name.strip().lower()
-    found = MATERIALS.get(SPELLINGS.get(plain, plain))
-    if found is None:
-        raise InputError(f"material = {name!r} is not known, give E and rho: {near_name(plain, tuple(MATERIALS))}")
-    return found

@@ -3,10 +3,10 @@
 import re
 from typing import Any
 
-from verify.errors import InputError, shown
+from verify.errors import InputError, near_name, shown
 from verify.options import SUPPORTS
 from verify.problem.cross_section import SIZES
-from verify.problem.materials import material_named
+from verify.problem.materials import MATERIALS, SPELLINGS
 from verify.units import NUMBER, in_si
 
 EXAMPLE = "1 m x 40 x 8 mm steel, clamped-free"
@@ -44,7 +44,10 @@ def beam_table(phrase: str) -> dict[str, Any]:
 def _material(text: str) -> dict[str, float]:
     """Elastic constants and density of a named material, of E=... rho=... nu=..., or of both."""
     named, *pairs = re.split(r"\s*\b(\w+)\s*=\s*", text)
-    material = material_named(named) if named or not pairs else None
+    plain = named.strip().lower()
+    material = MATERIALS.get(SPELLINGS.get(plain, plain))
+    if material is None and (named or not pairs):
+        raise InputError(f"material = {named!r} is not known, give E and rho: {near_name(plain, tuple(MATERIALS))}")
     values = {name: getattr(material, name) for name, _ in CONSTANTS.values()} if material else {}
     for key, value in zip(pairs[::2], pairs[1::2], strict=True):
         if key not in CONSTANTS:

@@ -41,9 +41,8 @@ class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
                 raise InputError(f"slider.contact.{name} = {one!r} and layer_{name} = {other!r}: give one")
         for name in ("damping", "tangential_stiffness", "layer_tangential_stiffness"):
             if self.hard and (value := getattr(self, name)):
-                raise InputError(
-                    f"slider.contact.{name} = {value!r} is for compliant contact: give slider.contact.stiffness too"
-                )
+                one = f"slider.contact.{name} = {value!r}"
+                raise InputError(f"{one} is for compliant contact: give slider.contact.stiffness too")
         if self.restitution and not self.hard:
             raise InputError(
                 f"slider.contact.restitution = {self.restitution!r} is for hard contact: compliant contact has "

@@ -139,7 +139,6 @@ def power_imbalance(
 @quantity("wave.best_frequency", unit="Hz", reads=DRIVEN, devices=True)
 def best_frequency(
     scene: Scene,
-    cache: "SolutionCache",
     options: FieldOptions,
     *,
     window: Window | None = None,

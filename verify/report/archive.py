@@ -53,9 +53,7 @@ def save_run(run: "RunResult", reports: Path, name: str, command: str = "", keep
     page, home, folder = run_page(run, command), reports / name, None
     if keep:
         if exists(home, "reports") and not home.is_dir():
-            raise InputError(
-                f"reports = {str(home)!r} is no folder, and runs are saved there: move it, or give --keep 0"
-            )
+            raise InputError(f"reports = {str(home)!r} is no folder, runs are saved there: move it, or give --keep 0")
         folder = home / datetime.now(UTC).strftime("%Y-%m-%d_%H-%M-%S-%f")
         data = to_json(run_data(run, command) | {"report": name})
         write_folder(folder, {PAGE: page, DATA: data}, "reports")

@@ -19,15 +19,8 @@ THINNEST, THICKEST = 0.10, 0.34
 """Drawn thickness of sections, inches."""
 LETTER, ROW = 0.078, 0.17
 """Width of a character and height of a row of text, inches."""
-DEVICE_UNITS = {
-    "dashpot": "N s/m",
-    "stiffness": "N/m",
-    "mass": "kg",
-    "rotational_dashpot": "N m s",
-    "rotational": "N m/rad",
-    "rotary_inertia": "kg m²",
-    "amplitude": "N",
-}
+DEVICE_UNITS = {"dashpot": "N s/m", "stiffness": "N/m", "mass": "kg", "rotational_dashpot": "N m s"}
+DEVICE_UNITS |= {"rotational": "N m/rad", "rotary_inertia": "kg m²", "amplitude": "N"}
 
 
 def beam_figure(scene: Any) -> Figure:

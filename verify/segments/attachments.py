@@ -40,9 +40,8 @@ def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
     places = np.clip(positions / chain.unit, nodes[0], nodes[-1])
     links = np.clip(np.searchsorted(nodes, places + 1e-9, side="right") - 1, 0, n - 1)
     along = (places - nodes[links]) / chain.lengths[links]
-    return links, np.where(
-        abs(places - nodes[links]) < 1e-9, 0.0, np.where(abs(nodes[links + 1] - places) < 1e-9, 1.0, along)
-    )
+    along = np.where(abs(nodes[links + 1] - places) < 1e-9, 1.0, along)
+    return links, np.where(abs(places - nodes[links]) < 1e-9, 0.0, along)
 
 
 def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:

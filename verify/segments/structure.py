@@ -102,9 +102,8 @@ class ChainStructure(DiscreteModel):
         if self.theory != "timoshenko":
             return np.zeros(0), np.zeros(len(self.attached.bodies))
         bodies = self.attached.bodies if self.attachment == "reciprocal" else ()
-        return shear.slip_compliances(
-            self.chain, self._shear_compliances, bodies, self._weights[0].toarray(), self.wall
-        )
+        weights = self._weights[0].toarray()
+        return shear.slip_compliances(self.chain, self._shear_compliances, bodies, weights, self.wall)
 
     @cached_property
     def motions(self) -> Motions:

@@ -209,22 +209,17 @@ def graded_mesh(ratio: float) -> Any:
     return STRIP, [D(STRIP.length) * one / sum(steps) for one in steps], ratio
 
 
-_SHARES = (0.1, 1e-2, 1e-3, 1e-4, 1e-6)
-
-
-@matrix_check("short-part", "first length / L", _SHARES, 2, beyond=(9e-7, 1e-12), refused=True)
+@matrix_check("short-part", "first length / L", (0.1, 1e-2, 1e-3, 1e-4, 1e-6), 2, beyond=(9e-7, 1e-12), refused=True)
 def short_part(share: float) -> Any:
     """Mode 2 of four parts, the first one short and soft."""
     return sections((1, 3), share, youngs_modulus=1e-5 * E, density=1.1 * RHO)
 
 
-TIP = CANTILEVER.length
-
-
 @matrix_check("tip-mass", "m / (rho A L)", DECADES, 1, {"fem": ""}, beyond=FAR)
 def tip_mass(ratio: float) -> Any:
     """Mode 1 of a cantilever of elements with a tip mass."""
-    mass = PointMass(position=TIP, mass=ratio * CANTILEVER.mass_per_length * TIP)
+    length = CANTILEVER.length
+    mass = PointMass(position=length, mass=ratio * CANTILEVER.mass_per_length * length)
     return replace(CANTILEVER, mass=(mass,)), equal(CANTILEVER, N)
 
 

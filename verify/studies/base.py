@@ -39,18 +39,11 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         raise NotImplementedError
 
 
+OWN = ("spectrum", "convergence", "wave", "motion", "motor", "claims", "sweep")
 STUDIES: Registry[type[Study]] = Registry(
     "study",
     "verify.studies",
-    homes={
-        "spectrum": "verify.studies.spectrum:Spectrum",
-        "convergence": "verify.studies.convergence:Convergence",
-        "wave": "verify.studies.wave:Wave",
-        "motion": "verify.studies.motion:Motion",
-        "motor": "verify.studies.motor:Motor",
-        "claims": "verify.studies.claims:Claims",
-        "sweep": "verify.studies.sweep:Sweep",
-    },
+    homes={name: f"verify.studies.{name}:{name.capitalize()}" for name in OWN},
     classes=True,
 )
 """Study classes by the name of their section, in the order in which they run."""

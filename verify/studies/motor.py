@@ -221,10 +221,8 @@ def _tables(fields: list[Field]) -> "list[Table]":
         Column("converged"): lambda row: row[1].converged(),
     }
     rows = [(field.name, at) for field in fields for at in field.curve]
-    return [
-        table("The motor on each model", fields, overview, NOTE),
-        table("Force over speed, slider at a fixed position", rows, curve),
-    ]
+    curves = table("Force over speed, slider at a fixed position", rows, curve)
+    return [table("The motor on each model", fields, overview, NOTE), curves]
 
 
 def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
