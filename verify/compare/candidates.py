@@ -120,7 +120,7 @@ def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
 def _chains(beam: Beam) -> Iterator[Candidate]:
     """Rigid links with all rules; other mass models with the usual wall rules."""
     clamped = "clamped" in beam.supports
-    others = ("full", "rigid", "stiff") if clamped else ()
+    others = ("rigid", "stiff") if clamped else ()
     walls = ("half", *(w for w in WALLS if w != "half"), *others) if clamped or has_wall(beam) else (None,)
     rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
     for joints, wall, theory in product(rules, walls, THEORIES):

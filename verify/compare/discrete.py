@@ -16,7 +16,7 @@ from verify.linear.system import StructuralSystem
 from verify.options import WALLS
 from verify.problem.beam import Beam
 
-WALL_COMPLIANCE = {"full": 1.0, "rigid": 0.0, "stiff": 0.25}
+WALL_COMPLIANCE = {"rigid": 0.0, "stiff": 0.25}
 """Compliance of the joint at a clamped end, in l/EI: EI/l, first link fixed to the wall, 4EI/l."""
 MASSLESS = 1e-12
 """Rotary inertia over m l^2 in place of zero: negligible, keeps the mass matrix regular."""
