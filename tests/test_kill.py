@@ -1,10 +1,8 @@
 """Runs that are killed or interrupted at any moment: files are whole or absent, the next run passes."""
 
-import os
 import signal
 import subprocess
 import sys
-from random import Random
 from time import sleep
 
 import pytest
@@ -13,9 +11,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals")
 SCENE = """
 name = "mine"
 beam = { length = 0.61, width = 0.03, thickness = 0.002, youngs_modulus = 71e9, density = 2710.0 }
-[spectrum]
-modes = 5
-count = 12
+spectrum = { modes = 5, count = 12 }
 [[gate]]
 id = "first"
 quantity = "mode.frequency"
@@ -27,10 +23,10 @@ why = "It is solved."
 
 def started(folder, *words):
     command = [sys.executable, "-m", "verify", *words]
-    return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=os.environ)
+    return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
-def check_integer(folder):
+def check_complete(folder):
     """Every page under `reports` is complete."""
     pages = [page for page in folder.rglob("[!.]*.html") if not any(p.startswith(".") for p in page.parts)]
     assert all(page.read_text("utf-8").rstrip().endswith("</html>") for page in pages)
@@ -38,15 +34,14 @@ def check_integer(folder):
 
 def test_killed_run_leaves_no_half_file(tmp_path):
     (tmp_path / "mine.toml").write_text(SCENE)
-    draw = Random(3)
-    for how in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+    for how, seconds in ((signal.SIGKILL, 0.67), (signal.SIGINT, 1.41), (signal.SIGTERM, 0.99), (signal.SIGKILL, 1.55)):
         process = started(tmp_path, "run", "mine.toml")
-        sleep(draw.uniform(0.1, 2.5))
+        sleep(seconds)
         process.send_signal(how)
         process.communicate(timeout=120)
-        check_integer(tmp_path / "reports")
+        check_complete(tmp_path / "reports")
     process = started(tmp_path, "run", "mine.toml")
     out, err = process.communicate(timeout=120)
     assert (process.returncode, err) == (0, b""), out
     assert (tmp_path / "reports").is_dir()
-    check_integer(tmp_path / "reports")
+    check_complete(tmp_path / "reports")

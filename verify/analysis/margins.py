@@ -1,4 +1,4 @@
-"""Margins: the sizes of what a result leaves out, from the beam, the model, its count, and the mode or drive.
+"""Margins: the sizes of the effects that a result neglects, from beam, model, count, and mode or drive.
 
 Discretisation, shear and rotary inertia, bending across the width, cut-off of the parts, sag and slope under sliders,
 one-way coupling, lift-off, convergence and linearity; `verdict` derives the level from them.
@@ -91,7 +91,7 @@ def _against_spacing(margin: Margin, spacing: float) -> Margin:
 
 
 def _wavenumber(cache: SolutionCache, mode: int | None, frequency_hz: float | None) -> float | None:
-    """Of the mode, or of the wave in the beam's own section, 1/m; None where no wave travels."""
+    """Wavenumber of the mode, or of the drive in the beam's own section, 1/m; None where no wave travels."""
     from verify.linear.field import travelling_wavenumber
 
     if mode and cache.beam.uniform:
@@ -157,14 +157,14 @@ def sufficient_count(
 
 
 def against_exact(what: str, model: str, value: float, exact: float) -> Margin:
-    """Result of a model against that of the exact beam: near a resonance far off at a small error in frequency."""
+    """Difference of a result from the exact beam's: large near a resonance even at a small frequency error."""
     size = abs(value / exact - 1.0) if exact else 0.0 if value == exact else inf
     return Margin(name=f"{what} of {model}", size=size, limit=inf,
                   condition=f"the exact beam answers: {what} of {model} is off by {per_cent(size)}")  # fmt: skip
 
 
 def marked(title: str, margins: Iterable[Margin]) -> str:
-    """The title of a chart, with the discretisation that is more than 5 % off."""
+    """Title of a chart, marked where the discretisation error exceeds 5 %."""
     off = [one.failure for one in margins if one.name.startswith("discretisation") and one.size > OFF]
     return f"{title} ({', '.join(off)})" if off else title
 
@@ -184,8 +184,8 @@ def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
 def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None = None) -> list[Margin]:
     """Static sag of the beam under a slider's weight and preload: its slope, and its curvature under the feet.
 
-    The latter over the amplitude of the wave (m), where one-way coupling leaves it out. None of a beam whose rigid
-    motions nothing prevents.
+    The curvature counts over `amplitude` of the wave, m, and only with one-way coupling, which neglects it. Empty for a
+    beam with rigid-body motions and for sliders without load.
     """
     from verify.problem.beam import PointForce
 

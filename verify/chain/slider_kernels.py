@@ -15,7 +15,18 @@ from verify.chain.runge_kutta import KEPT, STEP, TIME, march
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_solver import TRANSVERSE, product, respond, solve
 from verify.dynamics.integrator import add_sums, move, sample, write_events
-from verify.dynamics.kinematics import END, HALF, MIDDLE, RATE, START, VALUE, find_pieces, look, set_mean_rates
+from verify.dynamics.kinematics import (
+    END,
+    HALF,
+    MIDDLE,
+    RATE,
+    START,
+    VALUE,
+    find_pieces,
+    look,
+    set_mean_rates,
+    shape_of,
+)
 from verify.jit import inline, jit
 
 CORRECTIONS = 20
@@ -89,12 +100,7 @@ def set_shapes(table: Array, edges: Array, points: Array, contacts: Array, indic
         )  # fmt: skip
         length, lever, side = edges[piece + 1] - edges[piece], points[i, lay.LEVER], points[i, lay.FACE]
         for j in range(m):
-            value, first, turn, here = 0.0, 0.0, 0.0, 0.0
-            for d in range(table.shape[1] - 1, -1, -1):
-                first = first * at + value
-                value = value * at + table[piece, d, j]
-                turn = turn * above + here
-                here = here * above + table[piece, d, j]
+            value, first, turn = shape_of(piece, j, at, above, table)
             shapes[0, i, j] = (slope * value - lever * first / length) / np.sqrt(1.0 + slope * slope)
             shapes[0, i, m + j] = 1.0 if j < piece else above if j == piece else 0.0
             shapes[1, i, j] = side * points[i, lay.IMAGE] * (value + slope * lever / length * turn)
@@ -232,7 +238,7 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
         if not np.isfinite(sliders[0, lay.V] + factors[END, VALUE, 0]):
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
-            for when in range(1):  # START
+            for when in range(1):  # START; as a constant argument numba would compile `see` once more for it
                 read_links(when, n, states[0 if two_way else row + 2], links, factors)
                 if not spring and find_pieces(0.0, edges, sliders, points, indices):
                     see(when, 4 * step + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet,
