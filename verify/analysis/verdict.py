@@ -8,7 +8,7 @@ import msgspec
 
 Level: TypeAlias = Literal["trusted", "conditional", "not trusted"]
 COLOURS: dict[Level, str] = {"trusted": "green", "conditional": "yellow", "not trusted": "red"}
-"""Of a terminal: green is for results without a condition."""
+"""Terminal colours; green is for results without a condition."""
 LEVELS: tuple[Level, ...] = tuple(COLOURS)
 FINE, LIMIT = 0.01, 0.10
 """Relative errors up to which a result is trusted, and trusted under a condition."""

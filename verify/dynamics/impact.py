@@ -17,11 +17,11 @@ BISECTIONS = 100
 IMPACTS = 100_000
 """Landings, lift-offs and pieces of a step, at most."""
 REST = 1e-6
-"""Of a step: a flight that would be shorter is none."""
+"""Shortest flight, as a fraction of a step."""
 ROUNDING = 4e-15
-"""Of the height of the surface and of its speed times the time: what rounding may add to a flight's height."""
+"""Rounding in the height of a flight, relative to the height of the surface and its speed times the time."""
 LOW = 1e4
-"""Of that rounding: a higher flight is one whatever it loses."""
+"""Height, over that rounding, above which a flight counts whatever energy it loses."""
 LEVEL, CLIMB, RAMP, ACCELERATION, ALONG = range(5)
 """`seen`: height of the surface, its rate under the moving point, the part by slopes, the acceleration of a point that
 rides on it, tangential speed of the material."""

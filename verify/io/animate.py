@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 FRAMES, FPS = 36, 20
 """Frames of one period of a mode, and per second."""
 MAX_FRAMES = 300
-"""Of a motion; more steps are thinned out."""
+"""Largest number of frames of a motion; more are thinned out."""
 MARKERS = {"pinned": "^", "clamped": "s", "guided": "D", "free": "none"}
 HEIGHT = 0.08
 """Largest drawn deflection over the length."""

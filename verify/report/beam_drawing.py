@@ -3,17 +3,14 @@
 Lengths along the beam are to scale. Heights are not; sections keep their order of thickness.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from verify.formatting import with_unit
 from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
 
-if TYPE_CHECKING:
-    pass
-
 WIDTH, EDGE = 8.4, 0.83
-"""Of the drawing and of the room at each end of the beam, inches."""
+"""Width of the drawing and of the margin at each end of the beam, inches."""
 BODY, SLIDER, FORCE, SPRING, SOFT = MODEL_COLORS["segment"], MODEL_COLORS["fem"], "#cc3f76", "#2a9d5c", "#7d8590"
 THINNEST, THICKEST = 0.10, 0.34
 """Drawn thickness of sections, inches."""

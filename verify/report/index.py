@@ -30,7 +30,7 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
 
 
 def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
-    """The same of a scene that cannot run."""
+    """Index line of a scene that cannot run."""
     return {"scene": name, "title": name, "passed": None, "failed": [], "errors": list(sentences)}
 
 

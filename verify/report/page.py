@@ -42,7 +42,7 @@ class Section:
     """(title of a section, its id, sentence)."""
     figures: Sequence[Figure] = ()
     condition: str = ""
-    """Of all figures."""
+    """Condition of all figures, a part of their captions."""
     movies: Sequence[Movie] = ()
     tables: Sequence[Table] = ()
     links: Mapping[str, str] = field(default_factory=dict)

@@ -165,7 +165,7 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
 
 
 def _margins(scene: Scene, cache: "SolutionCache") -> "tuple[Margin, ...]":
-    """Of the exact steady motion; none without a drive and at a resonance."""
+    """Margins of the exact steady motion; none without a drive and at a resonance."""
     from verify.analysis.margins import sag_margins, slope_margin
     from verify.quantities.waves import FieldOptions, driven_case
     from verify.waves.driven_case import driven

@@ -25,7 +25,7 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     name: ClassVar[str] = ""
-    """Of its section in a scene and of its key in JSON."""
+    """Name of its section in a scene and of its key in JSON."""
     title: ClassVar[str] = ""
     """Heading on the page."""
     devices: ClassVar[bool] = False

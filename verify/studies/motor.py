@@ -161,7 +161,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
-    """Of the beam at the drive, of the free runs, of the sag, and of figures that have not converged."""
+    """Margins of the beam at the drive, free runs, static sag, and figures that have not converged."""
     from verify.analysis.margins import beam_margins, run_margins, sag_margins
     from verify.analysis.verdict import void
     from verify.motor.curves import REASONS
