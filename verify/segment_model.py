@@ -309,7 +309,7 @@ class SegmentModel(ChainStructure):
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves along equal links of the beam's own section, 1/m, with the losses of the joints."""
-        omega, own, loss = 2.0 * pi * frequency_hz, self.beam.own, 1.0 + 1j * self.beam.loss_factor
+        omega, own, loss = 2.0 * pi * frequency_hz, self.beam.base_section, 1.0 + 1j * self.beam.loss_factor
         rigidity, inertia = own.shear_stiffness or 0.0, own.rotary_inertia or 0.0
         k = phase(
             (omega / self._omega_unit) ** 2,

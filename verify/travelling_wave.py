@@ -290,6 +290,6 @@ def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
     half = 0.5 * np.diff(edges)[:, None]
     x, weights = (edges[:-1, None] + half * (points + 1.0)).ravel(), (half * weights).ravel()
     lost = beam.bending_stiffness * float(abs(field.rotations(x, 1)) ** 2 @ weights)
-    if field.theory == "timoshenko" and beam.own.shear_stiffness is not None:
-        lost += beam.own.shear_stiffness * float(abs(field.slope(x) - field.rotation(x)) ** 2 @ weights)
+    if field.theory == "timoshenko" and beam.base_section.shear_stiffness is not None:
+        lost += beam.base_section.shear_stiffness * float(abs(field.slope(x) - field.rotation(x)) ** 2 @ weights)
     return float((power - 0.5 * field.omega * beam.loss_factor * lost) / measures.energy_flux - 1.0)

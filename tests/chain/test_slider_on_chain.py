@@ -40,7 +40,7 @@ def test_stretching_links_move_as_dense_equations():
 
 
 def test_energy_of_free_stretching_links_drifts_with_order_five():
-    soft = np.full(6, 1e-4 * STRIP.youngs_modulus * STRIP.own.area)
+    soft = np.full(6, 1e-4 * STRIP.youngs_modulus * STRIP.base_section.area)
     system = changed(build_system(STRIP, 6), gravity=(1.0, -9.81), axial_stiffness=soft)
     bent = 0.01 * np.sin(np.pi * system.nodes / 0.5) + 0.004 * np.sin(2 * np.pi * system.nodes / 0.5)
     limit, drifts = elastic_step_limit(system), []
@@ -137,7 +137,7 @@ def test_friction_drives_axial_waves_of_links_that_stretch():
     rigid, stretching = (
         slide_on_chain(STRIP, (), HERTZ, 4e-5, links=links, **asked).surface_speed for links in ("rigid", "stretching")
     )
-    impedance = 2.0 * np.sqrt(STRIP.own.axial_stiffness * STRIP.mass_per_length)
+    impedance = 2.0 * np.sqrt(STRIP.base_section.axial_stiffness * STRIP.mass_per_length)
     along = (stretching - rigid)[5:]
     assert along.mean() == pytest.approx(0.4 * one.normal_force / impedance, rel=0.01)
     assert np.ptp(along) < 0.1 * along.mean()

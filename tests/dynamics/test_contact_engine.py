@@ -45,7 +45,7 @@ def test_an_absorber_and_a_circuit_are_further_rows_of_the_engine() -> None:
     points[0, [lay.FACE, lay.IMAGE, lay.WEIGHT]], points[0, lay.LOAD] = 1.0, 3.0
     contacts = Contacts(
         start=0.4, sliders=sliders, feet=np.zeros((0, lay.FOOT)), points=points,
-        contacts=np.zeros((1, lay.CONTACT)), indices=np.zeros((1, 3), dtype=np.int64), law=lay.GIVEN, two_way=True,
+        contacts=np.zeros((1, lay.CONTACT)), indices=np.zeros((1, 3), dtype=np.int64), law=lay.PRESCRIBED, two_way=True,
         presses=True,
     )  # fmt: skip
     recorded = run_stages([stage], np.zeros(len(kept), dtype=complex), contacts, np.array([0.8]))

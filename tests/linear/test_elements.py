@@ -120,7 +120,7 @@ def unit_matrices():
 def discrete_hz(beam, mode, count, theory):
     """A wave through equal elements, a Hermitian problem of two or four unknowns in 40 digits."""
     with mp.workdps(40):
-        own, length, mu = beam.own, mp.mpf(beam.length) / count, mode * mp.pi / count
+        own, length, mu = beam.base_section, mp.mpf(beam.length) / count, mode * mp.pi / count
         across, slope, turning, bending, shear = unit_matrices()
         stiff, heavy = mp.mpf(own.bending_stiffness), mp.mpf(own.mass_per_length)
         k = bending + across * (beam.foundation * length**4 / stiff) + slope * (beam.tension * length**2 / stiff)

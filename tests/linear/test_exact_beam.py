@@ -82,7 +82,7 @@ def test_shapes_are_orthonormal_in_the_mass_and_rotary_inertia_of_beam_and_bodie
 
 def test_at_a_clamp_a_timoshenko_shape_has_slope_without_rotation():
     """By M' = V + p psi the third derivative gives kappa G A (w' - psi) = -V with psi = 0."""
-    model, own, end = ExactModel(PLAIN, "timoshenko"), PLAIN.own, np.array([0.0])
+    model, own, end = ExactModel(PLAIN, "timoshenko"), PLAIN.base_section, np.array([0.0])
     w, slope, bend, third = (model.mode_shape(2, end, d)[0] for d in range(4))
     assert abs(w) < 1e-15
     square = own.mass_per_length * (2 * np.pi * model.frequency_hz(2)) ** 2
@@ -141,8 +141,8 @@ def test_compliances_of_bending_shear_and_an_elastic_clamp_add_up(hertz):
     k, turning = 3e5, 8e3
     beam = Beam(length=0.4, width=0.02, thickness=0.05, youngs_modulus=70e9, density=2700.0, supports=("free", "free"))
     beam = replace(beam, spring=(PointSpring(position=0.0, stiffness=k, rotational=turning),))
-    bent = 0.4**3 / 3 / beam.own.bending_stiffness + 0.4**2 / turning + 1 / k
-    shear = {"euler-bernoulli": 0.0, "rayleigh": 0.0, "timoshenko": 0.4 / beam.own.shear_stiffness}
+    bent = 0.4**3 / 3 / beam.base_section.bending_stiffness + 0.4**2 / turning + 1 / k
+    shear = {"euler-bernoulli": 0.0, "rayleigh": 0.0, "timoshenko": 0.4 / beam.base_section.shear_stiffness}
     for theory, own in shear.items():
         found = ExactModel(beam, theory).harmonic([PointForce(position=0.4, amplitude=7.0)], hertz)
         assert found.deflection(0.4)[0] == pytest.approx(7.0 * (bent + own), rel=1e-13)

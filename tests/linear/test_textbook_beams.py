@@ -72,7 +72,7 @@ def test_stiff_springs_cost_discrete_models_no_digit(model, size):
 # --- Frequencies of Timoshenko beams ---------------------------------------------------------------------------------
 
 BLOCK = Beam(length=0.43, width=0.019, thickness=0.061, youngs_modulus=113e9, density=4470.0, poissons_ratio=0.31)
-OWN = BLOCK.own
+OWN = BLOCK.base_section
 CUT_OFF = np.sqrt(OWN.shear_stiffness / OWN.rotary_inertia) / (2 * np.pi)
 
 

@@ -60,7 +60,7 @@ def beam_margins(
             left_out = "shear, rotary inertia and bending across the width may be left out, unknown without a shape"
             unknown = Margin(name="beam theory", size=0.0, fine=-1.0, condition=left_out, where=where, is_error=False)
             return [*found, unknown]
-        size, name = 1.0 - theory_ratio(beam.own, k), "shear and rotary inertia"
+        size, name = 1.0 - theory_ratio(beam.base_section, k), "shear and rotary inertia"
         if mode:
             with suppress(InputError):
                 size = abs(cache.exact_hz(mode, "timoshenko") / cache.exact_hz(mode) - 1.0)

@@ -139,7 +139,7 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
     load, N, `limits` the ends of the surface; `forces` (points, 2) act on sliders and feet, tangential and normal.
     """
     two_way, spring, m, last = codes[lay.TWO_WAY] > 0, codes[lay.LAW] == lay.SPRING, points.shape[0], factors.shape[0]
-    directions = 2 if codes[lay.PRESSES] > 0 else 1
+    directions = 2 if codes[lay.NORMAL_TWO_WAY] > 0 else 1
     for _ in range(n_steps):
         step, count = tally[lay.STEP], 0
         row = 0 if two_way else 2 * step

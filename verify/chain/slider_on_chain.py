@@ -187,7 +187,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         powers = self.line.c[::-1] * system.lengths[:, None] ** np.arange(4)[:, None, None]
         places, codes = np.zeros((len(self.request.points), columns)), np.zeros(lay.CODES, dtype=np.int64)
         places[:, :count] = self.line(self.request.points).T
-        codes[[lay.LAW, lay.TWO_WAY, lay.PRESSES, lay.FOLLOWING]] = (
+        codes[[lay.LAW, lay.TWO_WAY, lay.NORMAL_TWO_WAY, lay.FOLLOWING]] = (
             contacts.law, two_way, contacts.presses, contacts.following,
         )  # fmt: skip
         arrays = (

@@ -195,7 +195,7 @@ def build_system(
     stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
     axial = np.zeros(0)
     if links == "stretching":
-        axial = divide(beam, n_segments).axial_stiffnesses * beam.own.axial_stiffness
+        axial = divide(beam, n_segments).axial_stiffnesses * beam.base_section.axial_stiffness
     system = ChainSystem(
         lengths=chain.lengths * unit,
         masses=chain.masses * mass * unit,

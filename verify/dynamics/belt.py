@@ -38,11 +38,11 @@ def _contact(
         points=np.zeros((1, lay.POINT)),
         contacts=np.zeros((1, lay.CONTACT)),
         indices=np.zeros((1, 3), dtype=np.int64),
-        law=lay.GIVEN,
+        law=lay.PRESCRIBED,
         two_way=mass == inf,
         presses=False,
     )
-    columns = [lay.V, lay.INVERSE_MASS, lay.MU, lay.MU_STATIC, lay.STEEPNESS, lay.PULL]
+    columns = [lay.V, lay.INVERSE_MASS, lay.MU, lay.MU_STATIC, lay.STEEPNESS, lay.EXTERNAL_FORCE]
     contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, force
     contact.points[0, [lay.FACE, lay.IMAGE, lay.WEIGHT, lay.LOAD, lay.LEVER]] = 1.0, 1.0, 1.0, load, LEVER
     return contact

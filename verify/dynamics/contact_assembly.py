@@ -36,7 +36,7 @@ def assemble(
         row[lay.INVERSE_MASS] = 1.0 / slider.mass if speed is None else 0.0
         row[lay.MU] = slider.mu
         row[lay.MU_STATIC] = slider.mu if slider.mu_static is None else slider.mu_static
-        row[lay.STEEPNESS], row[lay.PULL] = slider.steepness or 0.0, slider.external_force
+        row[lay.STEEPNESS], row[lay.EXTERNAL_FORCE] = slider.steepness or 0.0, slider.external_force
         row[lay.FREE] = 0.0 if stays else 1.0
         rows.append(row)
         for foot in slider.feet if slider.contact else (None,):
@@ -60,7 +60,7 @@ def assemble(
         points=points,
         contacts=np.zeros((len(points), lay.CONTACT)),
         indices=np.array(indices, dtype=np.int64),
-        law=lay.SPRING if first.contact else lay.BILATERAL if held else lay.GIVEN,
+        law=lay.SPRING if first.contact else lay.BILATERAL if held else lay.PRESCRIBED,
         two_way=two_way,
         presses=two_way and (first.contact is not None or held),
         following=first.kinematics == "following",
@@ -99,7 +99,7 @@ def _foot(slider: Slider, foot: Foot) -> list[float]:
     force = 0.0 if foot.mirrored else preload if foot.face == "lower" else -preload
     row[lay.INVERSE_FOOT_MASS] = 1.0 / mass
     row[lay.INVERSE_INERTIA] = 1.0 / inertia if foot.pitches and foot.points > 1 else 0.0
-    row[lay.PRESS] = force - slider.mass * slider.gravity / len(slider.feet)
+    row[lay.FOOT_LOAD] = force - slider.mass * slider.gravity / len(slider.feet)
     row[lay.SPRING_RATE] = slider.preload_stiffness
     return row
 

@@ -92,12 +92,12 @@ def normal_force(
     """Normal force of point i of a slider and of foot k, mean over the step, with its own response."""
     point, touch = points[i], contacts[i]
     n, own = touch[lay.NORMAL], 0.0
-    if codes[lay.LAW] == lay.GIVEN:
+    if codes[lay.LAW] == lay.PRESCRIBED:
         return float(point[lay.LOAD])
     if codes[lay.LAW] == lay.BILATERAL:  # momentum of the step: the point has the surface's speed at its end
         inertia = point[lay.INERTIA] / dt
         climb = touch[lay.RAMP] * (slider[lay.V] + slider[lay.GAINED] - touch[lay.SPEED_END]) + touch[lay.CLOSING]
-        if codes[lay.PRESSES] > 0:
+        if codes[lay.NORMAL_TWO_WAY] > 0:
             own = couplings[1, i, i]
             for j in range(points.shape[0]):
                 climb -= couplings[0, i, j] * contacts[j, lay.FRICTION] + couplings[1, i, j] * contacts[j, lay.NORMAL]
@@ -112,7 +112,7 @@ def normal_force(
         foot, arm = feet[k], point[lay.ARM]
         own = 0.5 * dt * (foot[lay.INVERSE_FOOT_MASS] + arm * arm * foot[lay.INVERSE_INERTIA])
         closing = touch[lay.CLOSING] - 0.5 * point[lay.FACE] * (foot[lay.LIFTED] + arm * foot[lay.TURNED])
-        if codes[lay.PRESSES] > 0:
+        if codes[lay.NORMAL_TWO_WAY] > 0:
             closing += product(i, TRANSVERSE, shapes, response)
             own += own_product(i, TRANSVERSE, shapes)
         force = (force + dashpot * (closing + own * n)) / (1.0 + dashpot * own)
@@ -280,13 +280,13 @@ def solve(
 
     `block` (points, points + 1) is working space.
     """
-    law, two_way, presses = codes[lay.LAW], codes[lay.TWO_WAY] > 0, codes[lay.PRESSES] > 0
+    law, two_way, presses = codes[lay.LAW], codes[lay.TWO_WAY] > 0, codes[lay.NORMAL_TWO_WAY] > 0
     for b in range(sliders.shape[0]):
         slider = sliders[b]
-        slider[lay.GAINED] = dt * (slider[lay.INVERSE_MASS] * slider[lay.PULL] + slider[lay.TILT])
+        slider[lay.GAINED] = dt * (slider[lay.INVERSE_MASS] * slider[lay.EXTERNAL_FORCE] + slider[lay.TILT])
     for k in range(feet.shape[0]):
         foot = feet[k]
-        press = foot[lay.PRESS] - foot[lay.SPRING_RATE] * foot[lay.HEIGHT]
+        press = foot[lay.FOOT_LOAD] - foot[lay.SPRING_RATE] * foot[lay.HEIGHT]
         foot[lay.LIFTED], foot[lay.TURNED] = dt * foot[lay.INVERSE_FOOT_MASS] * press, 0.0
     for j in range(len(response)):
         response[j] = 0.0
@@ -406,7 +406,7 @@ def apply_forces(codes: Indices, rows: Array, points: Array, contacts: Array, sh
         real, imaginary = 0.0, 0.0
         for i in range(points.shape[0]):
             along, across = points[i, lay.WEIGHT] * contacts[i, lay.FRICTION], 0.0
-            if codes[lay.PRESSES] > 0:
+            if codes[lay.NORMAL_TWO_WAY] > 0:
                 across = points[i, lay.WEIGHT] * contacts[i, lay.NORMAL]
             real -= along * shapes[0, i, j] + across * shapes[1, i, j]
             if j >= n - n_complex:

@@ -23,14 +23,14 @@ ROUNDING = 4e-15
 LOW = 1e4
 """Height, over that rounding, above which a flight counts whatever energy it loses."""
 LEVEL, CLIMB, RAMP, ACCELERATION, ALONG = range(5)
-"""`seen`: height of the surface, its rate under the moving point, the part by slopes, the acceleration of a point that
+"""`motion`: height of the surface, its rate under the moving point, the part by slopes, acceleration of a point that
 rides on it, tangential speed of the material."""
 
 
 @inline(fastmath=FAST)
-def see(
+def surface_at(
     time: float, since: float, x: float, v: float, n_complex: int, rows: Array, drive: Array, table: Array,
-    edges: Array, lever: float, columns: Array, seen: Array,
+    edges: Array, lever: float, columns: Array, motion: Array,
 ) -> None:  # fmt: skip
     """Set the surface under x at a time of the stage, `since` seconds after the state of the rows."""
     piece, n, omega, unit = 0, rows.shape[1], drive[lay.OMEGA], drive[lay.UNIT]
@@ -80,27 +80,27 @@ def see(
         if attempt == 0:
             at += lever * slope / length
     passed = v + lever * (turn + curve * v)
-    seen[LEVEL], seen[CLIMB], seen[RAMP] = w, rise + slope * passed, slope * (v + lever * curve * v)
-    seen[ACCELERATION] = fall + lever * slope * lean + (2.0 * turn + curve * passed) * passed
-    seen[ALONG] = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
+    motion[LEVEL], motion[CLIMB], motion[RAMP] = w, rise + slope * passed, slope * (v + lever * curve * v)
+    motion[ACCELERATION] = fall + lever * slope * lean + (2.0 * turn + curve * passed) * passed
+    motion[ALONG] = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
 
 
 @jit
 def advance_impacts(
     n_steps: int, every: int, dt: float, restitution: float, codes: Indices, drive: Array, rows: Array, table: Array,
     edges: Array, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices, factors: Array,
-    columns: Array, seen: Array, spans: Array, places: Array, samples: Array, heights: Array, pressures: Array,
+    columns: Array, motion: Array, spans: Array, places: Array, samples: Array, heights: Array, pressures: Array,
     deflections: Array, events: Array, tally: Indices, sums: Array, before: Array,
 ) -> int:  # fmt: skip
     """Advance a rigid point by up to n_steps from step tally[STEP]; why it returns.
 
     `contacts[0, DEPTH]` is 1 while it rides and -1 while it flies; at 0 it is set down on the surface. `columns` (3,
-    columns) and `seen` (5,) are working space.
+    columns) and `motion` (5,) are working space.
     """
     slider, foot, touch, total, n_complex = sliders[0], feet[0], contacts[0], sums[0], codes[lay.COMPLEX]
     mass, lever, free = 1.0 / foot[lay.INVERSE_FOOT_MASS], points[0, lay.LEVER], slider[lay.FREE]
     inverse, mu, steepness = slider[lay.INVERSE_MASS], slider[lay.MU], slider[lay.STEEPNESS]
-    press, along = -foot[lay.PRESS] / mass, slider[lay.PULL] * inverse
+    load, along = -foot[lay.FOOT_LOAD] / mass, slider[lay.EXTERNAL_FORCE] * inverse
     for _ in range(n_steps):
         time, done, origin = tally[lay.STEP] * dt, 0.0, drive[lay.ORIGIN]
         for _ in range(IMPACTS):
@@ -108,21 +108,21 @@ def advance_impacts(
             if left <= 1e-15 * dt:
                 break
             if touch[lay.DEPTH] == 0.0:
-                see(time, done, slider[lay.X], free * slider[lay.V],
-                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
-                foot[lay.HEIGHT], foot[lay.CLIMB] = seen[LEVEL], seen[CLIMB]
-                touch[lay.DEPTH] = 1.0 if press + seen[ACCELERATION] > 0.0 else -1.0
+                surface_at(time, done, slider[lay.X], free * slider[lay.V],
+                    n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
+                foot[lay.HEIGHT], foot[lay.CLIMB] = motion[LEVEL], motion[CLIMB]
+                touch[lay.DEPTH] = 1.0 if load + motion[ACCELERATION] > 0.0 else -1.0
             riding, low, high, x, v = touch[lay.DEPTH] > 0.0, 0.0, left, slider[lay.X], slider[lay.V]
             ended = False
             for trial in range(2 + BISECTIONS):  # both halves of what is left, then bisection
                 s = left * 0.5 * (trial + 1) if trial < 2 else 0.5 * (low + high)
                 if (trial == 1 and ended) or (trial > 1 and not low < s < high):
                     continue
-                pull = 0.0 if riding else along
-                see(time + done + s, done + s, x + free * (v + 0.5 * pull * s) * s, free * (v + pull * s),
-                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
-                margin = foot[lay.HEIGHT] + (foot[lay.CLIMB] - 0.5 * press * s) * s - seen[LEVEL]
-                margin = press + seen[ACCELERATION] if riding else margin
+                ax = 0.0 if riding else along
+                surface_at(time + done + s, done + s, x + free * (v + 0.5 * ax * s) * s, free * (v + ax * s),
+                    n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
+                margin = foot[lay.HEIGHT] + (foot[lay.CLIMB] - 0.5 * load * s) * s - motion[LEVEL]
+                margin = load + motion[ACCELERATION] if riding else margin
                 if margin < 0.0:
                     high, ended = s, True
                 else:
@@ -131,89 +131,89 @@ def advance_impacts(
                     break
             s = high
             if not riding:
-                moved, rise = (v + 0.5 * along * s) * s, (foot[lay.CLIMB] - 0.5 * press * s) * s
+                moved, rise = (v + 0.5 * along * s) * s, (foot[lay.CLIMB] - 0.5 * load * s) * s
                 slider[lay.X], slider[lay.V] = x + free * moved, v + along * s
                 foot[lay.HEIGHT] += rise
-                foot[lay.CLIMB] -= press * s
-                total[lay.PULLED] += slider[lay.PULL] * moved * (inverse > 0.0)
-                total[lay.PRESSED] -= mass * press * rise
+                foot[lay.CLIMB] -= load * s
+                total[lay.EXTERNAL_WORK] += slider[lay.EXTERNAL_FORCE] * moved * (inverse > 0.0)
+                total[lay.LOAD_WORK] -= mass * load * rise
                 touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.STUCK] = 0.0, 0.0, 0.0
-                push, force, share, speed, uphill, into, across = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+                normal, force, share, speed, ramp, into, across = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             else:
-                see(time + done, done, x, free * v, n_complex, rows, drive, table, edges, lever, columns, seen)
-                speed = seen[ALONG]
+                surface_at(time + done, done, x, free * v, n_complex, rows, drive, table, edges, lever, columns, motion)
+                speed = motion[ALONG]
                 middle = x + free * 0.5 * v * s
-                see(time + done + 0.5 * s, done + 0.5 * s, middle, free * v,
-                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
-                push, share, uphill = mass * max(press + seen[ACCELERATION], 0.0), s, seen[RAMP]
-                see(time + done + s, done + s, x + free * v * s, free * v,
-                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
+                surface_at(time + done + 0.5 * s, done + 0.5 * s, middle, free * v,
+                    n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
+                normal, share, ramp = mass * max(load + motion[ACCELERATION], 0.0), s, motion[RAMP]
+                surface_at(time + done + s, done + s, x + free * v * s, free * v,
+                    n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
             ease, gain = inverse, 0.0
             if not riding and ended:  # landing: restitution across, friction of the impulse along
-                see(time + done + s, done + s, slider[lay.X], free * slider[lay.V],
-                    n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
-                foot[lay.HEIGHT] = seen[LEVEL]
-                into = max(seen[CLIMB] - foot[lay.CLIMB], 0.0)
-                push, share, speed, uphill = mass * (1.0 + restitution) * into, 1.0, seen[ALONG], seen[RAMP]
-                foot[lay.CLIMB] += push / mass
-                total[lay.DAMPED] += 0.5 * push * into * (1.0 - restitution)
+                surface_at(time + done + s, done + s, slider[lay.X], free * slider[lay.V],
+                    n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
+                foot[lay.HEIGHT] = motion[LEVEL]
+                into = max(motion[CLIMB] - foot[lay.CLIMB], 0.0)
+                normal, share, speed, ramp = mass * (1.0 + restitution) * into, 1.0, motion[ALONG], motion[RAMP]
+                foot[lay.CLIMB] += normal / mass
+                total[lay.DAMPED] += 0.5 * normal * into * (1.0 - restitution)
             if share > 0.0:
                 v = slider[lay.V]
                 if riding:
-                    ease, gain = s * inverse, seen[ALONG] - speed - s * along
+                    ease, gain = s * inverse, motion[ALONG] - speed - s * along
                 start = v - speed
                 if steepness > 0.0:
-                    force = tanh_force(start, gain, ease, mu * push, steepness)
+                    force = tanh_force(start, gain, ease, mu * normal, steepness)
                     touch[lay.STUCK] = 0.0
                 else:
                     stuck = riding and touch[lay.STUCK] > 0.0
                     shift = start if stuck else 0.0
-                    force = coulomb_force(start, gain - shift, gain - shift, ease, mu * push,
-                                          slider[lay.MU_STATIC] * push, stuck, spans[0])  # fmt: skip
+                    force = coulomb_force(start, gain - shift, gain - shift, ease, mu * normal,
+                                          slider[lay.MU_STATIC] * normal, stuck, spans[0])  # fmt: skip
                     touch[lay.STUCK] = spans[0, 0] if riding else 0.0
                 after = v + share * inverse * force + (s * along if riding else 0.0)
-                mean, surface = 0.5 * (v + after), 0.5 * (speed + seen[ALONG])
+                mean, surface = 0.5 * (v + after), 0.5 * (speed + motion[ALONG])
                 slider[lay.V] = after
                 if riding:
                     slider[lay.X] = x + free * mean * s
-                    see(time + done + s, done + s, slider[lay.X], free * after,
-                        n_complex, rows, drive, table, edges, lever, columns, seen)  # fmt: skip
-                    rise = seen[LEVEL] - foot[lay.HEIGHT]
-                    across = 0.5 * mass * (seen[CLIMB] ** 2 - foot[lay.CLIMB] ** 2) + mass * press * rise
-                    foot[lay.HEIGHT], foot[lay.CLIMB] = seen[LEVEL], seen[CLIMB]
-                    total[lay.PRESSED] -= mass * press * rise
+                    surface_at(time + done + s, done + s, slider[lay.X], free * after,
+                        n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
+                    rise = motion[LEVEL] - foot[lay.HEIGHT]
+                    across = 0.5 * mass * (motion[CLIMB] ** 2 - foot[lay.CLIMB] ** 2) + mass * load * rise
+                    foot[lay.HEIGHT], foot[lay.CLIMB] = motion[LEVEL], motion[CLIMB]
+                    total[lay.LOAD_WORK] -= mass * load * rise
                     total[lay.TOUCH_TIME] += s
                     total[lay.STICK_TIME] += s if touch[lay.STUCK] > 0.0 else 0.0
-                    touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.SURFACE] = push, force, surface
+                    touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.SURFACE] = normal, force, surface
                     total[lay.HARDEST] = max(total[lay.HARDEST], abs(force))
                     total[lay.SURFACE_TIME] += s * surface
                 else:
-                    across = push * seen[CLIMB]
-                total[lay.UPHILL] += share * push * uphill
-                total[lay.ACROSS] += across - share * push * uphill
-                total[lay.LIFTED_BEAM] -= across - share * push * uphill
+                    across = normal * motion[CLIMB]
+                total[lay.SLOPE_WORK] += share * normal * ramp
+                total[lay.ACROSS] += across - share * normal * ramp
+                total[lay.LIFTED_BEAM] -= across - share * normal * ramp
                 total[lay.ALONG] += share * force * surface
                 total[lay.DISSIPATED] += share * force * (surface - mean)
                 total[lay.FRICTION_TIME] += share * force
-                total[lay.NORMAL_TIME] += share * push
-                pull = slider[lay.PULL] * (s if riding else 0.0)
-                total[lay.PULLED] += mean * (pull if inverse > 0.0 else -share * force)
+                total[lay.NORMAL_TIME] += share * normal
+                ax = slider[lay.EXTERNAL_FORCE] * (s if riding else 0.0)
+                total[lay.EXTERNAL_WORK] += mean * (ax if inverse > 0.0 else -share * force)
             done += s
             kind = 0.0
             if riding and ended and s < left:
                 kind, touch[lay.DEPTH] = lay.LEAVES, -1.0
             elif not riding and ended:
                 kind = lay.LANDS
-                away, presses = restitution * into, press + seen[ACCELERATION]
-                if presses > 0.0:  # a flight too short for the step, or low and fed by rounding
-                    height = away * away / (2.0 * presses)
-                    known = ROUNDING * (abs(seen[LEVEL]) + abs(seen[CLIMB]) * (time + dt))
+                away, contact_load = restitution * into, load + motion[ACCELERATION]
+                if contact_load > 0.0:  # a flight too short for the step, or low and fed by rounding
+                    height = away * away / (2.0 * contact_load)
+                    known = ROUNDING * (abs(motion[LEVEL]) + abs(motion[CLIMB]) * (time + dt))
                     fed = (1.0 - restitution**2) * height <= known and height <= LOW * known
-                    if 2.0 * away <= REST * dt * presses or fed:
-                        touch[lay.DEPTH], foot[lay.CLIMB] = 1.0, seen[CLIMB]
+                    if 2.0 * away <= REST * dt * contact_load or fed:
+                        touch[lay.DEPTH], foot[lay.CLIMB] = 1.0, motion[CLIMB]
                         total[lay.DAMPED] += 0.5 * mass * away * away  # what is left of the bounce
-                        total[lay.ACROSS] -= mass * away * seen[CLIMB]
-                        total[lay.LIFTED_BEAM] += mass * away * seen[CLIMB]
+                        total[lay.ACROSS] -= mass * away * motion[CLIMB]
+                        total[lay.LIFTED_BEAM] += mass * away * motion[CLIMB]
             if kind > 0.0:
                 row = tally[lay.EVENTS]
                 if row < events.shape[0]:

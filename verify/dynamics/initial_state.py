@@ -46,7 +46,7 @@ def _loads(contacts: Contacts, foot: Indices, compliance: Array) -> Array:
     """
     if not len(contacts.feet):
         return -contacts.points[:, lay.LOAD]
-    press, spring = contacts.feet[:, lay.PRESS], contacts.feet[:, lay.SPRING_RATE]
+    press, spring = contacts.feet[:, lay.FOOT_LOAD], contacts.feet[:, lay.SPRING_RATE]
     if not spring.any():
         return press
     deformed = compliance + np.diag(1.0 / np.bincount(foot, contacts.points[:, lay.STIFF]))
@@ -101,7 +101,7 @@ def _rest_height(number: int, points: Array, level: Array, foot: Array) -> float
     """Height at which the springs of a level foot carry its load over these levels, m. Raises InputError."""
     from scipy.optimize import brentq
 
-    face, stiff, press = points[:, lay.FACE], points[:, lay.STIFF], float(foot[lay.PRESS])
+    face, stiff, press = points[:, lay.FACE], points[:, lay.STIFF], float(foot[lay.FOOT_LOAD])
     depth = points[:, lay.INSET] + face * points[:, lay.IMAGE] * level
 
     def force(z: float) -> float:

@@ -113,7 +113,7 @@ def add_sums(
     feet_of: Indices, shapes: Array, response: Array, spans: Array, sums: Array, balance: Array,
 ) -> None:  # fmt: skip
     """Works, losses and integrals of the step; sliders and feet are still at its start."""
-    spring, two_way, presses = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0, codes[lay.PRESSES] > 0
+    spring, two_way, presses = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0, codes[lay.NORMAL_TWO_WAY] > 0
     for b in range(sliders.shape[0]):
         slider, add, total, normal, surface, touching, sticking, n = sliders[b], sums[b], 0.0, 0.0, 0.0, 0, 0, 0
         mean, prescribed = slider[lay.V] + 0.5 * slider[lay.GAINED], slider[lay.INVERSE_MASS] == 0.0
@@ -131,8 +131,8 @@ def add_sums(
                 fall, inertia = (touch[lay.RISE_RATE] - touch[lay.CLOSING]) / dt, point[lay.INERTIA]
                 if codes[lay.LAW] == lay.BILATERAL and inertia > 0.0:
                     fall = (point[lay.LOAD] - push) / inertia
-                    add[lay.PRESSED] -= dt * point[lay.LOAD] * (touch[lay.RISE_RATE] - 0.5 * dt * fall)
-                    add[lay.UPHILL] += dt * push * touch[lay.SLOPE] * mean * slider[lay.FREE]
+                    add[lay.LOAD_WORK] -= dt * point[lay.LOAD] * (touch[lay.RISE_RATE] - 0.5 * dt * fall)
+                    add[lay.SLOPE_WORK] += dt * push * touch[lay.SLOPE] * mean * slider[lay.FREE]
                 add[lay.FALL] = max(add[lay.FALL], fall)
             if presses:
                 answer = product(i, TRANSVERSE, shapes, response)
@@ -158,11 +158,11 @@ def add_sums(
             if spring:
                 foot = feet[indices[i, lay.OF_FOOT]]
                 closing = touch[lay.CLOSING] - 0.5 * face * (foot[lay.LIFTED] + point[lay.ARM] * foot[lay.TURNED])
-                add[lay.UPHILL] += dt * push * face * ramp
+                add[lay.SLOPE_WORK] += dt * push * face * ramp
                 add[lay.DAMPED] += dt * (push - point[lay.STIFF] * touch[lay.DEPTH]) * closing
         if not prescribed:
-            add[lay.UPHILL] += dt * mean * slider[lay.TILT] / slider[lay.INVERSE_MASS]
-        add[lay.PULLED] += dt * mean * (-total if prescribed else slider[lay.PULL])
+            add[lay.SLOPE_WORK] += dt * mean * slider[lay.TILT] / slider[lay.INVERSE_MASS]
+        add[lay.EXTERNAL_WORK] += dt * mean * (-total if prescribed else slider[lay.EXTERNAL_FORCE])
         add[lay.FRICTION_TIME] += dt * total
         add[lay.NORMAL_TIME] += dt * normal
         add[lay.TOUCH_TIME] += dt * touching / n
@@ -171,8 +171,8 @@ def add_sums(
         add[lay.HARDEST] = max(add[lay.HARDEST], abs(total))
     for k in range(feet.shape[0]):
         foot = feet[k]
-        force = foot[lay.PRESS] - foot[lay.SPRING_RATE] * foot[lay.HEIGHT]
-        sums[feet_of[k], lay.PRESSED] += dt * force * (foot[lay.CLIMB] + 0.5 * foot[lay.LIFTED])
+        force = foot[lay.FOOT_LOAD] - foot[lay.SPRING_RATE] * foot[lay.HEIGHT]
+        sums[feet_of[k], lay.LOAD_WORK] += dt * force * (foot[lay.CLIMB] + 0.5 * foot[lay.LIFTED])
 
 
 @jit(no_cpython_wrapper=True)
@@ -214,11 +214,11 @@ def sample(
     for b in range(sliders.shape[0]):
         slider, kept, done, last, speed, n = sliders[b], samples[row, b], sums[b], before[b], 0.0, 0
         v, mu, steepness = slider[lay.V], slider[lay.MU], slider[lay.STEEPNESS]
-        kept[lay.KEPT_X], kept[lay.KEPT_V] = slider[lay.X], v
+        kept[lay.SAMPLE_X], kept[lay.SAMPLE_V] = slider[lay.X], v
         for s in range(4):  # friction, normal force and the shares of points, in one order in both
-            kept[lay.KEPT_FRICTION + s] = (done[lay.FRICTION_TIME + s] - last[lay.FRICTION_TIME + s]) / span
-        kept[lay.KEPT_LOSS] = done[lay.DISSIPATED] - last[lay.DISSIPATED]
-        kept[lay.KEPT_ALONG] = done[lay.ALONG] - last[lay.ALONG]
+            kept[lay.SAMPLE_FRICTION + s] = (done[lay.FRICTION_TIME + s] - last[lay.FRICTION_TIME + s]) / span
+        kept[lay.SAMPLE_LOSS] = done[lay.DISSIPATED] - last[lay.DISSIPATED]
+        kept[lay.SAMPLE_ALONG] = done[lay.ALONG] - last[lay.ALONG]
         for s in range(done.size):
             last[s] = done[s]
         for i in range(points.shape[0]):
@@ -232,10 +232,10 @@ def sample(
                 if touch[lay.STUCK] == 0.0:
                     law = np.tanh(steepness * (v - surface)) if steepness > 0.0 else np.sign(v - surface)
                     force = -mu * max(normal, 0.0) * law
-                kept[lay.KEPT_FRICTION], kept[lay.KEPT_NORMAL] = force, normal
+                kept[lay.SAMPLE_FRICTION], kept[lay.SAMPLE_NORMAL] = force, normal
             if normal > 0.0 or not spring:
                 speed, n = speed + surface, n + 1
-        kept[lay.KEPT_SURFACE] = speed / n if n > 0 else np.nan
+        kept[lay.SAMPLE_SURFACE] = speed / n if n > 0 else np.nan
     for k in range(feet.shape[0]):
         heights[row, k, 0], heights[row, k, 1] = feet[k, lay.HEIGHT], feet[k, lay.PITCH]
     for p in range(places.shape[0]):

@@ -187,7 +187,7 @@ def look(
             touch[lay.CLOSING] = face * (lift - foot[lay.CLIMB] - point[lay.ARM] * foot[lay.TURN])
         elif when == START:
             touch[lay.START], touch[lay.MEAN], touch[lay.LIFT] = along, share * along, share * lift
-            if codes[lay.LAW] == lay.GIVEN:
+            if codes[lay.LAW] == lay.PRESCRIBED:
                 touch[lay.RISE_RATE] = climb
         else:
             touch[lay.MEAN] += share * along

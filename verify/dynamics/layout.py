@@ -14,13 +14,13 @@ OMEGA, ORIGIN, UNIT = range(3)
 """Drive (3,): angular frequency, seconds before the stage, T of the powers of time."""
 
 SLIDER = 11
-X, V, INVERSE_MASS, MU, MU_STATIC, STEEPNESS, PULL, FREE, GAINED, DRIFT, TILT = range(SLIDER)
+X, V, INVERSE_MASS, MU, MU_STATIC, STEEPNESS, EXTERNAL_FORCE, FREE, GAINED, DRIFT, TILT = range(SLIDER)
 """Sliders (n, SLIDER). Filled by the caller: distance travelled and speed (state); 1/mass, 0 at a prescribed speed;
 kinetic and static coefficient of friction; K of the tanh law, 0 for Coulomb's; external force along x, N; 0 at a fixed
 position, else 1. Then the engine's: speed gained in the step; of kinematics "following" the mean drift along x and the
 mean acceleration by the turning tangent and gravity."""
 FOOT = 10
-HEIGHT, CLIMB, PITCH, TURN, INVERSE_FOOT_MASS, INVERSE_INERTIA, PRESS, SPRING_RATE, LIFTED, TURNED = range(FOOT)
+HEIGHT, CLIMB, PITCH, TURN, INVERSE_FOOT_MASS, INVERSE_INERTIA, FOOT_LOAD, SPRING_RATE, LIFTED, TURNED = range(FOOT)
 """Feet (n, FOOT): height, its rate, pitch, its rate (state); 1/mass across, 1/inertia (0: no pitch), force along z, N,
 and stiffness of the preload spring, N/m. Then the engine's: what the step adds to the two rates."""
 POINT = 12
@@ -48,31 +48,34 @@ OF_SLIDER, OF_FOOT, PIECE = range(3)
 """Indices (n_points, 3): slider, foot (0 without feet) and piece of the beam of every point."""
 
 CODES = 6
-LAW, TWO_WAY, PRESSES, FOLLOWING, COMPLEX, ACCOUNTS = range(CODES)
+LAW, TWO_WAY, NORMAL_TWO_WAY, FOLLOWING, COMPLEX, ACCOUNTS = range(CODES)
 """Codes (CODES,), integers: normal law; 1 where the beam responds to friction; 1 where it responds to normal forces;
 1 of kinematics "following"; number of rows with a complex shape, the last ones; 1 where the drive's work is summed."""
-GIVEN, BILATERAL, SPRING = range(3)
+PRESCRIBED, BILATERAL, SPRING = range(3)
 """Normal laws: N = LOAD; N = LOAD + INERTIA times the acceleration of the surface; springs and dashpots of feet."""
 
 SUMS = 17
 (
-    ACROSS, UPHILL, ALONG, PULLED, PRESSED, DISSIPATED, DAMPED, ON_BEAM, LIFTED_BEAM, FRICTION_TIME, NORMAL_TIME,
-    TOUCH_TIME, STICK_TIME, SURFACE_TIME, HARDEST, FALL, STORED,
+    ACROSS, SLOPE_WORK, ALONG, EXTERNAL_WORK, LOAD_WORK, DISSIPATED, DAMPED, ON_BEAM, LIFTED_BEAM, FRICTION_TIME,
+    NORMAL_TIME, TOUCH_TIME, STICK_TIME, SURFACE_TIME, HARDEST, FALL, STORED,
 ) = range(SUMS)  # fmt: skip
 """Sums over all steps of every slider (n, SUMS). Works, J: of the surface across and up its slopes on the feet, along
-on the slider, of the pull and what prescribes a speed, of what presses; friction loss; loss in dashpots and impacts;
-work on the beam of friction, of normal forces. Integrals over time: friction (on the slider, N s), normal force, share
-of points in contact and sticking, displacement of the surface under the points in contact (mean of points). The largest
-friction, N; the largest downward acceleration of the surface, m/s^2; energy that the springs have gained, J."""
+on the slider, of the external force or a prescribed speed, of preload and weight; friction loss; loss in dashpots and
+impacts; work on the beam of friction, of normal forces. Integrals over time: friction (on the slider, N s), normal
+force, share of points in contact and sticking, displacement of the surface under the points in contact (mean of
+points). The largest friction, N; the largest downward acceleration of the surface, m/s^2; energy of the springs, J."""
 BALANCE = 6
 DRIVEN, LOST, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL = range(BALANCE)
 """Balance (BALANCE,): work of the drive and loss in the modes, J (with ACCOUNTS); energy that friction created, the sum
 of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution did not converge; largest
 residual of a step, N."""
 
-KEPT = 9
-KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_NORMAL, KEPT_TOUCH, KEPT_STUCK, KEPT_LOSS, KEPT_ALONG, KEPT_SURFACE = range(KEPT)
-"""Samples (n, sliders, KEPT): distance, speed; friction, normal force, shares and surface speed (of points in contact)
+SAMPLE = 9
+(
+    SAMPLE_X, SAMPLE_V, SAMPLE_FRICTION, SAMPLE_NORMAL, SAMPLE_TOUCH, SAMPLE_STUCK, SAMPLE_LOSS, SAMPLE_ALONG,
+    SAMPLE_SURFACE,
+) = range(SAMPLE)  # fmt: skip
+"""Samples (n, sliders, SAMPLE): distance, speed; friction, normal force, shares and surface speed (points in contact)
 are means over the interval that ends with the sample, friction loss and work of the surface along are its sums. Of
 points without feet, friction, surface speed and normal force are of the instant: the law at the sample, the mean of the
 last step where it sticks."""

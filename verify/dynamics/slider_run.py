@@ -23,14 +23,15 @@ from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
 
 COLUMNS = {
-    "travelled": lay.KEPT_X, "speed": lay.KEPT_V, "friction": lay.KEPT_FRICTION, "normal_force": lay.KEPT_NORMAL,
-    "surface_speed": lay.KEPT_SURFACE, "contact_share": lay.KEPT_TOUCH, "stuck_share": lay.KEPT_STUCK,
-    "friction_loss": lay.KEPT_LOSS, "tangential_work": lay.KEPT_ALONG,
+    "travelled": lay.SAMPLE_X, "speed": lay.SAMPLE_V, "friction": lay.SAMPLE_FRICTION,
+    "normal_force": lay.SAMPLE_NORMAL, "surface_speed": lay.SAMPLE_SURFACE, "contact_share": lay.SAMPLE_TOUCH,
+    "stuck_share": lay.SAMPLE_STUCK, "friction_loss": lay.SAMPLE_LOSS, "tangential_work": lay.SAMPLE_ALONG,
 }  # fmt: skip
 """Column of the engine's samples by field of `Motion`."""
 WORKS = {
-    "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "slope_work": lay.UPHILL, "friction_loss": lay.DISSIPATED,
-    "contact_loss": lay.DAMPED, "friction_on_beam": lay.ON_BEAM, "normal_on_beam": lay.LIFTED_BEAM,
+    "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "slope_work": lay.SLOPE_WORK,
+    "friction_loss": lay.DISSIPATED, "contact_loss": lay.DAMPED, "friction_on_beam": lay.ON_BEAM,
+    "normal_on_beam": lay.LIFTED_BEAM,
 }  # fmt: skip
 """Column of the engine's sums by term of `EnergyBalance`."""
 SAMPLED = ("times", "deflection", "height", "pitch", "pressures", *COLUMNS)
@@ -177,7 +178,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         n, kept = len(recorded.samples), np.concatenate([recorded.first[None], recorded.samples])
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
-            kept[0, still, lay.KEPT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+            kept[0, still, lay.SAMPLE_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
         heights = np.concatenate([heights, recorded.heights])
         steps = recorded.n_steps
         for stage in stages:
@@ -280,8 +281,10 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
     """The energy balance; `gains` of sliders, springs, modes (kinetic, elastic), and initial energy of the modes, J."""
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
-    load = s[lay.PULLED] + s[lay.PRESSED]
-    residual = s[lay.ACROSS] + s[lay.ALONG] + s[lay.UPHILL] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
+    load = s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]
+    residual = (
+        s[lay.ACROSS] + s[lay.ALONG] + s[lay.SLOPE_WORK] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
+    )
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
     beam = driven + (s[lay.ON_BEAM] + s[lay.LIFTED_BEAM]) * two_way - lost - kinetic - elastic
     return EnergyBalance(

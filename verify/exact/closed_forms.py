@@ -64,7 +64,7 @@ def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> floa
     ends, by `theory_ratio`. Raises InputError.
     """
     check_uniform(beam)
-    beta, own = wavenumber_length(beam.supports, mode) / beam.length, beam.own
+    beta, own = wavenumber_length(beam.supports, mode) / beam.length, beam.base_section
     omega = beta * beta * beam.wave_constant
     if theory != "euler-bernoulli":
         if beam.supports != ("pinned", "pinned"):

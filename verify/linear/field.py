@@ -99,7 +99,7 @@ def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli")
     lossy = 1.0 + 1j * beam.loss_factor
     if not (beam.tension or beam.foundation) and theory == "euler-bernoulli":
         return complex(sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant) * lossy**-0.25)
-    own, omega = beam.own, 2.0 * np.pi * frequency_hz
+    own, omega = beam.base_section, 2.0 * np.pi * frequency_hz
     stiffness, load = own.bending_stiffness * lossy, own.mass_per_length * omega**2 - beam.foundation
     inertia = (own.rotary_inertia or 0.0) * omega**2 if theory != "euler-bernoulli" else 0.0
     # a k^4 + b k^2 = c

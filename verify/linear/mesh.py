@@ -62,7 +62,7 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
     if not equal:
         steps = [grading ** (np.arange(n) / max(n - 1, 1)) for n in shares]
         lengths = [s * (piece.length / unit / s.sum()) for piece, s in zip(pieces, steps, strict=True)]
-    ratios = np.ones((1, 4)) if equal else _ratios(beam.own, pieces)
+    ratios = np.ones((1, 4)) if equal else _ratios(beam.base_section, pieces)
     moduli, moments, masses, areas = np.repeat(ratios, shares, axis=0).T
     return Parts(
         unit=unit,

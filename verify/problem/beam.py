@@ -60,7 +60,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
                     f"beam.section[{i}].length = {section.length!r} m is less than {SHORTEST_SECTION:g} of "
                     f"beam.length = {self.length!r} m: leave it out or check its unit"
                 )
-        for piece in (self.own, *self.pieces):
+        for piece in (self.base_section, *self.pieces):
             stiffness, mass = piece.bending_stiffness, piece.mass_per_length
             if not all(1e-50 < one < 1e50 for one in (stiffness, mass, self.length)):  # or powers of them overflow
                 raise InputError(
@@ -74,32 +74,33 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
                 check_free(f"beam.{kind}[{i}]", position, self.length, self.supports, dict([across]), dict([turning]))
 
     @cached_property
-    def own(self) -> Piece:
-        """The beam's own section over its whole length."""
+    def base_section(self) -> Piece:
+        """The section of the beam's own fields over its whole length; `section` may replace it by pieces."""
         return piece_of(set_fields(self), self.length, "beam", self.poissons_ratio)
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """Pieces of constant section from left to right; a uniform beam has one."""
+        base, nu = self.base_section, self.poissons_ratio
         return tuple(
-            piece_of(merged(section, self), section.length, f"beam.section[{i}]", self.poissons_ratio, self.own)
+            piece_of(merged(section, self), section.length, f"beam.section[{i}]", nu, base)
             for i, section in enumerate(self.section)
-        ) or (self.own,)
+        ) or (base,)
 
     @property  # type: ignore[misc]
     def bending_stiffness(self) -> float:
         """EI of the beam's own section, N m^2."""
-        return self.own.bending_stiffness
+        return self.base_section.bending_stiffness
 
     @property  # type: ignore[misc]
     def mass_per_length(self) -> float:
         """Rho A of the beam's own section, kg/m."""
-        return self.own.mass_per_length
+        return self.base_section.mass_per_length
 
     @property
     def stepped(self) -> bool:
         """Whether a piece differs from the beam's own section."""
-        return any(replace(piece, length=self.length) != self.own for piece in self.pieces)
+        return any(replace(piece, length=self.length) != self.base_section for piece in self.pieces)
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -165,7 +166,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
     @property
     def surface_distance(self) -> float:
         """Distance of the surface from the neutral line of the beam's own section, m. Raises InputError if unknown."""
-        distance = self.own.extreme_fibre
+        distance = self.base_section.extreme_fibre
         if distance is None:
             raise InputError(
                 "beam.extreme_fibre is missing: the motion of a surface depends on how far it lies from the neutral "

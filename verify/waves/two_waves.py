@@ -182,7 +182,7 @@ class Waveguide(msgspec.Struct, frozen=True):
         kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921);
         complex with losses.
         """
-        shear, loss = self.beam.own.shear_stiffness, self.beam.loss_factor
+        shear, loss = self.beam.base_section.shear_stiffness, self.beam.loss_factor
         if self.theory != "timoshenko" or shear is None:
             return 1.0
         hertz = np.asarray(omega) / (2.0 * np.pi)
@@ -212,7 +212,7 @@ class Waveguide(msgspec.Struct, frozen=True):
         beam, k = self.beam, np.asarray(k, dtype=complex)
         deflection, slope, ratio = forward + backward, 1j * k * (backward - forward), self.rotation_ratio(omega)
         stiffness = beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * ratio
-        inertia = (beam.own.rotary_inertia or 0.0) * omega**2 if self.theory != "euler-bernoulli" else 0.0
+        inertia = (beam.base_section.rotary_inertia or 0.0) * omega**2 if self.theory != "euler-bernoulli" else 0.0
         force = stiffness * 1j * k**3 * (forward - backward) + (inertia * ratio - beam.tension) * slope
         couple = stiffness * k**2 * deflection
         return 0.5 * np.real(force * np.conj(1j * omega * deflection) + couple * np.conj(1j * omega * ratio * slope))

@@ -47,7 +47,7 @@ def check_span(
         raise WindowError(f"{name} contains a device against rotation at {as_written(inside)} m: choose another")
     edges = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
     for left, right, piece in zip(edges, edges[1:], beam.pieces, strict=False):
-        alike = all(getattr(piece, name) == getattr(beam.own, name) for name in _DEPENDS[theory])
+        alike = all(getattr(piece, name) == getattr(beam.base_section, name) for name in _DEPENDS[theory])
         if not alike and left < end - 1e-9 * beam.length and right > start + 1e-9 * beam.length:
             raise WindowError(
                 f"{name} contains a beam.section that differs from the beam's own section: choose a window on the own "
@@ -71,7 +71,7 @@ def check_clear(beam: Beam, span: Window, name: str) -> None:
 
 def check_waves(beam: Beam, frequency_hz: float, window: Window, theory: str = "euler-bernoulli") -> None:
     """Raise WindowError below cut-on, for a second pair of waves, and for too few or many half wavelengths."""
-    own, (start, end) = beam.own, window
+    own, (start, end) = beam.base_section, window
     if theory == "timoshenko" and own.shear_stiffness is not None and own.rotary_inertia:
         second = float(np.sqrt(own.shear_stiffness / own.rotary_inertia) / (2.0 * np.pi))
         if frequency_hz >= second:
