@@ -2,9 +2,9 @@
 Choose the number of segments or elements
 =========================================
 
-How many parts keep mode 22 of the paper's beam within 1 %? The first size within the limit is not enough: the error
-has to stay within it for all larger sizes. ``verify choose paper --mode 22 --error 1%`` gives the same, with solve
-times.
+How many parts are required for an error of mode 22 of the paper's beam below 1 %? The first size below the limit is not
+sufficient: the error has to be below it for all larger sizes. ``verify choose paper --mode 22 --error 1%`` prints the
+same numbers, with solve times.
 """
 
 import matplotlib.pyplot as plt
@@ -28,7 +28,7 @@ for name, values in errors.items():
     sufficient[name] = max(beyond, default=mode) + 1
 
 # %%
-# The steeper the line, the cheaper the next digit: a quarter of the error costs 41 % more parts.
+# At order 4 a quarter of the error requires 41 % more parts.
 fig, ax = plt.subplots(layout="constrained")
 for name, values in errors.items():
     (line,) = ax.loglog(counts, [100.0 * abs(error) for error in values], label=f"{name}: {sufficient[name]}")

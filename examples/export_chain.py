@@ -3,7 +3,7 @@ A chain for another engine, its modes for ParaView
 ==================================================
 
 A multibody program needs lengths, masses, inertias and joint springs of the links. They are written as JSON, and a
-stand-in for the program reads them again: its frequencies have to be those of the model. The mode shapes go to a vtu
+substitute for the program reads them: its frequencies have to agree with those of the model. The shapes go to a vtu
 file.
 """
 

@@ -3,7 +3,7 @@ Force over speed of a motor
 ===========================
 
 A clasp of two feet is pressed on the upper and the lower face of the beam of the scene ``preloaded-motor``. Its mean
-friction force is computed at prescribed speeds, as on a test bench; the load line of a motor is read from it.
+friction force is computed at prescribed speeds, as on a test bench. The result is the force-speed curve of the motor.
 """
 
 import matplotlib.pyplot as plt
@@ -15,7 +15,7 @@ scene = load_scene("preloaded-motor")
 frequency, slider = scene.drive.frequency_hz, scene.slider
 
 # %%
-# From standstill to the speed of the crests, 2.83 cm/s against the wave. Each run continues the one before: 32 periods
+# From standstill to the crest speed, 2.83 cm/s against the wave. Each run continues the one before: 32 periods
 # settle, the next 32 are averaged.
 speeds = np.linspace(0.0, -0.0283, 17)
 forces, before = [], None
@@ -30,7 +30,7 @@ forces = np.array(forces)
 
 # %%
 # At standstill all points slip in one direction: the stall force is mu N. Power is largest at three quarters of the
-# crest speed; without load the points near the crests drive as much as their neighbours brake.
+# crest speed; at the no-load speed the points near the crests drive as much as their neighbours brake.
 no_load = float(np.interp(0.0, forces, speeds))
 fig, ax = plt.subplots(layout="constrained")
 ax.plot(100 * speeds, 1e3 * forces, "o-", label="force")

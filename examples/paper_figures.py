@@ -17,20 +17,20 @@ exact = ExactModel(beam)
 models = {"49 segments": SegmentModel(beam, 49), "49 Hermite elements": HermiteModel(beam, 49)}
 
 # %%
-# The drive lies next to mode 22, which 49 segments have 0.43 % too low.
+# The drive frequency is next to mode 22, which is 0.43 % too low with 49 segments.
 reference = exact.modes(30).frequencies_hz
 errors = {name: model.modes(30).frequencies_hz / reference - 1.0 for name, model in models.items()}
 error_22 = errors["49 segments"][21]
 
 # %%
-# The slider of Figures 3 and 4 at 30 N, switched on as a step load: it follows the surface and moves to the left,
-# against the wave. The paper states neither force nor start nor kinematics; the speed depends on all three.
+# The slider of Figures 3 and 4 under a step load of 30 N: it follows the surface and moves to the left, against the
+# wave. The paper states neither force nor start nor kinematics; the speed depends on all three.
 strong = [PointForce(position=f.position, amplitude=30.0, phase_deg=f.phase_deg) for f in forces]
 slider = Slider(mass=1.0193679918450561e-3, mu=0.2, kinematics="following", normal="massless", coupling="one-way")
 motion = simulate(beam, strong, 4276.0, 1e-3, count=49, slider=slider)
 
 # %%
-# A frequency error of 0.4 % detunes the wave: the ripple of its envelope is reflection.
+# A frequency error of 0.4 % detunes the wave: the ripple of its envelope is due to reflection.
 fig, axes = plt.subplots(2, 2, figsize=(9, 6), layout="constrained")
 for name, values in errors.items():
     axes[0, 0].plot(np.arange(1, 31), 100.0 * values, ".-", label=name)

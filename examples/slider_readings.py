@@ -1,10 +1,10 @@
 """
-One slider, three readings
-==========================
+One slider, three models
+========================
 
-"The speed of the slider" depends on what a slider is. Tangential: it moves by the friction law alone. Following: its
-path is the surface, whose slope acts on it. On feet: it may lose contact, and touches the crests. All three are on
-the same steady wave.
+The speed of a slider depends on its model. Tangential: the friction law alone moves it. Following: it is constrained to
+the surface, whose slope acts on it. On feet: it may lift off, and touches the crests. All three are on the same steady
+wave.
 """
 
 import matplotlib.pyplot as plt
@@ -20,7 +20,7 @@ forces = [
 frequency, periods = 4276.0, 200
 
 # %%
-# The same mass and friction coefficient; the wave travels to the right, so that its crests move to the left.
+# The same mass and friction coefficient. The wave travels to the right; the material at its crests moves to the left.
 point = Slider(mass=0.01, mu=0.2, law="coulomb", normal="massless", coupling="one-way", gravity=0.0, preload=0.2)
 clasp = Slider(
     mass=0.01, mu=0.2, law="coulomb", coupling="one-way", gravity=0.0, preload=0.2,
@@ -30,8 +30,8 @@ clasp = Slider(
 readings = {"tangential": point, "following": replace(point, kinematics="following"), "feet": clasp}
 
 # %%
-# Displacement over 200 periods. The feet alone come near the speed of the crests: a point that never leaves the surface
-# moves back in the troughs almost as far as on at the crests.
+# Displacement over 200 periods. Only the feet approach the crest speed: a point in permanent contact moves back in the
+# troughs almost as far as forward at the crests.
 fig, ax = plt.subplots(layout="constrained")
 speeds = {}
 for name, slider in readings.items():

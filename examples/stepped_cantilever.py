@@ -2,8 +2,8 @@
 Order of convergence on a stepped cantilever
 ============================================
 
-A step in section costs a chain two orders: it converges with order 2 and not 4, and with the joint as the paper
-prints it (Eq. (1), two indices exchanged) with order 1. Hermite elements keep order 4, their nodes lie on the step.
+With a step in section a chain converges with order 2 instead of 4, and with the joint as printed in the paper (Eq. (1),
+two indices exchanged) with order 1. Hermite elements have a node at the step and remain of order 4.
 """
 
 import matplotlib.pyplot as plt
@@ -26,7 +26,7 @@ models = {
 }
 
 # %%
-# The observed order from size to size: it is a statement only where it is the same twice.
+# The observed order from size to size; it is meaningful only where two successive orders agree.
 fig, ax = plt.subplots(layout="constrained")
 orders = {}
 for name, build in models.items():

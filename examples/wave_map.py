@@ -2,9 +2,9 @@
 Wave map and best drive
 =======================
 
-Two actuators make a travelling wave where frequency and phase suit each other. The map shows the reflection, the
-weaker wave over the stronger: 0 is a travelling wave, 1 a standing one. Superposition gives all phases from two unit
-fields.
+Two actuators generate a travelling wave at suitable pairs of frequency and phase. The map shows the reflection, the
+amplitude of the weaker wave over that of the stronger: 0 is a travelling wave, 1 a standing one. All phases follow from
+two unit fields by superposition.
 """
 
 import matplotlib.pyplot as plt

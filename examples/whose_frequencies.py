@@ -1,9 +1,9 @@
 """
-Whose discretisation are these frequencies?
-===========================================
+Identify a discretisation from its frequencies
+===============================================
 
-Eight natural frequencies of a steel cantilever come from another program. Their errors against the exact beam are a
-fingerprint of its discretisation: wall rule and number of parts. ``verify compare`` does this with some forty
+Eight natural frequencies of a steel cantilever come from another program. Their errors against the exact beam identify
+its discretisation: wall rule and number of parts. ``verify compare`` does this with some forty
 candidates and tests for wrong units, a missing mode and a compliant clamp.
 """
 

@@ -1,4 +1,4 @@
-"""Finite segments against finite elements against exact beam theory: how far to trust them, at what cost.
+"""Verification of finite-segment models of vibrating beams against finite elements and exact beam theory.
 
 Public names (`help` of a name lists fields, shapes and units; everything is SI):
 
@@ -8,11 +8,11 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   Modes, HarmonicField                                         their results
   travelling_wave                                              the wave in a field: measure, WaveMeasures
   simulate, Motion                                             a driven beam in time, with sliders or alone
-  Contact, Foot                                                unilateral contact of sliders, on feet of many points
+  Contact, Foot                                                unilateral contact of sliders, feet of several points
   free_vibration, FreeVibration                                a beam released from a shape, without forces
   bend, Bent                                                   a nonlinear chain under a large load at its tip
   load_scene, run_scene                                        a scene file, its gates and studies
-  InputError                                                   bad input, in one sentence
+  InputError                                                   invalid input, in one sentence
 
   beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
   SegmentModel(beam, n_segments=49).modes(22).frequencies_hz

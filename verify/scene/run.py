@@ -88,8 +88,8 @@ def run_scene(
 ) -> RunResult:
     """Run a scene (or a packaged name, or a path). `progress` is called with the name of each step before it starts.
 
-    With overrides ('beam.length=0.4') gates are skipped that hold for the values in the file. Raises InputError where
-    the scene is wrong or a study cannot run; a gate that fails or cannot be evaluated is in the result.
+    Overrides ('beam.length=0.4') skip the gates stated for the values of the file. Raises InputError where the scene
+    is invalid or a study cannot run; a gate that fails or cannot be evaluated is in the result.
     """
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES
