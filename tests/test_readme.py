@@ -28,7 +28,7 @@ def rows_of(page):
     for line in page.read_text("utf-8").splitlines():
         cells = [cell.strip() for cell in line.strip("| ").split(" | ")]
         if not line.startswith("|"):
-            scene, inside = (re.findall(r"\(?scene `([a-z-]+)`", line) or [scene])[-1], False
+            scene, inside = (re.findall(r"[Ss]cene `([a-z-]+)`", line) or [scene])[-1], False
         elif cells[-1] in ("gate", "where"):
             inside = True
         elif inside and not line.startswith("|--"):
