@@ -46,7 +46,7 @@ def test_an_absorber_and_a_circuit_are_further_rows_of_the_engine() -> None:
     contacts = Contacts(
         start=0.4, sliders=sliders, feet=np.zeros((0, lay.FOOT)), points=points,
         contacts=np.zeros((1, lay.CONTACT)), indices=np.zeros((1, 3), dtype=np.int64), law=lay.PRESCRIBED, two_way=True,
-        presses=True,
+        normal_two_way=True,
     )  # fmt: skip
     recorded = run_stages([stage], np.zeros(len(kept), dtype=complex), contacts, np.array([0.8]))
     step = expm(np.block([[a, force[:, None]], [np.zeros((1, 6))]]) * 1.7e-3)

@@ -119,7 +119,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
         z = super()._initial(contacts, loaded)
-        if loaded and contacts.presses:
+        if loaded and contacts.normal_two_way:
             rises = self._rises(contacts)
             ground: Any = SimpleNamespace(
                 edges=self.stages[0].edges, columns=self.line, factors=lambda z, t: rises[None],
@@ -135,7 +135,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     def _static(self, contacts: Contacts) -> ChainState:
         """Equilibrium of the chain under the load of feet, which the points on each face share equally."""
         system, p, state = self.system, contacts.points, at_rest(self.system)
-        if not contacts.presses:
+        if not contacts.normal_two_way:
             return state
         side, x = p[:, lay.FACE] * p[:, lay.IMAGE], contacts.start + p[:, lay.OFFSET]
         group = 2 * contacts.indices[:, lay.OF_FOOT] + (p[:, lay.FACE] > 0.0)
@@ -188,7 +188,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         places, codes = np.zeros((len(self.request.points), columns)), np.zeros(lay.CODES, dtype=np.int64)
         places[:, :count] = self.line(self.request.points).T
         codes[[lay.LAW, lay.TWO_WAY, lay.NORMAL_TWO_WAY, lay.FOLLOWING]] = (
-            contacts.law, two_way, contacts.presses, contacts.following,
+            contacts.law, two_way, contacts.normal_two_way, contacts.following,
         )  # fmt: skip
         arrays = (
             steps.every, steps.dt, contacts.gravity, max(one.normal_force for one in self.request.sliders),

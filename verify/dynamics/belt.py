@@ -40,7 +40,7 @@ def _contact(
         indices=np.zeros((1, 3), dtype=np.int64),
         law=lay.PRESCRIBED,
         two_way=mass == inf,
-        presses=False,
+        normal_two_way=False,
     )
     columns = [lay.V, lay.INVERSE_MASS, lay.MU, lay.MU_STATIC, lay.STEEPNESS, lay.EXTERNAL_FORCE]
     contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, force

@@ -51,7 +51,7 @@ def assemble(
             sheets.append(sheet)
             indices += [(number, len(feet), 0)] * len(sheet)
             feet += [] if foot is None else [_foot(slider, foot)]
-    held = first.contact is None and first.normal == "bilateral" and two_way
+    bilateral = first.contact is None and first.normal == "bilateral" and two_way
     points = np.concatenate(sheets)
     return Contacts(
         start=starts[0],
@@ -60,9 +60,9 @@ def assemble(
         points=points,
         contacts=np.zeros((len(points), lay.CONTACT)),
         indices=np.array(indices, dtype=np.int64),
-        law=lay.SPRING if first.contact else lay.BILATERAL if held else lay.PRESCRIBED,
+        law=lay.SPRING if first.contact else lay.BILATERAL if bilateral else lay.PRESCRIBED,
         two_way=two_way,
-        presses=two_way and (first.contact is not None or held),
+        normal_two_way=two_way and (first.contact is not None or bilateral),
         following=first.kinematics == "following",
         gravity=first.gravity,
         moving_load=all(s.mu == 0.0 and v is not None for s, v in zip(sliders, prescribed_speeds, strict=True)),

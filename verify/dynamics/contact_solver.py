@@ -280,7 +280,7 @@ def solve(
 
     `block` (points, points + 1) is working space.
     """
-    law, two_way, presses = codes[lay.LAW], codes[lay.TWO_WAY] > 0, codes[lay.NORMAL_TWO_WAY] > 0
+    law, two_way, normal_two_way = codes[lay.LAW], codes[lay.TWO_WAY] > 0, codes[lay.NORMAL_TWO_WAY] > 0
     for b in range(sliders.shape[0]):
         slider = sliders[b]
         slider[lay.GAINED] = dt * (slider[lay.INVERSE_MASS] * slider[lay.EXTERNAL_FORCE] + slider[lay.TILT])
@@ -310,7 +310,7 @@ def solve(
                 normal = normal_force(i, dt, codes, slider, feet, k, points, contacts, shapes, response, couplings)
                 more = normal - touch[lay.NORMAL]
                 touch[lay.NORMAL] = normal
-                if presses and more != 0.0:
+                if normal_two_way and more != 0.0:
                     respond(i, TRANSVERSE, more, shapes, response)
                 if law == lay.SPRING:
                     foot, push = feet[k], dt * point[lay.FACE] * more

@@ -107,7 +107,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Free rows at the start, (n,), sliders in equilibrium or in the state of an earlier run. Raises InputError."""
         request, basis, stage, before = self.request, self.basis, self.stages[0], self.request.before
         z: ComplexArray = np.zeros(len(stage.rows.rates), dtype=complex)
-        if basis and loaded and contacts.presses:
+        if basis and loaded and contacts.normal_two_way:
             still = static_deflection(basis, contacts)
             deepen_between_beams(basis, contacts, still)
             z = stage.rows.of_state(still, 0.0 * still)

@@ -43,7 +43,7 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     law: int
     """GIVEN, BILATERAL or SPRING, common to all points."""
     two_way: bool
-    presses: bool
+    normal_two_way: bool
     """Whether normal forces act on the beam of a two-way run."""
     following: bool = False
     gravity: float = 0.0
@@ -138,7 +138,7 @@ class Run:
             growth = np.array(stage.envelope, dtype=float)
         codes = np.zeros(lay.CODES, dtype=np.int64)
         codes[[lay.LAW, lay.TWO_WAY]] = contacts.law, contacts.two_way
-        codes[[lay.NORMAL_TWO_WAY, lay.FOLLOWING]] = contacts.two_way and contacts.presses, contacts.following
+        codes[[lay.NORMAL_TWO_WAY, lay.FOLLOWING]] = contacts.two_way and contacts.normal_two_way, contacts.following
         codes[[lay.COMPLEX, lay.ACCOUNTS]] = own - n, self.accounts
         factors, two_way = np.zeros((4, 2, columns)), contacts.two_way
         shapes, response = np.zeros((4, len(contacts.points), own if two_way else 0)), np.zeros(own if two_way else 0)
@@ -196,12 +196,12 @@ class Run:
         from verify.dynamics.impact import advance_impacts
 
         contacts, steps = self.contacts, stage.steps
-        columns, seen = np.zeros((3, table.shape[2])), np.zeros(5)
+        columns, motion = np.zeros((3, table.shape[2])), np.zeros(5)
         return int(
             advance_impacts(
                 n_steps, steps.every, steps.dt, float(contacts.restitution or 0.0), codes, drive, rows, table, edges,
                 contacts.sliders, contacts.feet, contacts.points, contacts.contacts, contacts.indices, factors, columns,
-                seen, self.spans, places, self.samples, self.heights, self.pressures, self.deflections, self.events,
+                motion, self.spans, places, self.samples, self.heights, self.pressures, self.deflections, self.events,
                 self.tally, self.sums, self.before,
             )
         )  # fmt: skip

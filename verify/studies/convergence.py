@@ -28,8 +28,8 @@ ORDER_TOLERANCE = 1.0
 STYLES = ("-o", "--s", ":^", "-.d", "-v")
 """Line and marker of each mode."""
 NOTES = [
-    "Order: from the size before. GCI: grid convergence index of this size and the two before, an estimate of the "
-    "discretisation uncertainty without an exact solution; extrapolated: error of Richardson's value from these sizes.",
+    "Order: from the size before. GCI: grid convergence index of this size and the two before, the error bound that a "
+    "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
     "In range: asymptotic, from this size on all orders are within 1 of the theoretical order, or of the last.",
     "Time: warm solve of all modes, assembly included, median of repeats.",
 ]
