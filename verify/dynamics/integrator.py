@@ -114,7 +114,6 @@ def add_sums(
 ) -> None:  # fmt: skip
     """Works, losses and integrals of the step; sliders and feet are still at its start."""
     spring, two_way = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0
-    normal_two_way = codes[lay.NORMAL_TWO_WAY] > 0
     for b in range(sliders.shape[0]):
         slider, add, total, normal, surface, touching, sticking, n = sliders[b], sums[b], 0.0, 0.0, 0.0, 0, 0, 0
         mean, prescribed = slider[lay.V] + 0.5 * slider[lay.GAINED], slider[lay.INVERSE_MASS] == 0.0
@@ -135,7 +134,7 @@ def add_sums(
                     add[lay.LOAD_WORK] -= dt * point[lay.LOAD] * (touch[lay.RISE_RATE] - 0.5 * dt * fall)
                     add[lay.SLOPE_WORK] += dt * push * touch[lay.SLOPE] * mean * slider[lay.FREE]
                 add[lay.FALL] = max(add[lay.FALL], fall)
-            if normal_two_way:
+            if codes[lay.NORMAL_TWO_WAY] > 0:
                 answer = product(i, TRANSVERSE, shapes, response)
                 lift += face * answer
                 if spring:
@@ -152,7 +151,7 @@ def add_sums(
                 balance[lay.GAINED_ENERGY] -= loss
             if two_way:
                 add[lay.ON_BEAM] -= dt * point[lay.WEIGHT] * force * touch[lay.SURFACE]
-            if normal_two_way or spring:
+            if codes[lay.NORMAL_TWO_WAY] > 0 or spring:
                 across = dt * push * face * (lift - ramp)
                 add[lay.ACROSS] += across
                 add[lay.LIFTED_BEAM] -= point[lay.WEIGHT] * across
@@ -215,11 +214,11 @@ def sample(
     for b in range(sliders.shape[0]):
         slider, sample, done, last, speed, n = sliders[b], samples[row, b], sums[b], before[b], 0.0, 0
         v, mu, steepness = slider[lay.V], slider[lay.MU], slider[lay.STEEPNESS]
-        sample[lay.SAMPLE_X], sample[lay.SAMPLE_V] = slider[lay.X], v
+        sample[lay.OUT_X], sample[lay.OUT_V] = slider[lay.X], v
         for s in range(4):  # friction, normal force and the shares of points, in one order in both
-            sample[lay.SAMPLE_FRICTION + s] = (done[lay.FRICTION_TIME + s] - last[lay.FRICTION_TIME + s]) / span
-        sample[lay.SAMPLE_LOSS] = done[lay.DISSIPATED] - last[lay.DISSIPATED]
-        sample[lay.SAMPLE_ALONG] = done[lay.ALONG] - last[lay.ALONG]
+            sample[lay.OUT_FRICTION + s] = (done[lay.FRICTION_TIME + s] - last[lay.FRICTION_TIME + s]) / span
+        sample[lay.OUT_LOSS] = done[lay.DISSIPATED] - last[lay.DISSIPATED]
+        sample[lay.OUT_ALONG] = done[lay.ALONG] - last[lay.ALONG]
         for s in range(done.size):
             last[s] = done[s]
         for i in range(points.shape[0]):
@@ -233,10 +232,10 @@ def sample(
                 if touch[lay.STUCK] == 0.0:
                     law = np.tanh(steepness * (v - surface)) if steepness > 0.0 else np.sign(v - surface)
                     force = -mu * max(normal, 0.0) * law
-                sample[lay.SAMPLE_FRICTION], sample[lay.SAMPLE_NORMAL] = force, normal
+                sample[lay.OUT_FRICTION], sample[lay.OUT_NORMAL] = force, normal
             if normal > 0.0 or not spring:
                 speed, n = speed + surface, n + 1
-        sample[lay.SAMPLE_SURFACE] = speed / n if n > 0 else np.nan
+        sample[lay.OUT_SURFACE] = speed / n if n > 0 else np.nan
     for k in range(feet.shape[0]):
         heights[row, k, 0], heights[row, k, 1] = feet[k, lay.HEIGHT], feet[k, lay.PITCH]
     for p in range(places.shape[0]):

@@ -70,12 +70,9 @@ DRIVEN, LOST, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL = range(BALANCE)
 of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution did not converge; largest
 residual of a step, N."""
 
-SAMPLE = 9
-(
-    SAMPLE_X, SAMPLE_V, SAMPLE_FRICTION, SAMPLE_NORMAL, SAMPLE_TOUCH, SAMPLE_STUCK, SAMPLE_LOSS, SAMPLE_ALONG,
-    SAMPLE_SURFACE,
-) = range(SAMPLE)  # fmt: skip
-"""Samples (n, sliders, SAMPLE): distance, speed; friction, normal force, shares and surface speed (points in contact)
+OUT = 9
+OUT_X, OUT_V, OUT_FRICTION, OUT_NORMAL, OUT_TOUCH, OUT_STUCK, OUT_LOSS, OUT_ALONG, OUT_SURFACE = range(OUT)
+"""Samples (n, sliders, OUT): distance, speed; friction, normal force, shares and surface speed (points in contact)
 are means over the interval that ends with the sample, friction loss and work of the surface along are its sums. Of
 points without feet, friction, surface speed and normal force are of the instant: the law at the sample, the mean of the
 last step where it sticks."""

@@ -23,15 +23,14 @@ from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
 
 COLUMNS = {
-    "travelled": lay.SAMPLE_X, "speed": lay.SAMPLE_V, "friction": lay.SAMPLE_FRICTION,
-    "normal_force": lay.SAMPLE_NORMAL, "surface_speed": lay.SAMPLE_SURFACE, "contact_share": lay.SAMPLE_TOUCH,
-    "stuck_share": lay.SAMPLE_STUCK, "friction_loss": lay.SAMPLE_LOSS, "tangential_work": lay.SAMPLE_ALONG,
+    "travelled": lay.OUT_X, "speed": lay.OUT_V, "friction": lay.OUT_FRICTION, "normal_force": lay.OUT_NORMAL,
+    "surface_speed": lay.OUT_SURFACE, "contact_share": lay.OUT_TOUCH, "stuck_share": lay.OUT_STUCK,
+    "friction_loss": lay.OUT_LOSS, "tangential_work": lay.OUT_ALONG,
 }  # fmt: skip
 """Column of the engine's samples by field of `Motion`."""
 WORKS = {
-    "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "slope_work": lay.SLOPE_WORK,
-    "friction_loss": lay.DISSIPATED, "contact_loss": lay.DAMPED, "friction_on_beam": lay.ON_BEAM,
-    "normal_on_beam": lay.LIFTED_BEAM,
+    "slope_work": lay.SLOPE_WORK, "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "contact_loss": lay.DAMPED,
+    "friction_loss": lay.DISSIPATED, "friction_on_beam": lay.ON_BEAM, "normal_on_beam": lay.LIFTED_BEAM,
 }  # fmt: skip
 """Column of the engine's sums by term of `EnergyBalance`."""
 SAMPLED = ("times", "deflection", "height", "pitch", "pressures", *COLUMNS)
@@ -178,7 +177,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         n, kept = len(recorded.samples), np.concatenate([recorded.first[None], recorded.samples])
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
-            kept[0, still, lay.SAMPLE_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+            kept[0, still, lay.OUT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
         heights = np.concatenate([heights, recorded.heights])
         steps = recorded.n_steps
         for stage in stages:
@@ -281,10 +280,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
     """The energy balance; `gains` of sliders, springs, modes (kinetic, elastic), and initial energy of the modes, J."""
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
-    load = s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]
-    residual = (
-        s[lay.ACROSS] + s[lay.ALONG] + s[lay.SLOPE_WORK] + load - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
-    )
+    work = s[lay.ACROSS] + s[lay.ALONG] + s[lay.SLOPE_WORK] + s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]
+    residual = work - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
     driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
     beam = driven + (s[lay.ON_BEAM] + s[lay.LIFTED_BEAM]) * two_way - lost - kinetic - elastic
     return EnergyBalance(
@@ -293,7 +290,7 @@ def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: b
         slider=slider,
         contact_elastic=stored,
         drive_work=driven,
-        load_work=float(load),
+        load_work=float(s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]),
         damping_loss=lost,
         **{name: float(s[column]) for name, column in WORKS.items()},
         initial=initial,

@@ -87,7 +87,7 @@ class Run:
         samples = sum(stage.steps.n // stage.steps.every for stage in stages)
         n, n_sliders, n_feet = len(contacts.points), len(contacts.sliders), len(contacts.feet)
         self.contacts, self.places, self.accounts = contacts, places, accounts
-        self.samples, self.first = np.zeros((samples, n_sliders, lay.SAMPLE)), np.zeros((n_sliders, lay.SAMPLE))
+        self.samples, self.first = np.zeros((samples, n_sliders, lay.OUT)), np.zeros((n_sliders, lay.OUT))
         """`first`: speed; for points without feet also friction and surface speed."""
         self.heights, self.pressures = np.zeros((samples, n_feet, 2)), np.zeros((samples, n))
         """Heights and pitches of the feet; normal forces of the points."""
@@ -209,20 +209,20 @@ class Run:
     def sample_first(self) -> None:
         """Sample the state before the first step; friction of a slider with feet starts in the first step."""
         sliders, contacts = self.contacts.sliders, self.contacts.contacts
-        self.first[:, [lay.SAMPLE_X, lay.SAMPLE_V]] = sliders[:, [lay.X, lay.V]]
-        self.first[:, lay.SAMPLE_TOUCH] = 1.0
+        self.first[:, [lay.OUT_X, lay.OUT_V]] = sliders[:, [lay.X, lay.V]]
+        self.first[:, lay.OUT_TOUCH] = 1.0
         if self.contacts.law == lay.SPRING:
             depth, owner = np.maximum(contacts[:, lay.WAS_DEPTH], 0.0), self.contacts.indices[:, lay.OF_SLIDER]
             load = self.contacts.points[:, lay.STIFF] * depth
-            self.first[:, lay.SAMPLE_NORMAL] = np.bincount(owner, load, len(sliders))
+            self.first[:, lay.OUT_NORMAL] = np.bincount(owner, load, len(sliders))
             self.sums[:, lay.STORED] = -0.5 * np.bincount(owner, load * depth, len(sliders))
-            self.first[:, lay.SAMPLE_SURFACE] = np.nan
+            self.first[:, lay.OUT_SURFACE] = np.nan
             return
         load, steepness = self.contacts.points[:, lay.LOAD], sliders[:, lay.STEEPNESS]
         slip = sliders[:, lay.V] - contacts[:, lay.START]
         law = np.where(steepness > 0.0, np.tanh(steepness * slip), np.sign(slip))
-        self.first[:, lay.SAMPLE_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
-        self.first[:, lay.SAMPLE_NORMAL], self.first[:, lay.SAMPLE_SURFACE] = load, contacts[:, lay.START]
+        self.first[:, lay.OUT_FRICTION] = -sliders[:, lay.MU] * load * law * (contacts[:, lay.STUCK] == 0.0)
+        self.first[:, lay.OUT_NORMAL], self.first[:, lay.OUT_SURFACE] = load, contacts[:, lay.START]
 
     def positions(self) -> Array:
         """Positions of the points relative to `start`, (points,), m; with feet half a step ahead."""
@@ -246,8 +246,8 @@ class Run:
         rows, since = slice(row, row + len(rest)), np.asarray((rest - begun) * dt, dtype=float)
         free = stage.rows.after(self.z, since)
         self.deflections[rows] = stage.factors(free, since + begun * dt) @ stage.columns(self.places)
-        self.samples[rows, :, lay.SAMPLE_X] = x + np.multiply.outer(since, speed)
-        self.samples[rows, :, lay.SAMPLE_V] = speed
+        self.samples[rows, :, lay.OUT_X] = x + np.multiply.outer(since, speed)
+        self.samples[rows, :, lay.OUT_V] = speed
         self.contacts.sliders[:, lay.X] += (stage.steps.n - begun) * dt * speed
         self.z = stage.rows.after(self.z, (stage.steps.n - begun) * dt)
         self.tally[[lay.STEP, lay.SAMPLES]] = stage.steps.n, row + len(rest)

@@ -98,6 +98,6 @@ def foot_on_wave(
     contacts.feet[:, lay.INVERSE_FOOT_MASS] = 0.0
     contacts.feet[:, lay.HEIGHT] = amplitude * cos(contact_half_angle)
     last = run_stages([stage], np.empty(0, dtype=complex), contacts, np.empty(0)).samples[-1, 0]
-    read = lay.SAMPLE_FRICTION, lay.SAMPLE_NORMAL, lay.SAMPLE_TOUCH, lay.SAMPLE_STUCK
-    works = last[[lay.SAMPLE_ALONG, lay.SAMPLE_LOSS]] * periods / stage.duration
+    read = lay.OUT_FRICTION, lay.OUT_NORMAL, lay.OUT_TOUCH, lay.OUT_STUCK
+    works = last[[lay.OUT_ALONG, lay.OUT_LOSS]] * periods / stage.duration
     return Means(*map(float, last[list(read)]), *map(float, works)), crest

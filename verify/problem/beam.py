@@ -82,10 +82,8 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
     def pieces(self) -> tuple[Piece, ...]:
         """Pieces of constant section from left to right; a uniform beam has one."""
         base, nu = self.base_section, self.poissons_ratio
-        return tuple(
-            piece_of(merged(section, self), section.length, f"beam.section[{i}]", nu, base)
-            for i, section in enumerate(self.section)
-        ) or (base,)
+        sections = ((merged(one, self), one.length, f"beam.section[{i}]") for i, one in enumerate(self.section))
+        return tuple(piece_of(*one, nu, base) for one in sections) or (base,)
 
     @property  # type: ignore[misc]
     def bending_stiffness(self) -> float:
