@@ -59,9 +59,9 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def others(self) -> list[str]:
-        """Further margins that are not trusted, in words: of each name the worst."""
+        """A line for each further name with a margin that is not trusted, the worst of it: 'also: shear 1.1 %'."""
         worst = {one.name: one.text for one in reversed(self.margins) if one.level != "trusted"}
-        return [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
+        return [f"also: {text}" for name, text in reversed(worst.items()) if name != self.margins[0].name]
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON: level, headline, margins with their sizes and limits."""
@@ -70,9 +70,13 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def verdict_of(margins: Iterable[Margin]) -> Verdict:
-    """The verdict by the worst of the margins, by level, then by size over limit; of like ones the worst counts."""
+    """The verdict by the worst of the margins, by level, then by size over limit; of like ones the worst counts.
+
+    Margins of size 0 are left out where they are trusted.
+    """
     worst_of = {(one.name, one.where): one for one in sorted(margins, key=_badness)}
-    ordered = sorted(worst_of.values(), key=_badness, reverse=True)
+    sized = (one for one in worst_of.values() if one.size or one.level != "trusted")
+    ordered = sorted(sized, key=_badness, reverse=True)
     if not ordered:
         return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
     worst, largest = ordered[0], max(ordered, key=lambda one: one.is_error * one.size)

@@ -173,9 +173,12 @@ class Result:
         return verdict | {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | data
 
     def print(self, console: "Console", most_rows: int | None = None) -> None:
-        """Print verdict, summary, tables, warnings; of tables with more than `most_rows` rows the title alone."""
+        """Print verdict, summary, tables, warnings.
+
+        With `most_rows`, as a part of a run: of longer tables the title alone, of the verdict the headline.
+        """
         if self.verdict:
-            console.print(self.verdict.headline, style=f"bold {COLOURS[self.verdict.level]}")
+            print_verdict(self.verdict, console, brief=most_rows is not None)
         if self.summary:
             console.print(self.summary)
         for table in self.tables:
@@ -185,6 +188,13 @@ class Result:
                 table.print(console)
         for warning in self.warnings:
             console.print(f"warning: {warning}", style="yellow")
+
+
+def print_verdict(verdict: Verdict, console: "Console", after: str = "", *, brief: bool = False) -> None:
+    """Print the headline in its colour, and, unless `brief`, a line for each further margin that is not trusted."""
+    console.print(verdict.headline + after, style=f"bold {COLOURS[verdict.level]}")
+    for line in () if brief else verdict.others:
+        console.print(line)
 
 
 def to_json(value: Any) -> str:

@@ -28,6 +28,14 @@ def worst_gate(run: "RunResult") -> "GateResult | None":
     return max(gates, key=lambda gate: gate.fraction or 0.0, default=None)
 
 
+def gates_sentence(run: "RunResult") -> str:
+    """'All 18 gates passed, the worst is first-mode with 65.8 % of its tolerance.', or failures and skips."""
+    text, worst = run.gates_in_words, worst_gate(run)
+    if worst is not None and run.passed:
+        text += f", the worst is {worst.gate.id} with {100 * (worst.fraction or 0.0):.3g} % of its tolerance"
+    return f"{text[:1].upper()}{text[1:]}."
+
+
 def expected(gate: Any) -> str:
     """The acceptance criterion of a gate in the digits that its tolerance needs: '4469.9 ± 0.5', 'at least 0.9'."""
     if gate.expect is not None:
