@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
 from verify.analysis.variants import Variant
-from verify.analysis.verdict import FINE, Margin, per_cent, void
+from verify.analysis.verdict import FINE, Margin, per_cent, three_digits, void
 from verify.errors import InputError
 from verify.exact.closed_forms import theory_ratio, wavenumber_length
 from verify.exact.error_laws import LAWS, error_at
@@ -219,8 +219,8 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
         end = with_unit(run.end.time, "s")
         found.append(void("the run", f"the slider {status.stopped} on the {title} after {end}", "give a shorter time"))
     if slider.contact is None:
-        falls = f"the slider lifts off: the surface falls away with {margins.lift_off:.3g} times the acceleration "
-        falls += "that weight and preload give it"
+        falls = f"the slider lifts off: the surface falls away with {three_digits(margins.lift_off)} times the "
+        falls += "acceleration that weight and preload give it"
         found.append(Margin(name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, failure=falls, is_error=False,
                             remedy="press it more, or model its contact by [slider.contact]"))  # fmt: skip
     if coupling is not None and not (coupling.two_way and slider.normal == "bilateral"):

@@ -191,10 +191,10 @@ class Result:
 
 
 def print_verdict(verdict: Verdict, console: "Console", after: str = "", *, brief: bool = False) -> None:
-    """Print the headline in its colour, and, unless `brief`, a line for each further margin that is not trusted."""
+    """Print the headline in its colour, and, unless `brief`, the further margins that are not trusted."""
     console.print(verdict.headline + after, style=f"bold {COLOURS[verdict.level]}")
-    for line in () if brief else verdict.others:
-        console.print(line)
+    if verdict.others and not brief:
+        console.print(verdict.others)
 
 
 def to_json(value: Any) -> str:
