@@ -96,6 +96,13 @@ def test_missing_gate_is_broken(small_run):
     assert compare_runs(data_of(small_run), after).data["broken"] == ["small: third-frequency"]
 
 
+def test_changed_level_is_listed(small_run, full_run):
+    (table, *_) = compare_runs(data_of(small_run), data_of(full_run)).tables
+    assert table.records() == [
+        {"report": "small", "level": "trusted → not trusted", "headline now": full_run.verdict.headline}
+    ]
+
+
 def test_changed_input_is_named(small_run):
     after = data_of(small_run)
     after["small"]["inputs"]["beam"]["length"] = 0.41

@@ -28,7 +28,10 @@ def beam_figure(scene: Any) -> Figure:
     beam = scene.beam
     counts = {"section": beam.section, "mass": beam.mass, "spring": beam.spring, "force": scene.forces}
     counts |= {"device": scene.devices, "slider": (scene.slider,) if scene.slider else ()}
-    there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
+    plural = {
+        name: name if len(items) == 1 else "masses" if name == "mass" else f"{name}s" for name, items in counts.items()
+    }
+    there = "".join(f", {len(items)} {plural[name]}" for name, items in counts.items() if items)
     return Figure(
         id="beam",
         title="The beam",
