@@ -73,10 +73,7 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def verdict_of(margins: Iterable[Margin]) -> Verdict:
-    """The verdict by the worst of the margins, by level, then by size over limit; of like ones the worst counts.
-
-    Margins of size 0 are left out where they are trusted.
-    """
+    """The verdict by the worst margin, by level, then by size over limit; of like ones the worst, without size none."""
     worst_of = {(one.name, one.where): one for one in sorted(margins, key=_badness)}
     sized = (one for one in worst_of.values() if one.size or one.level != "trusted")
     ordered = sorted(sized, key=_badness, reverse=True)

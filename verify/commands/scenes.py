@@ -55,8 +55,7 @@ def init(path: str, scene: str | None, force: bool) -> None:
 
     text = read_text(STARTER)
     if scene is not None:
-        of_beam = scene.startswith(PREFIX)
-        source = starter_with(tables_of(scene)) if of_beam else read_text(scene_path(scene))
+        source = starter_with(tables_of(scene)) if scene.startswith(PREFIX) else read_text(scene_path(scene))
         text = copy_with_name(source, name_of(Path(path)))
     if exists(Path(path), "path") and not force:
         raise InputError(f"path = {path!r} exists: name another file, or replace it with --force")

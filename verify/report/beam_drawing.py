@@ -26,12 +26,9 @@ def beam_figure(scene: Any) -> Figure:
 
     sketch = _Sketch(scene, MatplotlibFigure().subplots())
     beam = scene.beam
-    counts = {"section": beam.section, "mass": beam.mass, "spring": beam.spring, "force": scene.forces}
-    counts |= {"device": scene.devices, "slider": (scene.slider,) if scene.slider else ()}
-    plural = {
-        name: name if len(items) == 1 else "masses" if name == "mass" else f"{name}s" for name, items in counts.items()
-    }
-    there = "".join(f", {len(items)} {plural[name]}" for name, items in counts.items() if items)
+    counts = {"sections": beam.section, "masses": beam.mass, "springs": beam.spring, "forces": scene.forces}
+    counts |= {"devices": scene.devices, "sliders": (scene.slider,) if scene.slider else ()}
+    there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
     return Figure(
         id="beam",
         title="The beam",

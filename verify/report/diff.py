@@ -30,11 +30,8 @@ def compare_runs(before: Mapping[str, Run], after: Mapping[str, Run]) -> Result:
     gates = [(name, *row) for name, old, new in pairs for row in _gates(old["gates"], new["gates"])]
     inputs = [(name, *row) for name, old, new in pairs for row in _changed(old["inputs"], new["inputs"])]
     versions = [(name, *row) for name, old, new in pairs for row in _changed(_versions(old), _versions(new))]
-    levels = [
-        (name, _turn(old["verdict"]["level"], new["verdict"]["level"]), new["verdict"]["headline"])
-        for name, old, new in pairs
-        if old["verdict"]["level"] != new["verdict"]["level"]
-    ]
+    both = [(name, old["verdict"], new["verdict"]) for name, old, new in pairs]
+    levels = [(name, _turn(a["level"], b["level"]), b["headline"]) for name, a, b in both if a["level"] != b["level"]]
     broken = [f"{row[0]}: {row[1]}" for row in gates if row[2].startswith(f"{VERDICTS[True]} {ARROW}")]
     keys = ("report", "key", "before", "after")
     columns = [Column(name) for name in ("report", "gate", "verdict", "expected")]
@@ -47,8 +44,7 @@ def compare_runs(before: Mapping[str, Run], after: Mapping[str, Run]) -> Result:
     ]
     missing = [name for name in (*before, *after) if len(before) + len(after) > 2 and name not in names]
     return Result(
-        summary=f"Verdicts changed: {len(levels)}. Gates changed: {len(gates)}, no longer passed: {len(broken)}. "
-        f"Inputs changed: {len(inputs)}.",
+        summary=f"Changed: {len(levels)} verdicts, {len(gates)} gates ({len(broken)} broken), {len(inputs)} inputs.",
         tables=[table for table in tables if table.rows],
         warnings=[f"{name} is in one of the two only" for name in missing],
         data={"broken": broken},

@@ -21,7 +21,6 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
         "title": run.scene.title or run.scene.name,
         "passed": run.passed,
         "gates": [sum(one.passed is True for one in run.gates), len(run.gates)],
-        "skipped": sum(one.passed is None for one in run.gates),
         "level": run.verdict.level,
         "verdict": run.verdict.headline,
         "failed": [{"gate": one.gate.id, "reason": one.reason} for one in run.failed],
@@ -33,54 +32,38 @@ def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, 
 
 def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
     """Index line of a scene that cannot run."""
-    none = {"gates": [0, 0], "skipped": 0}
-    return {"scene": name, "title": name, "passed": None, "failed": [], "errors": list(sentences)} | none
+    return {"scene": name, "title": name, "passed": None, "gates": [0, 0], "failed": [], "errors": list(sentences)}
 
 
 def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     """All scenes as a result, a row for each: the worst first."""
     ordered = sorted(lines, key=lambda line: [None, *LEVELS].index(line.get("level")))
-    rows = [
-        (
-            one.get("level", CANNOT),
-            one["scene"],
-            one.get("verdict"),
-            "{} of {}".format(*one["gates"]),
-            one.get("seconds"),
-        )
-        for one in ordered
-    ]
-    columns = [Column(name) for name in ("level", "scene", "headline", "gates passed")] + [Column("time", "s", ".3g")]
+    rows = [(x.get("level", CANNOT), x["scene"], x.get("verdict"), *x["gates"], x.get("seconds")) for x in ordered]
+    columns = [*map(Column, ("level", "scene", "headline", "passed", "gates")), Column("time", "s", ".3g")]
     reasons = [(line["scene"], one["gate"], one["reason"]) for line in ordered for one in line["failed"]]
     reasons += [(line["scene"], "", text) for line in ordered for text in line.get("errors", ())]
     failed = Table("Failed", [Column("scene"), Column("gate"), Column("reason")], reasons)
     levels = [line.get("level", CANNOT) for line in lines]
     counts = [f"{levels.count(level)} {level}" for level in (CANNOT, *LEVELS) if level in levels]
-    bad, n, skipped = (
-        sum(line["passed"] is not True for line in lines),
-        len(lines),
-        sum(one["skipped"] for one in lines),
-    )
-    gates = f"{n} scenes, all {sum(line['gates'][0] for line in lines)} gates passed"
-    gates += f", {skipped} skipped: --set changes the values that they are stated for" if skipped else ""
+    bad, n = sum(line["passed"] is not True for line in lines), len(lines)
+    passed, gates = (sum(line["gates"][i] for line in lines) for i in (0, 1))
+    good = f"{n} scenes, all {passed} gates passed" + f", --set skips {gates - passed}" * (gates > passed)
     return Result(
-        summary=f"{f'{bad} of {n} scenes failed' if bad else gates}. Verdicts: {', '.join(counts)}.",
+        summary=(f"{bad} of {n} scenes failed" if bad else good) + f". Verdicts: {', '.join(counts)}.",
         tables=[Table("Scenes", columns, rows), *([failed] if reasons else [])],
         data={"scenes": list(lines), "passed": all(line["passed"] for line in lines)},
     )
 
 
 def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, seconds: float) -> None:
-    """Write the page over all scenes. Raises InputError where it cannot be written.
-
-    Its banner is that of the gates; it is red as well where a scene that is not trusted has no gate that passed.
-    """
+    """Write the page over all scenes, with the banner of the gates. Raises InputError where it cannot be written."""
     from os.path import relpath
 
     from verify.files import write_whole
 
     links = {line["scene"]: Path(relpath(line["page"], path.parent)).as_posix() for line in lines if line.get("page")}
     result = index_result(lines)
+    # A result that is not trusted has at least a gate that passed, which says what it is worth.
     sound = all(line["passed"] and (line["gates"][0] or line["level"] != LEVELS[0]) for line in lines)
     sections = [Section(table.title.lower(), table.title, tables=[table], links=links) for table in result.tables]
     page = render(

@@ -28,8 +28,6 @@ SPEEDS = "Speed of the slider"
 """Title of a table that follows the verdict, whichever study it belongs to."""
 WORST, REST = 3, "Further margins"
 """Margins that are not folded, and the title of the others."""
-NONE = "No valid result: see its caveats and margins."
-"""The finding of a study without a summary."""
 WIDE, NARROW = 40, 22
 """Characters of a column of text beyond which it wraps early, and below which it does not wrap."""
 
@@ -68,15 +66,13 @@ def run_page(run: "RunResult", command: str = "") -> str:
     above = {headline, *(why for _, why in problems)}
     listed = [(*where, text) for text, where in caveats.items() if text not in above]
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
-    columns = [Column("level"), Column("margin")]
-    columns += [Column(name, format=".3g", percent=True) for name in ("trusted up to", "not above")]
+    limits = (Column(name, format=".3g", percent=True) for name in ("trusted up to", "not above"))
+    columns = [Column("level"), Column("margin"), *limits, Column("condition"), Column("remedy")]
     rows: list[Any] = []
     for one in run.verdict.margins:
         texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
         texts = ["" if one.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
-        limits = map(plain, (one.fine, one.limit) if one.is_error else (None, None))
-        rows.append((one.level, one.text, *limits, *texts))
-    columns += [Column("condition"), Column("remedy")]
+        rows.append((one.level, one.text, *map(plain, (one.fine, one.limit) if one.is_error else (None, None)), *texts))
     reasons = [Table("Margins", columns, rows[:WORST]), Table(REST, columns, rows[WORST:])]
     gates = gates_table(run)
     skipped = Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
@@ -113,7 +109,8 @@ def _study_section(run: "RunResult", name: str) -> Section:
     tables = [table for table in result.tables if table.title != SPEEDS]
     driven = f", driven at {drive.frequency_hz:g} Hz" if drive and name in ("wave", "motion", "motor") else ""
     condition = f"Beam: {with_unit(beam.length, form='.4g')}, {'-'.join(beam.supports)}{driven}."
-    return Section(name, study_title(run, name), result.summary or NONE, (), figures, condition, movies, tables)
+    finding = result.summary or "No valid result: see its caveats and margins."
+    return Section(name, study_title(run, name), finding, (), figures, condition, movies, tables)
 
 
 def render(name: str, sections: Sequence[Section], **values: Any) -> str:

@@ -173,10 +173,7 @@ class Result:
         return verdict | {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | data
 
     def print(self, console: "Console", most_rows: int | None = None) -> None:
-        """Print verdict, summary, tables, warnings.
-
-        With `most_rows`, as a part of a run: of longer tables the title alone, of the verdict the headline.
-        """
+        """Print verdict, summary, tables, warnings; with `most_rows`, in a run, headline and short tables alone."""
         if self.verdict:
             print_verdict(self.verdict, console, brief=most_rows is not None)
         if self.summary:
@@ -226,4 +223,6 @@ def _cell(value: Any, column: Column, factor: float) -> str:
         return value
     if isinstance(value, int) and factor == 1.0 and column.format == ".5g":
         return str(value)
-    return format(factor * value, column.format)
+    text = format(factor * value, column.format)
+    large = "e+0" in text and abs(float(text)) < 1e6  # '30' for '3e+01'
+    return f"{float(text):{'+' * text.startswith('+')}.0f}" if large else text

@@ -202,10 +202,9 @@ def copy_with_name(text: str, name: str) -> str:
 
 
 def starter_with(tables: dict[str, Any]) -> str:
-    """The starter with its comments, the title and the beam of other tables, and no gates, which are its own beam's."""
+    """The starter with its comments, other tables for name, title and beam, and no gates, which are its own beam's."""
     head, _, tail = read_text(STARTER).partition("[[gate]]")[0].partition("[beam]")
-    own = {name: tables[name] for name in ("name", "title", "beam")}
-    return head.partition("name =")[0] + toml_text(own) + "\n" + tail.partition("\n\n")[2]
+    return head.partition("name =")[0] + toml_text(tables) + "\n" + tail.partition("\n\n")[2]
 
 
 def toml_text(tables: dict[str, Any]) -> str:
