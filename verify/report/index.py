@@ -47,7 +47,8 @@ def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     counts = [f"{levels.count(level)} {level}" for level in (CANNOT, *LEVELS) if level in levels]
     bad, n = sum(line["passed"] is not True for line in lines), len(lines)
     passed, gates = (sum(line["gates"][i] for line in lines) for i in (0, 1))
-    good = f"{n} scenes, all {passed} gates passed" + f", --set skips {gates - passed}" * (gates > passed)
+    good = f"{n} scenes, " + (f"all {passed} gates passed" if passed else "no gate ran")
+    good += f", --set skips {gates - passed}" * (gates > passed)
     return Result(
         summary=(f"{bad} of {n} scenes failed" if bad else good) + f". Verdicts: {', '.join(counts)}.",
         tables=[Table("Scenes", columns, rows), *([failed] if reasons else [])],
@@ -63,14 +64,13 @@ def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, secon
 
     links = {line["scene"]: Path(relpath(line["page"], path.parent)).as_posix() for line in lines if line.get("page")}
     result = index_result(lines)
-    # A result that is not trusted has at least a gate that passed, which says what it is worth.
-    sound = all(line["passed"] and (line["gates"][0] or line["level"] != LEVELS[0]) for line in lines)
+    worst = min((line.get("level", LEVELS[0]) for line in lines), key=LEVELS.index)
     sections = [Section(table.title.lower(), table.title, tables=[table], links=links) for table in result.tables]
     page = render(
         "scenes",
         sections,
         title="All scenes",
-        level="gates passed" if sound else LEVELS[0],
+        level="gates passed" if all(line["passed"] and line["gates"][0] for line in lines) else worst,
         verdict=result.summary,
         seconds=seconds,
         command=command,
