@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from verify.cli import COMMANDS, status_of
+from verify.scene.load import load_scene
 
 SMALL = str(Path(__file__).parents[1] / "report" / "small.toml")
 BARE = """name = "bare"
@@ -164,6 +165,10 @@ def test_new_scenes_are_valid(call, bare):
     assert 'name = "copy"' in Path("copy.toml").read_text()
     assert call("scenes init copy.toml --from bare.toml --force")[0] == 0
     assert call("plan copy.toml")[0] == 0
+    tube = "0.9 m x tube 30 x 2 mm steel, clamped-free"
+    assert call("scenes init tube.toml --beam", tube)[0] == 0
+    assert load_scene("tube.toml").beam == load_scene(f"beam: {tube}").beam
+    assert call("bench modes --mode 2 --sizes 7,9 --seconds 0.01 --beam", tube)[0] == 0
 
 
 def test_quantities_are_searched(call, data):

@@ -7,10 +7,11 @@ import subprocess
 from dataclasses import replace
 from html import escape
 from html.parser import HTMLParser
-from types import SimpleNamespace
 
+import msgspec
 import pytest
 
+from verify.analysis.verdict import Margin
 from verify.report.index import failed_line, index_result, scene_line, write_index
 from verify.report.page import run_page
 from verify.report.result import Column, Table
@@ -101,17 +102,19 @@ def test_no_sentence_stands_twice(full_run, page):
     assert [page.text.count(one) for one in [*sentences, full_run.failed[0].reason]] == [1] * (len(sentences) + 1)
 
 
-def test_verdict_margins_caveats_and_speeds_lead(full_run, made_result):
-    sizes = {"size": 0.025, "fine": 0.01, "limit": 0.1, "level": "conditional"}
-    margin = SimpleNamespace(name="plate", where="at 5", condition="bands", failure="", remedy="a plate", **sizes)
-    stated = SimpleNamespace(level="conditional", headline="Trusted only if so: 2.5 %.", margins=[margin])
+def test_verdict_results_margins_caveats_and_speeds_lead(small_run, made_result):
+    sizes = {"plate": 0.031, "shear": 0.025, "links": 0.02, "wave": 0.013, "step": 0.004, "same": 0.0}
+    margins = [Margin(name=name, size=size, where="at 5") for name, size in sizes.items()]
     speeds = Table("Speed of the slider", [Column("kinematics"), Column("speed", "m/s")], [("tangential", -0.013)])
-    run = {name: getattr(full_run, name) for name in (*full_run.__struct_fields__, "failed")}
-    run["results"] = {"made": replace(made_result, tables=[*made_result.tables, speeds])}
-    text = run_page(SimpleNamespace(**run, verdict=stated))
-    order = (stated.headline, ">a plate<", "Mode 5 is not", ">tangential<", "<nav", "Mode 5 is 1.73 % off.")
+    made = replace(made_result, tables=[*made_result.tables, speeds], margins=margins)
+    run = msgspec.structs.replace(small_run, results={"made": made}, margins=())
+    text = run_page(run)
+    also = "also: shear 2.5 % at 5, links 2 % at 5, wave 1.3 % at 5"
+    order = (run.verdict.headline, also, "Mode 5 is 1.73 % off.", ">links 2 % at 5<", "<details>", ">wave 1.3 % at 5<")
+    order += (">step 0.4 % at 5<", "Mode 5 is not", ">tangential<", "<nav")
     places = [text.index(one) for one in order]
     assert places == sorted(places)
+    assert "same" not in text
     assert 'class="verdict conditional"' in text
     assert text.count("tangential") == 1
 
@@ -124,10 +127,18 @@ def test_index_links_to_reports(full_run, small_run, tmp_path):
     write_index(lines, tmp_path / "index.html", "verify run", 1.5)
     page = Parsed((tmp_path / "index.html").read_text("utf-8"))
     assert "small.html" in page.addresses
-    assert "2 of 3 scenes failed: 1 cannot run, 1 not trusted, 1 trusted" in page.text
+    assert "2 of 3 scenes failed. Verdicts: 1 cannot run, 1 not trusted, 1 trusted." in page.text
     assert "no beam" in page.text
     assert [row[1] for row in index_result(lines).tables[0].rows] == ["lost", "bad", "good"]
     assert json.dumps(lines)
+
+
+@pytest.mark.parametrize(("passed", "gates", "colour"), [(True, [3, 3], "gates-passed"), (True, [0, 0], "not-trusted"),
+                                                         (False, [2, 3], "not-trusted")])  # fmt: skip
+def test_banner_of_the_index_is_that_of_the_gates(small_run, tmp_path, passed, gates, colour):
+    line = scene_line(small_run, "lifts-off", None) | {"level": "not trusted", "passed": passed, "gates": gates}
+    write_index([scene_line(small_run, "good", None), line], tmp_path / "index.html", "verify run", 1.5)
+    assert f'class="verdict {colour}"' in (tmp_path / "index.html").read_text("utf-8")
 
 
 MEASURE = """<script>onload = () => { const f = document.getElementById("f"), d = f.contentDocument, s = getComputedStyle;

@@ -22,7 +22,7 @@ from verify.report.diff import compare_runs
 from verify.report.page import run_page
 from verify.report.plotting import MODEL_COLORS, drawn, figure_files, movie_image
 from verify.report.result import Column, Figure, Result, Table, to_json
-from verify.report.summary import run_data, worst_gate
+from verify.report.summary import run_data
 from verify.report.terminal import print_run
 from verify.scene.load import scene_from
 from verify.scene.model import Scene
@@ -94,6 +94,13 @@ def test_missing_gate_is_broken(small_run):
     after = data_of(small_run)
     del after["small"]["gates"][0]
     assert compare_runs(data_of(small_run), after).data["broken"] == ["small: third-frequency"]
+
+
+def test_changed_level_is_listed(small_run, full_run):
+    (table, *_) = compare_runs(data_of(small_run), data_of(full_run)).tables
+    assert table.records() == [
+        {"report": "small", "level": "trusted → not trusted", "headline now": full_run.verdict.headline}
+    ]
 
 
 def test_changed_input_is_named(small_run):
@@ -281,9 +288,13 @@ def test_run_fits_the_terminal(full_run, width):
     assert "All modes: 40 rows" in text
 
 
-def test_worst_gate_is_named(small_run, full_run):
-    assert f"the worst is {worst_gate(small_run).gate.id}" in printed(small_run, 200)
-    assert worst_gate(full_run).gate.id == "elements-lie-above"
+def test_worst_and_skipped_gates_are_named(small_run):
+    (worst, other) = sorted(small_run.gates, key=lambda gate: gate.fraction, reverse=True)
+    assert f"All 2 gates passed, the worst is {worst.id}" in printed(small_run, 200)
+    skipped = msgspec.structs.replace(worst, passed=None, fraction=None, reason="stated for other values")
+    text = printed(msgspec.structs.replace(small_run, gates=(skipped, other)), 200)
+    assert "All 1 gates passed (1 skipped: --set changes" in text
+    assert f"skipped {worst.id}: stated" in text
 
 
 def test_run_data_is_complete(full_run):

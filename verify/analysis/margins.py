@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
 from verify.analysis.variants import Variant
-from verify.analysis.verdict import FINE, Margin, per_cent, void
+from verify.analysis.verdict import FINE, Margin, per_cent, three_digits, void
 from verify.errors import InputError
 from verify.exact.closed_forms import theory_ratio, wavenumber_length
 from verify.exact.error_laws import LAWS, error_at
@@ -205,7 +205,7 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
     found = [slope_margin(what, still, remedy)]
     if amplitude and slider.coupling == "one-way":
         bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
-        found.append(Margin(name="sag under a foot over the wave's amplitude:", size=float(bent) / amplitude,
+        found.append(Margin(name="sag under a foot relative to the wave's amplitude", size=float(bent) / amplitude,
                             remedy="use coupling = 'two-way', or shorter feet"))  # fmt: skip
     return found
 
@@ -219,7 +219,8 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
         end = with_unit(run.end.time, "s")
         found.append(void("the run", f"the slider {status.stopped} on the {title} after {end}", "give a shorter time"))
     if slider.contact is None:
-        falls = f"the slider lifts off: the surface falls away with {margins.lift_off:.3g} times its own acceleration"
+        falls = f"the slider lifts off: the surface falls away with {three_digits(margins.lift_off)} times the "
+        falls += "acceleration that weight and preload give it"
         found.append(Margin(name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, failure=falls, is_error=False,
                             remedy="press it more, or model its contact by [slider.contact]"))  # fmt: skip
     if coupling is not None and not (coupling.two_way and slider.normal == "bilateral"):

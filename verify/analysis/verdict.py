@@ -44,8 +44,10 @@ class Margin(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def text(self) -> str:
         """The size in words: 'discretisation of 49 segments 0.43 % at mode 22', 'lift-off 152 times its limit'."""
-        size = per_cent(self.size) if self.is_error else f"{self.size / self.limit:.3g} times its limit"
-        return f"{self.name} {size} {self.where}".rstrip()
+        if not isfinite(self.size):
+            return self.failure or f"{self.name} without a value {self.where}".rstrip()
+        size = per_cent(self.size) if self.is_error else f"{three_digits(self.size / self.limit)} times its limit"
+        return " ".join(filter(None, (self.name, size if self.size else "", self.where)))
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -58,10 +60,11 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     """Worst first."""
 
     @property
-    def others(self) -> list[str]:
-        """Further margins that are not trusted, in words: of each name the worst."""
+    def others(self) -> str:
+        """Further margins that are not trusted, of each name the worst: 'also: one-way coupling 2 %, shear 1.1 %'."""
         worst = {one.name: one.text for one in reversed(self.margins) if one.level != "trusted"}
-        return [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
+        texts = [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
+        return f"also: {', '.join(texts)}" if texts else ""
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON: level, headline, margins with their sizes and limits."""
@@ -70,9 +73,10 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def verdict_of(margins: Iterable[Margin]) -> Verdict:
-    """The verdict by the worst of the margins, by level, then by size over limit; of like ones the worst counts."""
+    """The verdict by the worst margin, by level, then by size over limit; of like ones the worst, without size none."""
     worst_of = {(one.name, one.where): one for one in sorted(margins, key=_badness)}
-    ordered = sorted(worst_of.values(), key=_badness, reverse=True)
+    sized = (one for one in worst_of.values() if one.size or one.level != "trusted")
+    ordered = sorted(sized, key=_badness, reverse=True)
     if not ordered:
         return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
     worst, largest = ordered[0], max(ordered, key=lambda one: one.is_error * one.size)
@@ -95,6 +99,11 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
 def void(name: str, failure: str, remedy: str = "") -> Margin:
     """The margin of a result that does not exist: not converged, diverged, left the beam."""
     return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy)
+
+
+def three_digits(value: float) -> str:
+    """'0.0123', '30400': without an exponent below a million."""
+    return f"{float(f'{value:.3g}'):g}"
 
 
 def per_cent(ratio: float) -> str:

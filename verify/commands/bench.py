@@ -2,10 +2,10 @@
 
 import click
 
-from verify.commands.shared import charts_option, format_options, progress, save_charts, show
+from verify.commands.shared import BeamCommand, charts_option, format_options, progress, save_charts, show
 
 
-@click.command()
+@click.command(cls=BeamCommand)
 @click.argument("sets", nargs=-1, metavar="[SET]...")
 @click.option("--scene", metavar="SCENE", help="Take beam, drive and slider from there. Default: the paper's.")
 @click.option("--mode", type=click.IntRange(1), help="Mode of the sets modes and engines. Default: 22.")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from verify.commands.shared import format_options, overrides_option, scene_argument, show
+from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.errors import InputError, printable
 
 
@@ -38,23 +38,25 @@ def show_scene(scene: str, overrides: tuple[str, ...]) -> None:
     click.echo(text, nl=not text.endswith("\n"))
 
 
-@scenes.command()
+@scenes.command(cls=BeamCommand)
 @click.argument("path")
-@click.option("--from", "source", metavar="SCENE", help="Copy SCENE with its comments, under the name of PATH.")
+@click.option("--from", "scene", metavar="SCENE", help="Copy SCENE with its comments, under the name of PATH.")
 @click.option("--force", is_flag=True, help="Replace an existing file.")
-def init(path: str, source: str | None, force: bool) -> None:
-    """Write a commented scene to PATH.
+def init(path: str, scene: str | None, force: bool) -> None:
+    """Write a commented scene to PATH: a starter, a copy of SCENE, or the starter with another beam and no gates.
 
     Example: `verify scenes init mine.toml --from steel-cantilever`
     """
     from shlex import quote
 
     from verify.files import exists, write_whole
-    from verify.scene.load import STARTER, copy_with_name, name_of, read_text, scene_path
+    from verify.problem.phrase import PREFIX
+    from verify.scene.load import STARTER, copy_with_name, name_of, read_text, scene_path, starter_with, tables_of
 
     text = read_text(STARTER)
-    if source is not None:
-        text = copy_with_name(read_text(scene_path(source)), name_of(Path(path)))
+    if scene is not None:
+        source = starter_with(tables_of(scene)) if scene.startswith(PREFIX) else read_text(scene_path(scene))
+        text = copy_with_name(source, name_of(Path(path)))
     if exists(Path(path), "path") and not force:
         raise InputError(f"path = {path!r} exists: name another file, or replace it with --force")
     write_whole(Path(path), text, "path")

@@ -19,7 +19,7 @@ scene_argument = click.argument("scene")
 
 
 class BeamCommand(click.Command):
-    """A command that has `--beam PHRASE` in place of its argument SCENE."""
+    """A command that has `--beam PHRASE` in place of its argument SCENE, or of the option that names a scene."""
 
     def __init__(self, *values: Any, **options: Any) -> None:
         from verify.problem.materials import MATERIALS
@@ -31,13 +31,14 @@ class BeamCommand(click.Command):
         self.params.append(click.Option(["--beam"], metavar="PHRASE", expose_value=False, help=text))
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Insert the phrase in front, as the name of the scene."""
+        """Insert the phrase in front, as the name of the scene or after the option."""
         from verify.problem.phrase import PREFIX
 
         for word, following in zip(args, [*args[1:], ""], strict=True):
             name, _, phrase = word.partition("=")
             if name == "--beam":
-                return super().parse_args(ctx, [PREFIX + (phrase or following), *args])
+                option = [one.opts[0] for one in self.params if one.name == "scene" and isinstance(one, click.Option)]
+                return super().parse_args(ctx, [*option, PREFIX + (phrase or following), *args])
         return super().parse_args(ctx, args)
 
 

@@ -92,7 +92,7 @@ def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
 def _read(path: Path, field: str) -> dict[str, Any]:
     try:
         run = json.loads(path.read_text("utf-8"))
-        run["report"], run["gates"], run["inputs"], run["environment"]
+        run["report"], run["verdict"]["level"], run["gates"], run["inputs"], run["environment"]
     except (OSError, ValueError, TypeError, KeyError):
         raise InputError(f"{field} = {str(path)!r} is no saved run: give the {DATA} that `verify run` writes") from None
     return dict(run)

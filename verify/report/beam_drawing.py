@@ -26,8 +26,8 @@ def beam_figure(scene: Any) -> Figure:
 
     sketch = _Sketch(scene, MatplotlibFigure().subplots())
     beam = scene.beam
-    counts = {"section": beam.section, "mass": beam.mass, "spring": beam.spring, "force": scene.forces}
-    counts |= {"device": scene.devices, "slider": (scene.slider,) if scene.slider else ()}
+    counts = {"sections": beam.section, "masses": beam.mass, "springs": beam.spring, "forces": scene.forces}
+    counts |= {"devices": scene.devices, "sliders": (scene.slider,) if scene.slider else ()}
     there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
     return Figure(
         id="beam",

@@ -1,4 +1,4 @@
-"""What changed between two saved runs: gates by verdict and value, inputs, versions."""
+"""What changed between two saved runs: levels of verdicts, gates by outcome and value, inputs, versions."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -30,18 +30,21 @@ def compare_runs(before: Mapping[str, Run], after: Mapping[str, Run]) -> Result:
     gates = [(name, *row) for name, old, new in pairs for row in _gates(old["gates"], new["gates"])]
     inputs = [(name, *row) for name, old, new in pairs for row in _changed(old["inputs"], new["inputs"])]
     versions = [(name, *row) for name, old, new in pairs for row in _changed(_versions(old), _versions(new))]
+    both = [(name, old["verdict"], new["verdict"]) for name, old, new in pairs]
+    levels = [(name, _turn(a["level"], b["level"]), b["headline"]) for name, a, b in both if a["level"] != b["level"]]
     broken = [f"{row[0]}: {row[1]}" for row in gates if row[2].startswith(f"{VERDICTS[True]} {ARROW}")]
     keys = ("report", "key", "before", "after")
     columns = [Column(name) for name in ("report", "gate", "verdict", "expected")]
     columns += [Column("before", format=".10g"), Column("after", format=".10g")]
     tables = [
+        Table("Verdicts that changed", [Column(key) for key in ("report", "level", "headline now")], levels),
         Table("Gates that changed", [*columns, Column("change", percent=True, format="+.3g")], gates),
         Table("Inputs that changed", [Column(key) for key in keys], inputs),
         Table("Environment", [Column(key) for key in keys], versions),
     ]
     missing = [name for name in (*before, *after) if len(before) + len(after) > 2 and name not in names]
     return Result(
-        summary=f"Gates changed: {len(gates)}, no longer passed: {len(broken)}. Inputs changed: {len(inputs)}.",
+        summary=f"Changed: {len(levels)} verdicts, {len(gates)} gates ({len(broken)} broken), {len(inputs)} inputs.",
         tables=[table for table in tables if table.rows],
         warnings=[f"{name} is in one of the two only" for name in missing],
         data={"broken": broken},

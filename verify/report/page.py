@@ -10,7 +10,7 @@ from verify.analysis import verdict
 from verify.formatting import with_unit
 from verify.report.plotting import figure_files, movie_image
 from verify.report.result import Column, Figure, Movie, Table, plain, to_json
-from verify.report.summary import environment, gates_table, study_title, worst_gate
+from verify.report.summary import environment, gates_sentence, gates_table, study_title
 
 if TYPE_CHECKING:
     from verify.scene.run import RunResult
@@ -26,6 +26,8 @@ MARKS[LEVELS[1]] = "warn"
 """Class of a cell with this text."""
 SPEEDS = "Speed of the slider"
 """Title of a table that follows the verdict, whichever study it belongs to."""
+WORST, REST = 3, "Further margins"
+"""Margins that are not folded, and the title of the others."""
 WIDE, NARROW = 40, 22
 """Characters of a column of text beyond which it wraps early, and below which it does not wrap."""
 
@@ -37,7 +39,7 @@ class Section:
     id: str
     title: str
     finding: str = ""
-    """The result in a sentence, which the heading states."""
+    """The result in a sentence, which follows the verdict with a link to the section."""
     caveats: Sequence[tuple[str, str, str]] = ()
     """(title of a section, its id, sentence)."""
     figures: Sequence[Figure] = ()
@@ -52,7 +54,7 @@ class Section:
 
 
 def run_page(run: "RunResult", command: str = "") -> str:
-    """The report of a run as HTML: verdict, margins and caveats, then figures, no sentence twice."""
+    """The report of a run as HTML: verdict, results, margins and caveats, then figures, no sentence twice."""
     from verify.report.beam_drawing import beam_figure
 
     scene, headline = run.scene, run.verdict.headline
@@ -64,27 +66,24 @@ def run_page(run: "RunResult", command: str = "") -> str:
     above = {headline, *(why for _, why in problems)}
     listed = [(*where, text) for text, where in caveats.items() if text not in above]
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
-    columns = [Column("level"), Column("margin")]
-    columns += [Column(name, format=".3g", percent=True) for name in ("size", "trusted up to", "not above")]
+    limits = (Column(name, format=".3g", percent=True) for name in ("trusted up to", "not above"))
+    columns = [Column("level"), Column("margin"), *limits, Column("condition"), Column("remedy")]
     rows: list[Any] = []
     for one in run.verdict.margins:
         texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
         texts = ["" if one.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
-        rows.append((one.level, f"{one.name} {one.where}", *map(plain, (one.size, one.fine, one.limit)), *texts))
-    reasons = Table("Margins", [*columns, Column("condition"), Column("remedy")], rows)
-    worst, gates = worst_gate(run), gates_table(run)
+        rows.append((one.level, one.text, *map(plain, (one.fine, one.limit) if one.is_error else (None, None)), *texts))
+    reasons = [Table("Margins", columns, rows[:WORST]), Table(REST, columns, rows[WORST:])]
+    gates = gates_table(run)
     skipped = Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
-    most = f"{worst.gate.id} uses {100 * (worst.fraction or 0):.3g} % of its tolerance, the most" if worst else ""
-    if run.failed:
-        most = f"{len(run.failed)} failed: {', '.join(one.gate.id for one in run.failed)}"
     whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
     rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
     sections = [
-        Section("margins", "Margins", tables=[reasons] * bool(rows)),
+        Section("margins", "Margins", tables=[table for table in reasons if table.rows]),
         Section("caveats", "Caveats", caveats=listed),
         Section("speeds", SPEEDS, tables=speeds),
         *(_study_section(run, name) for name in run.results),
-        Section("gates", "Gates", most, tables=[replace(gates, rows=rest)] * bool(run.gates)),
+        Section("gates", "Gates", gates_sentence(run), tables=[replace(gates, rows=rest)] * bool(run.gates)),
         Section("skipped", "Not run", tables=[skipped] * bool(run.skipped), folded=True),
         Section("inputs", "Inputs", code=to_json(scene), folded=True),
     ]
@@ -96,6 +95,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         verdict=headline,
         seconds=run.seconds,
         problems=[f"{what}: {why}" for what, why in problems if why not in headline],
+        others=run.verdict.others,
         drawing=beam_figure(scene),
         sections=[one for one in sections if one.id in run.results or one.tables or one.caveats or one.code],
         command=command,
@@ -109,7 +109,8 @@ def _study_section(run: "RunResult", name: str) -> Section:
     tables = [table for table in result.tables if table.title != SPEEDS]
     driven = f", driven at {drive.frequency_hz:g} Hz" if drive and name in ("wave", "motion", "motor") else ""
     condition = f"Beam: {with_unit(beam.length, form='.4g')}, {'-'.join(beam.supports)}{driven}."
-    return Section(name, study_title(run, name), result.summary, (), figures, condition, movies, tables)
+    finding = result.summary or "No valid result: see its caveats and margins."
+    return Section(name, study_title(run, name), finding, (), figures, condition, movies, tables)
 
 
 def render(name: str, sections: Sequence[Section], **values: Any) -> str:
@@ -156,7 +157,7 @@ def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:
         "table": table,
         "headings": [(headings[i], "" if words[i] else "n") for i in n],
         "rows": [[cell(i, row[i], text[i]) for i in n] for row, text in zip(table.rows, texts, strict=True)],
-        "folded": len(table.rows) > LONG,
+        "folded": len(table.rows) > LONG or table.title == REST,
         "kind": f"{' dense' * (len(n) > DENSE)}{' whole' * (len(table.rows) < 12)}{stacked}",
         "csv": data_uri("text/csv", table.csv()),
     }

@@ -173,9 +173,9 @@ class Result:
         return verdict | {"summary": self.summary, "warnings": list(self.warnings), "tables": tables} | data
 
     def print(self, console: "Console", most_rows: int | None = None) -> None:
-        """Print verdict, summary, tables, warnings; of tables with more than `most_rows` rows the title alone."""
+        """Print verdict, summary, tables, warnings; with `most_rows`, in a run, headline and short tables alone."""
         if self.verdict:
-            console.print(self.verdict.headline, style=f"bold {COLOURS[self.verdict.level]}")
+            print_verdict(self.verdict, console, brief=most_rows is not None)
         if self.summary:
             console.print(self.summary)
         for table in self.tables:
@@ -185,6 +185,13 @@ class Result:
                 table.print(console)
         for warning in self.warnings:
             console.print(f"warning: {warning}", style="yellow")
+
+
+def print_verdict(verdict: Verdict, console: "Console", after: str = "", *, brief: bool = False) -> None:
+    """Print the headline in its colour, and, unless `brief`, the further margins that are not trusted."""
+    console.print(verdict.headline + after, style=f"bold {COLOURS[verdict.level]}")
+    if verdict.others and not brief:
+        console.print(verdict.others)
 
 
 def to_json(value: Any) -> str:
@@ -216,4 +223,6 @@ def _cell(value: Any, column: Column, factor: float) -> str:
         return value
     if isinstance(value, int) and factor == 1.0 and column.format == ".5g":
         return str(value)
-    return format(factor * value, column.format)
+    text = format(factor * value, column.format)
+    large = "e+0" in text and abs(float(text)) < 1e6  # '30' for '3e+01'
+    return f"{float(text):{'+' * text.startswith('+')}.0f}" if large else text

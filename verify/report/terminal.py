@@ -2,9 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from verify.analysis.verdict import COLOURS
-from verify.report.result import Column, Table
-from verify.report.summary import VERDICTS, expected, study_title, value_text, worst_gate
+from verify.report.result import Column, Table, print_verdict
+from verify.report.summary import VERDICTS, expected, gates_sentence, study_title, value_text
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -18,39 +17,34 @@ LONG = 30
 
 def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None) -> None:
     """Print a run: its verdict first, and at the end again with the gates, where a terminal stops."""
-    scene, found = run.scene, run.verdict
-    style = f"bold {COLOURS[found.level]}"
-    console.print(scene.title or scene.name, style="bold")
-    console.print(found.headline, style=style)
+    console.print(run.scene.title or run.scene.name, style="bold")
+    print_verdict(run.verdict, console, brief=True)
     for name, result in run.results.items():
         console.print()
         console.print(study_title(run, name), style="bold")
         result.print(console, LONG)
-    if run.gates:
+    gates, skipped = gates_in_short(run), [one for one in run.gates if one.passed is None]
+    if gates.rows:
         console.print()
-        gates_in_short(run).print(console)
+        gates.print(console)
     console.print()
-    for one in (gate for gate in run.gates if gate.passed is None):
-        console.print(f"skipped {one.gate.id}: {one.reason}", style="dim")
+    for reason in dict.fromkeys(one.reason for one in skipped):
+        names = ", ".join(one.gate.id for one in skipped if one.reason == reason)
+        console.print(f"skipped {names}: {reason}", style="dim")
     for warning in run.warnings:
         console.print(f"warning: {warning}", style="yellow")
     for one in run.failed:
         console.print(f"FAIL {one.gate.id}: {one.reason}", style="red")
-    console.print(f"{found.headline} ({run.seconds:.3g} s)", style=style)
-    for text in found.others:
-        console.print(f"also: {text}")
-    gates, worst = run.gates_in_words, worst_gate(run)
-    if worst is not None and run.passed:
-        gates += f", the worst is {worst.gate.id} with {100 * (worst.fraction or 0.0):.3g} % of its tolerance"
-    console.print(f"{gates[:1].upper()}{gates[1:]}.")
+    print_verdict(run.verdict, console, f" ({run.seconds:.3g} s)")
+    console.print(gates_sentence(run))
     if saved is not None:
         console.print(f"report: {saved.page}", soft_wrap=True)
 
 
 def gates_in_short(run: "RunResult") -> Table:
-    """The gates in five columns that fit 80 characters; the page has them in full."""
+    """The gates that ran in five columns that fit 80 characters; the page has them in full."""
     rows = []
-    for one in run.gates:
+    for one in (gate for gate in run.gates if gate.passed is not None):
         unit = "" if one.unit == "1" or one.value is None else f" {one.unit}"
         measured = (value_text(one.value) + unit).rstrip()
         rows.append((VERDICTS[one.passed], one.gate.id, measured, expected(one.gate), one.fraction))

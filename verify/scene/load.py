@@ -201,6 +201,12 @@ def copy_with_name(text: str, name: str) -> str:
     return result if "#:schema" in result else f"{SCHEMA_LINE}\n{result}"
 
 
+def starter_with(tables: dict[str, Any]) -> str:
+    """The starter with its comments, other tables for name, title and beam, and no gates, which are its own beam's."""
+    head, _, tail = read_text(STARTER).partition("[[gate]]")[0].partition("[beam]")
+    return head.partition("name =")[0] + toml_text(tables) + "\n" + tail.partition("\n\n")[2]
+
+
 def toml_text(tables: dict[str, Any]) -> str:
     """Plain tables as TOML."""
     import tomlkit

@@ -30,7 +30,8 @@ STYLES = ("-o", "--s", ":^", "-.d", "-v")
 NOTES = [
     "Order: from the size before. GCI: grid convergence index of this size and the two before, the error bound that a "
     "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
-    "In range: asymptotic, from this size on all orders are within 1 of the theoretical order, or of the last.",
+    "In range: the order at this size and at all larger ones is within 1 of the theoretical order (of the last "
+    "observed order where theory gives none): the asymptotic range.",
     "Time: warm solve of all modes, assembly included, median of repeats.",
 ]
 CAPTION = (
