@@ -7,7 +7,7 @@ one-way coupling, lift-off, convergence and linearity; `verdict` derives the lev
 from bisect import bisect_left
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from math import inf, pi
+from math import asinh, inf, pi, sinh
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -31,6 +31,8 @@ MOST_PLATES = 60
 """Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
 SLOPE = 0.1, 0.3
 """Slopes up to which linear theory is trusted, and trusted under a condition: their squares are relative lengths."""
+STRETCHED = 1.0
+"""Relative change by stretching between fixed ends up to which linear theory is trusted if an end slides: S = 4."""
 OFF = 0.05
 """Discretisation error from which a chart is marked."""
 STILL = 1e-4
@@ -169,20 +171,61 @@ def marked(title: str, margins: Iterable[Margin]) -> str:
     return f"{title} ({', '.join(off)})" if off else title
 
 
-def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
-    """Linear theory under the deflection of a field: the square of the largest slope is a relative length."""
+def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static: bool = False) -> list[Margin]:
+    """Linear theory under the deflection of a field: its slope, and the stretching of a beam whose ends cannot slide.
+
+    The square of the largest slope is a relative length. A `static` deflection is too large by 1/c - 1 = S c^2, a wave
+    of this amplitude raises frequencies by up to sqrt(1 + 3 S/4) - 1; c and S: `stretching`. Both are 1 at S = 4.
+    """
     import numpy as np
 
     x = np.linspace(0.0, field.beam.length, 401)
     bent, slope = float(abs(field.deflection(x)).max()), float(abs(field.slope(x)).max())
     failure = f"{what} bends the beam by {with_unit(bent)}, {per_cent(bent / field.beam.length)} of its length"
-    return Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
-                  limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
-                  remedy=remedy, is_error=False)  # fmt: skip
+    found = [Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
+                    limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
+                    remedy=remedy, is_error=False)]  # fmt: skip
+    if (ratio := stretching(field)) > 0.0:
+        root = (3.0 * ratio) ** 0.5
+        size = ratio * (2.0 / root * sinh(asinh(1.5 * root) / 3.0)) ** 2 if static else (1.0 + 0.75 * ratio) ** 0.5 - 1.0
+        change = "this is too much" if static else "this raises frequencies"
+        much = f"{what} bends the beam by {with_unit(bent)}: unless an end slides along the beam, {change}"
+        condition = f"an end may slide along the beam ({much})"
+        found.append(Margin(name="stretching under " + what, size=size, limit=STRETCHED, condition=condition,
+                            failure=f"{much} by {per_cent(size)}", remedy=remedy))  # fmt: skip
+    return found
+
+
+def stretching(field: "HarmonicField") -> float:
+    """S, twice the energy of stretching over that of bending if neither end slides; 0 unless both are pinned or clamped.
+
+    Linear models neglect the tension T = (EA/2L) int w'^2 dx (S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35). With
+    c times the linear shape w, a static load of work 2 U and U = 1/2 int EI w''^2 dx, the potential energy is
+    U (c^2 - 2 c) + (EA/8L) (int w'^2 dx)^2 c^4, least for c + S c^3 = 1, where S = EA (int w'^2 dx)^2 / (4 L U). A free
+    vibration c(t) is Duffing's, c'' + omega^2 (c + S c^3) = 0: omega^2 grows by 3 S/4 of its amplitude 1. For
+    w = a sin(pi x/L) and I = A r^2, S = (a/r)^2 / 4: 3/16 (a/r)^2. S is first-order exact for the deflection at a load.
+    Axial force and foundation of the beam add to U. 0 for a section of unknown EA.
+    """
+    import numpy as np
+
+    from verify.linear.surface import piece_at
+    from verify.problem.supports import FIXED
+
+    beam = field.beam
+    if not all(FIXED[support].deflection for support in beam.supports):
+        return 0.0
+    x = (np.arange(400) + 0.5) * beam.length / 400
+    bending = np.array([piece.bending_stiffness for piece in beam.pieces])[piece_at(beam, x)]
+    w, slope, bend = (abs(field.derivative(x, order)) ** 2 for order in range(3))
+    energy = np.mean(bending * bend + beam.tension * slope + beam.foundation * w)
+    with suppress(InputError):
+        axial = beam.length / sum(piece.length / piece.axial_stiffness for piece in beam.pieces)
+        return float(axial * slope.mean() ** 2 / (2.0 * energy)) if energy > 0.0 else 0.0
+    return 0.0
 
 
 def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None = None) -> list[Margin]:
-    """Static sag of the beam under a slider's weight and preload: its slope, and its curvature under the feet.
+    """Static sag of the beam under a slider's weight and preload: its slope, stretching, and curvature under feet.
 
     The curvature counts over `amplitude` of the wave, m, and only with one-way coupling, which neglects it. Empty for a
     beam with rigid-body motions and for sliders without load.
@@ -202,7 +245,7 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
     except InputError:
         return []
     what, remedy = "the preload" if slider.preload else "the slider's weight", "press it less, or stiffen the beam"
-    found = [slope_margin(what, still, remedy)]
+    found = linearity_margins(what, still, remedy, static=True)
     if amplitude and slider.coupling == "one-way":
         bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
         found.append(Margin(name="sag under a foot over the wave's amplitude:", size=float(bent) / amplitude,
