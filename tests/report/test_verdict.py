@@ -2,12 +2,16 @@
 
 import math
 
+import numpy as np
 import pytest
+from msgspec.structs import replace
+from scipy.optimize import brentq
 
 from verify import Beam
-from verify.analysis.margins import beam_margins, marked, run_margins, sag_margins, slope_margin, sufficient_count
+from verify.analysis.margins import beam_margins, linearity_margins, marked, run_margins, sag_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of, void
+from verify.exact import closed_forms
 from verify.linear.registry import MODELS
 from verify.problem.beam import PointForce
 from verify.quantities.base import evaluate
@@ -135,7 +139,48 @@ def test_linear_theory_ends_with_the_slope():
     beam = Beam(**BRASS, supports=("clamped", "free"))
     for force, level in ((0.05, "trusted"), (0.2, "conditional"), (0.5, "not trusted")):
         field = MODELS["analytic"].build(beam).harmonic([PointForce(position=0.3, amplitude=force)], 1e-3)
-        assert slope_margin("the drive", field, "").level == level
+        (slope,) = linearity_margins("the drive", field, "", static=True)
+        assert slope.level == level
+
+
+@pytest.mark.parametrize(
+    ("supports", "force", "within", "level"),
+    [
+        (("pinned", "pinned"), 0.03, 0.004, "conditional"),
+        (("clamped", "pinned"), 0.01, 3e-5, "trusted"),
+        (("clamped", "clamped"), 0.3, 0.01, "conditional"),
+        (("clamped", "clamped"), 5.0, 0.4, "not trusted"),
+    ],
+)
+def test_a_preload_between_fixed_ends_bends_less_by_the_tension_of_its_stretching(supports, force, within, level):
+    """Off-centre load; the tension EA/2L int w'^2 dx is the root of the exact beam under that tension."""
+    beam, load, x = (
+        Beam(**BRASS, supports=supports),
+        [PointForce(position=0.11, amplitude=force)],
+        (np.arange(2e3) + 0.5),
+    )
+
+    def under(tension):
+        return MODELS["analytic"].build(replace(beam, tension=tension)).harmonic(load, 1e-2)
+
+    def stretched(tension):
+        return 0.5 * 105e9 * 0.012 * 0.0008 * np.mean(abs(under(tension).slope(0.3 * x / 2e3)) ** 2)
+
+    tension = brentq(lambda one: stretched(one) - one, 0.0, stretched(0.0))
+    linear, held = (abs(under(one).deflection(0.11)[0]) for one in (0.0, tension))
+    (_, margin) = linearity_margins("the preload", under(0.0), "", static=True)
+    assert margin.size == pytest.approx(linear / held - 1.0, abs=within)
+    assert margin.level == level
+
+
+def test_frequencies_of_a_pinned_beam_grow_by_three_sixteenths_of_amplitude_over_radius_of_gyration_squared():
+    """Woinowsky-Krieger's Duffing coefficient, near resonance of mode 1; a cantilever has no stretching."""
+    beam = Beam(**BRASS, supports=("pinned", "pinned"))
+    first = closed_forms.frequency_hz(beam, 1) * (1.0 + 1e-5)
+    field = MODELS["analytic"].build(beam).harmonic([PointForce(position=0.11, amplitude=3e-8)], first)
+    square = (abs(field.deflection(0.15)[0]) / 0.0008) ** 2 * 12.0
+    (_, margin) = linearity_margins("the drive", field, "")
+    assert (1.0 + margin.size) ** 2 - 1.0 == pytest.approx(3.0 / 16.0 * square, rel=1e-3)
 
 
 def test_a_quantity_has_the_margins_of_its_model_and_its_run():

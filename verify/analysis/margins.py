@@ -186,25 +186,29 @@ def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static:
                     limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
                     remedy=remedy, is_error=False)]  # fmt: skip
     if (ratio := stretching(field)) > 0.0:
-        root = (3.0 * ratio) ** 0.5
-        size = ratio * (2.0 / root * sinh(asinh(1.5 * root) / 3.0)) ** 2 if static else (1.0 + 0.75 * ratio) ** 0.5 - 1.0
-        change = "this is too much" if static else "this raises frequencies"
-        much = f"{what} bends the beam by {with_unit(bent)}: unless an end slides along the beam, {change}"
-        condition = f"an end may slide along the beam ({much})"
+        size, change, much = (1.0 + 0.75 * ratio) ** 0.5 - 1.0, "raises frequencies at", with_unit(bent)
+        effect = f"which raises frequencies by {per_cent(size)}"
+        if static:
+            c = 2.0 / (3.0 * ratio) ** 0.5 * sinh(asinh(1.5 * (3.0 * ratio) ** 0.5) / 3.0)
+            size, change = ratio * c**2, "reduces"
+            effect = f"{per_cent(size)} too much"
+        condition = f"an end may slide along the beam, else stretching {change} the {much} by which {what} bends it"
+        failure = f"{what} bends the beam by {much}, {effect} unless an end slides along it"
         found.append(Margin(name="stretching under " + what, size=size, limit=STRETCHED, condition=condition,
-                            failure=f"{much} by {per_cent(size)}", remedy=remedy))  # fmt: skip
+                            failure=failure, remedy=remedy))  # fmt: skip
     return found
 
 
 def stretching(field: "HarmonicField") -> float:
-    """S, twice the energy of stretching over that of bending if neither end slides; 0 unless both are pinned or clamped.
+    """S, twice the energy of stretching over that of bending; 0 unless both ends are pinned or clamped.
 
-    Linear models neglect the tension T = (EA/2L) int w'^2 dx (S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35). With
-    c times the linear shape w, a static load of work 2 U and U = 1/2 int EI w''^2 dx, the potential energy is
-    U (c^2 - 2 c) + (EA/8L) (int w'^2 dx)^2 c^4, least for c + S c^3 = 1, where S = EA (int w'^2 dx)^2 / (4 L U). A free
-    vibration c(t) is Duffing's, c'' + omega^2 (c + S c^3) = 0: omega^2 grows by 3 S/4 of its amplitude 1. For
-    w = a sin(pi x/L) and I = A r^2, S = (a/r)^2 / 4: 3/16 (a/r)^2. S is first-order exact for the deflection at a load.
-    Axial force and foundation of the beam add to U. 0 for a section of unknown EA.
+    Linear models assume that an end slides and neglect the tension T = (EA/2L) int w'^2 dx between fixed ends
+    (S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35). With c times the linear shape w, a static load of work 2 U and
+    U = 1/2 int EI w''^2 dx, the potential energy is U (c^2 - 2 c) + (EA/8L) (int w'^2 dx)^2 c^4, least for
+    c + S c^3 = 1, where S = EA (int w'^2 dx)^2 / (4 L U). A free vibration c(t) is Duffing's,
+    c'' + omega^2 (c + S c^3) = 0: at the amplitude 1 omega^2 grows by 3 S/4. For w = a sin(pi x/L) and I = A r^2,
+    S = (a/r)^2 / 4, the 3/16 (a/r)^2 of the source. S is first-order exact for the deflection at a load. Axial force
+    and foundation of the beam add to U. 0 for a section of unknown EA.
     """
     import numpy as np
 
