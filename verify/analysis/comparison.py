@@ -17,8 +17,8 @@ EIGENVALUE_FLOOR = 2e-14
 """Bound of rounding in a relative frequency error (measured: 1.1e-14 up to 10^4 segments or elements)."""
 ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
 """Smallest error for an observed order; below it rounding affects the order."""
-ORDER_SPREAD = 1.0
-"""Largest difference between the orders of neighbouring sizes in the asymptotic range."""
+ORDER_SPREAD = 0.5
+"""Largest difference of orders from size to size from the theoretical one, or each other, in the asymptotic range."""
 AT_REST = 1e-11
 """Fraction of the typical size below which a shape is zero, such as mode 3 of a pinned beam at the nodes of 3 parts."""
 LEAST_MAC = 0.5
