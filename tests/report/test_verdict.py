@@ -15,6 +15,7 @@ from verify.exact import closed_forms
 from verify.linear.registry import MODELS
 from verify.problem.beam import PointForce
 from verify.quantities.base import evaluate
+from verify.quantities.waves import FieldOptions, driven_case, measured
 from verify.scene.load import load_scene, scene_from
 from verify.studies.motor import Motor
 from verify.studies.spectrum import Spectrum
@@ -191,3 +192,25 @@ def test_a_quantity_has_the_margins_of_its_model_and_its_run():
     assert {"discretisation of 31 Hermite elements", "lift-off", "bending across the width"} <= set(names)
     (run,) = cache.motions.values()
     assert by_name(run_margins(run, scene.slider, "elements"))["lift-off"].size == run.margins.lift_off
+
+
+@pytest.mark.parametrize(("phase", "level"), [(77.0, "trusted"), (31.0, "conditional"), (2.0, "not trusted")])
+def test_a_crest_speed_of_a_nearly_standing_wave_is_not_trusted(phase, level):
+    """The speed at the crests, omega |S3| / 2|w| with constant S3, varies along the beam by that ratio."""
+    scene = load_scene("paper")
+    cache, arguments = SolutionCache(scene.beam), {"phase_deg": phase}
+    margin = by_name(quantity_margins("wave.crest_speed", arguments, scene, cache))[
+        "variation of the crest speed along the beam"
+    ]
+    wave = measured(driven_case(scene, FieldOptions(phase_deg=phase)), cache)
+    amplitudes = abs(wave.deflection(np.linspace(*wave.window, 20001)))
+    assert margin.size == pytest.approx(amplitudes.max() / amplitudes.min(), rel=0.02)
+    assert margin.level == level
+
+
+def test_an_order_at_the_edge_of_the_asymptotic_range_has_its_condition():
+    scene = load_scene("steel-cantilever")
+    for wall, level in (("gregory", "conditional"), ("half", "trusted")):
+        arguments = {"model": "segment", "mode": 8, "counts": [160, 320, 640], "wall": wall}
+        margins = by_name(quantity_margins("mode.order", arguments, scene, SolutionCache(scene.beam)))
+        assert margins["observed order"].level == level

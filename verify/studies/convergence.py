@@ -72,7 +72,9 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             columns += [percent("width", ".4g"), percent("error of the mean")]
             rule = " with wall half" if "clamped" in cache.beam.supports else ""
             bound = f"Two-sided bound: segments{rule} below, Hermite elements above"
-            note = "The exact frequency lies in it for every N; no reference solution is needed for that."
+            note = (
+                "For a bare uniform beam the exact frequency lies in it at every N; that needs no reference solution."
+            )
             tables.append(Table(bound, columns, [tuple(row.values()) for row in bounds], [note]))
         errors = ", ".join(settled)
         return Result(
