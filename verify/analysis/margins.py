@@ -33,7 +33,7 @@ MOST_PLATES = 60
 SLOPE = 0.1, 0.3
 """Slopes up to which linear theory is trusted, and trusted under a condition: their squares are relative lengths."""
 STRETCHED = 1.0
-"""Relative change by stretching between fixed ends up to which linear theory is trusted if an end slides: S = 4."""
+"""Relative change by stretching up to which linear theory is trusted if an end slides, of both kinds at S = 4."""
 UNEVEN = 2.0, 20.0
 """Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
 OFF = 0.05
@@ -175,60 +175,40 @@ def marked(title: str, margins: Iterable[Margin]) -> str:
 
 
 def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static: bool = False) -> list[Margin]:
-    """Linear theory under the deflection of a field: its slope, and the stretching of a beam whose ends cannot slide.
+    """Linear theory under a deflection w: its largest slope, whose square is a relative length, and its stretching.
 
-    The square of the largest slope is a relative length. A `static` deflection is too large by 1/c - 1 = S c^2, a wave
-    of this amplitude raises frequencies by up to sqrt(1 + 3 S/4) - 1; c and S: `stretching`. Both are 1 at S = 4.
-    """
-    import numpy as np
-
-    x = np.linspace(0.0, field.beam.length, 401)
-    bent, slope = float(abs(field.deflection(x)).max()), float(abs(field.slope(x)).max())
-    failure = f"{what} bends the beam by {with_unit(bent)}, {per_cent(bent / field.beam.length)} of its length"
-    found = [Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
-                    limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
-                    remedy=remedy, is_error=False)]  # fmt: skip
-    if (ratio := stretching(field)) > 0.0:
-        size, change, much = (1.0 + 0.75 * ratio) ** 0.5 - 1.0, "raises frequencies at", with_unit(bent)
-        effect = f"which raises frequencies by {per_cent(size)}"
-        if static:
-            c = 2.0 / (3.0 * ratio) ** 0.5 * sinh(asinh(1.5 * (3.0 * ratio) ** 0.5) / 3.0)
-            size, change = ratio * c**2, "reduces"
-            effect = f"{per_cent(size)} too much"
-        condition = f"an end may slide along the beam, else stretching {change} the {much} by which {what} bends it"
-        failure = f"{what} bends the beam by {much}, {effect} unless an end slides along it"
-        found.append(Margin(name="stretching under " + what, size=size, limit=STRETCHED, condition=condition,
-                            failure=failure, remedy=remedy))  # fmt: skip
-    return found
-
-
-def stretching(field: "HarmonicField") -> float:
-    """S, twice the energy of stretching over that of bending; 0 unless both ends are pinned or clamped.
-
-    Linear models assume that an end slides and neglect the tension T = (EA/2L) int w'^2 dx between fixed ends
-    (S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35). With c times the linear shape w, a static load of work 2 U and
-    U = 1/2 int EI w''^2 dx, the potential energy is U (c^2 - 2 c) + (EA/8L) (int w'^2 dx)^2 c^4, least for
-    c + S c^3 = 1, where S = EA (int w'^2 dx)^2 / (4 L U). A free vibration c(t) is Duffing's,
-    c'' + omega^2 (c + S c^3) = 0: at the amplitude 1 omega^2 grows by 3 S/4. For w = a sin(pi x/L) and I = A r^2,
-    S = (a/r)^2 / 4, the 3/16 (a/r)^2 of the source. S is first-order exact for the deflection at a load. Axial force
-    and foundation of the beam add to U. 0 for a section of unknown EA.
+    Linear models assume that an end slides. Between two ends that are pinned or clamped and fixed there is a tension
+    (EA/2L) int w'^2 dx (S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35). With c times the linear shape w, a static
+    load of work 2 U and U = 1/2 int EI w''^2 dx (and the energy of axial force and foundation) the potential energy is
+    U (c^2 - 2 c) + (EA/8L) (int w'^2 dx)^2 c^4, least for c + S c^3 = 1, where S = EA (int w'^2 dx)^2 / (4 L U): a
+    `static` deflection is too large by 1/c - 1 = S c^2, exact to first order. A free vibration c(t) is Duffing's, of
+    omega^2 (1 + 3 S/4) at amplitude 1: 3/16 (a/r)^2 of the source for w = a sin(pi x/L), I = A r^2. A wave has less.
     """
     import numpy as np
 
     from verify.linear.surface import piece_at
     from verify.problem.supports import FIXED
 
-    beam = field.beam
-    if not all(FIXED[support].deflection for support in beam.supports):
-        return 0.0
-    x = (np.arange(400) + 0.5) * beam.length / 400
-    bending = np.array([piece.bending_stiffness for piece in beam.pieces])[piece_at(beam, x)]
-    w, slope, bend = (abs(field.derivative(x, order)) ** 2 for order in range(3))
-    energy = np.mean(bending * bend + beam.tension * slope + beam.foundation * w)
-    with suppress(InputError):
+    beam, x = field.beam, np.linspace(0.0, field.beam.length, 401)
+    w, tilt, bend = (abs(field.derivative(x, order)) for order in range(3))
+    slope = float(tilt.max())
+    bends = f"{what} bends the beam by {with_unit(float(w.max()))}"
+    failure = f"{bends}, {per_cent(float(w.max()) / beam.length)} of its length"
+    found = [Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
+                    limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
+                    remedy=remedy, is_error=False)]  # fmt: skip
+    known = all(piece.youngs_modulus and piece.area for piece in beam.pieces)
+    if known and slope and all(FIXED[support].deflection for support in beam.supports):
         axial = beam.length / sum(piece.length / piece.axial_stiffness for piece in beam.pieces)
-        return float(axial * slope.mean() ** 2 / (2.0 * energy)) if energy > 0.0 else 0.0
-    return 0.0
+        bending = np.array([piece.bending_stiffness for piece in beam.pieces])[piece_at(beam, x)]
+        energy = np.trapezoid(bending * bend**2 + beam.tension * tilt**2 + beam.foundation * w**2, x)
+        ratio = float(axial * np.trapezoid(tilt**2, x) ** 2 / (2.0 * beam.length * energy))
+        c = 2.0 / (3.0 * ratio) ** 0.5 * sinh(asinh(1.5 * (3.0 * ratio) ** 0.5) / 3.0)
+        size = ratio * c**2 if static else (1.0 + 0.75 * ratio) ** 0.5 - 1.0
+        effect = f"{per_cent(size)} too {'much' if static else 'low frequencies'} unless an end slides along it"
+        found.append(Margin(name="stretching under " + what, size=size, limit=STRETCHED, failure=f"{bends}, {effect}",
+                            condition=f"an end may slide along the beam ({bends})", remedy=remedy))  # fmt: skip
+    return found
 
 
 def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None = None) -> list[Margin]:
@@ -263,11 +243,7 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
 def figure_margins(
     name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache, settings: Settings = ()
 ) -> list[Margin]:
-    """Conditions of single quantities: variation of a crest speed along the beam, distance from a theoretical order.
-
-    |w| is between |A+| - |A-| and |A+| + |A-|, and the velocity at the crests is inverse to it: the fastest over the
-    slowest crests are the standing-wave ratio.
-    """
+    """Condition of `wave.crest_speed`, inverse to |w| at the crests, and of `mode.order`, near the order in theory."""
     from verify.analysis.comparison import ORDER_SPREAD
     from verify.quantities.base import evaluate
 
@@ -276,16 +252,14 @@ def figure_margins(
         fast = f"the fastest over the slowest crests along the beam are the standing-wave ratio, {ratio:.3g}"
         return [Margin(name="variation of the crest speed along the beam", size=ratio, fine=UNEVEN[0], limit=UNEVEN[1],
                        condition=f"the crest speed of the rms amplitude is meant ({fast})", is_error=False,
-                       failure=f"a nearly standing wave has no crest speed: {fast}",
-                       remedy="choose another phase_deg or frequency_hz")]  # fmt: skip
-    if name == "mode.order" and arguments["model"] in MODELS:
-        order = Variant(arguments["model"], settings).expected_order(cache.beam)
-        observed: Any = evaluate(name, arguments, scene, cache)
-        if order is not None:
-            condition = f"the sizes count as asymptotic: the observed order is {observed:.2f}, in theory {order}"
-            return [Margin(name="observed order", size=abs(observed - order), fine=0.2 * ORDER_SPREAD,
-                           limit=ORDER_SPREAD, condition=condition, is_error=False)]  # fmt: skip
-    return []
+                       failure=f"a nearly standing wave has no crest speed: {fast}")]  # fmt: skip
+    known = name == "mode.order" and arguments["model"] in MODELS
+    if (order := Variant(arguments["model"], settings).expected_order(cache.beam) if known else None) is None:
+        return []
+    observed: Any = evaluate(name, arguments, scene, cache)
+    condition = f"the sizes count as asymptotic: the observed order is {observed:.2f}, in theory {order}"
+    return [Margin(name="observed order", size=abs(observed - order), fine=0.2 * ORDER_SPREAD, limit=ORDER_SPREAD,
+                   condition=condition, is_error=False)]  # fmt: skip
 
 
 def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:

@@ -140,11 +140,7 @@ def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None =
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
 def bracket(cache: "SolutionCache", options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
-    """Segments below, Hermite elements above the exact frequency of a bare uniform beam without clamped ends.
-
-    Bare: without sections, axial force, foundation, attached masses and springs; by Euler-Bernoulli theory, with equal
-    parts. Clamped ends need the wall joint wall = half.
-    """
+    """Segments below, fem above the exact frequency of a uniform beam: no clamped end, axial force or attachments."""
     return cache.bracket(mode, count, options.settings)
 
 
@@ -183,9 +179,8 @@ def rule_frequency(
 def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
     """Quarter of the bending wavelength: best distance of a force from a pinned end; 0.364 of one from a clamped end.
 
-    The wave of a force at d in a half-infinite beam is proportional to sin kd beside a pinned end, to
-    sin kd - cos kd + e^{-kd} beside a clamped end, and to cos kd - sin kd + e^{-kd} beside a free end, where it is
-    largest at the end itself. The paper's distance is that of pinned ends.
+    A force at d in a half-infinite beam causes a wave proportional to sin kd beside a pinned end (the paper's), to
+    sin kd - cos kd + e^{-kd} beside a clamped one; beside a free end it is best at the end itself.
     """
     closed_forms.check_uniform(scene.beam)
     return sqrt(0.125 * pi * scene.beam.wave_constant / opt.drive_frequency(scene, frequency_hz))

@@ -103,14 +103,9 @@ MEASURES = {
     "signed_area_spread": ("1", "Spread (max - min)/|mean| of the signed area of the surface ellipses in the window."),
     "crest_speed": (
         "m/s",
-        "Surface velocity along +x at the wave crests, that of a slider: against the wave, of the sign opposite to "
-        "wave.energy_flux. At the rms amplitude; along the beam the fastest over the slowest crests are the "
-        "standing-wave ratio.",
+        "Surface velocity along +x at crests of rms amplitude; its sign is against the energy flux.",
     ),
-    "energy_flux": (
-        "W",
-        "Power transmitted towards +x at the middle of the window by the two fitted waves, of the wave's sign.",
-    ),
+    "energy_flux": ("W", "Power transmitted towards +x at the middle of the window by the two fitted waves."),
 }
 for _name, (_unit, _text) in MEASURES.items():
     quantity(f"wave.{_name}", unit=_unit, summary=_text, reads=DRIVEN, devices=True)(_measure(_name))
@@ -235,10 +230,7 @@ def lumped_swr(
 def fastest_crests(
     scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
-    """Largest crest speed at reflections up to `limit`: forces in place, frequency within 1.5 %, phase 5 to 175 deg.
-
-    Of the exact beam; the sign is that of `wave.crest_speed`.
-    """
+    """Largest crest speed at reflections up to `limit`: forces in place, frequency within 1.5 %, phase 5 to 175 deg."""
     from verify.travelling_wave import maximum_crest_speed
 
     return maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed
