@@ -148,8 +148,7 @@ def test_linear_theory_ends_with_the_slope():
     beam = Beam(**BRASS, supports=("clamped", "free"))
     for force, level in ((0.05, "trusted"), (0.2, "conditional"), (0.5, "not trusted")):
         field = MODELS["analytic"].build(beam).harmonic([PointForce(position=0.3, amplitude=force)], 1e-3)
-        (slope,) = linearity_margins("the drive", field, "", static=True)
-        assert slope.level == level
+        assert linearity_margins("the drive", field, "", static=True)[0].level == level
 
 
 @pytest.mark.parametrize(("force", "within"), [(0.02, 1e-4), (0.3, 0.01), (5.0, 0.4)])
