@@ -2,19 +2,32 @@
 
 import math
 
+import numpy as np
 import pytest
+from msgspec.structs import replace
+from scipy.optimize import brentq
 
 from verify import Beam
-from verify.analysis.margins import beam_margins, marked, run_margins, sag_margins, slope_margin, sufficient_count
+from verify.analysis.margins import (
+    beam_margins,
+    figure_margins,
+    linearity_margins,
+    marked,
+    run_margins,
+    sag_margins,
+    sufficient_count,
+)
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of, void
 from verify.linear.registry import MODELS
 from verify.problem.beam import PointForce
 from verify.quantities.base import evaluate
+from verify.quantities.waves import FieldOptions, driven_case
 from verify.scene.load import load_scene, scene_from
 from verify.studies.motor import Motor
 from verify.studies.spectrum import Spectrum
 from verify.studies.sweep import quantity_margins
+from verify.waves.driven_case import driven
 
 PAPER = load_scene("paper").beam
 BRASS = {"length": 0.3, "width": 0.012, "thickness": 0.0008, "youngs_modulus": 105e9, "density": 8500.0}
@@ -135,7 +148,28 @@ def test_linear_theory_ends_with_the_slope():
     beam = Beam(**BRASS, supports=("clamped", "free"))
     for force, level in ((0.05, "trusted"), (0.2, "conditional"), (0.5, "not trusted")):
         field = MODELS["analytic"].build(beam).harmonic([PointForce(position=0.3, amplitude=force)], 1e-3)
-        assert slope_margin("the drive", field, "").level == level
+        assert linearity_margins("the drive", field, "", static=True)[0].level == level
+
+
+@pytest.mark.parametrize(("force", "within"), [(0.02, 1e-4), (0.3, 0.01), (5.0, 0.4)])
+def test_a_preload_between_fixed_ends_bends_less_by_the_tension_of_its_stretching(force, within):
+    """The tension EA/2L int w'^2 dx of the deflection under it is a root; errors without it 0.2, 28 and 410 %."""
+    beam, load = Beam(**BRASS, supports=("clamped", "clamped")), [PointForce(position=0.11, amplitude=force)]
+    under = lambda one: MODELS["analytic"].build(replace(beam, tension=one)).harmonic(load, 1e-2)  # noqa: E731
+    stretched = lambda one: 504e3 * np.mean(abs(under(one).slope(np.linspace(0.0, 0.3, 1001))) ** 2)  # noqa: E731
+    tension = brentq(lambda one: stretched(one) - one, 0.0, stretched(0.0))
+    linear, tense = (abs(under(one).deflection(0.11)[0]) for one in (0.0, tension))
+    (_, margin) = linearity_margins("the preload", under(0.0), "", static=True)
+    assert margin.size == pytest.approx(linear / tense - 1.0, abs=within)
+
+
+def test_frequencies_of_a_pinned_beam_grow_by_its_duffing_coefficient():
+    """3/16 (a/r)^2 in omega^2 (Woinowsky-Krieger 1950), at the resonance of mode 1."""
+    model = MODELS["analytic"].build(Beam(**BRASS, supports=("pinned", "pinned")))
+    field = model.harmonic([PointForce(position=0.11, amplitude=3e-7)], model.frequency_hz(1) * (1.0 + 1e-5))
+    square = 12.0 * (abs(field.deflection(0.15)[0]) / 0.0008) ** 2
+    (_, margin) = linearity_margins("the drive", field, "")
+    assert (1.0 + margin.size) ** 2 - 1.0 == pytest.approx(3.0 / 16.0 * square, rel=1e-3)
 
 
 def test_a_quantity_has_the_margins_of_its_model_and_its_run():
@@ -146,3 +180,18 @@ def test_a_quantity_has_the_margins_of_its_model_and_its_run():
     assert {"discretisation of 31 Hermite elements", "lift-off", "bending across the width"} <= set(names)
     (run,) = cache.motions.values()
     assert by_name(run_margins(run, scene.slider, "elements"))["lift-off"].size == run.margins.lift_off
+
+
+@pytest.mark.parametrize(("phase", "level"), [(77.0, "trusted"), (31.0, "conditional"), (2.0, "not trusted")])
+def test_a_crest_speed_varies_along_the_beam_with_the_inverse_of_the_amplitude(phase, level):
+    scene = load_scene("paper")
+    field = driven(driven_case(scene, FieldOptions(phase_deg=phase)), SolutionCache(scene.beam))
+    amplitudes = abs(field.deflection(np.linspace(0.125, 0.375, 20001)))
+    (margin,) = figure_margins("wave.crest_speed", {"phase_deg": phase}, scene, SolutionCache(scene.beam))
+    assert (margin.size, margin.level) == (pytest.approx(amplitudes.max() / amplitudes.min(), rel=0.02), level)
+
+
+def test_an_order_away_from_its_theoretical_one_has_its_condition():
+    scene, arguments = load_scene("steel-cantilever"), {"model": "segment", "mode": 8, "counts": [160, 320, 640]}
+    margins = quantity_margins("mode.order", arguments, scene, SolutionCache(scene.beam))
+    assert by_name(margins)["observed order"].level == "conditional"

@@ -93,17 +93,12 @@ def test_a_resonance_is_a_gap_among_other_frequencies_and_refused_alone(titanium
 # --- Best drive ---
 
 
+BRASS = {"length": 0.3, "width": 0.012, "thickness": 0.0008, "youngs_modulus": 100e9, "density": 8500.0}
+
+
 def brass(tip=0.002, loss_factor=0.0):
-    return Beam(
-        length=0.3,
-        width=0.012,
-        thickness=0.0008,
-        youngs_modulus=100e9,
-        density=8500.0,
-        supports=("clamped", "free"),
-        mass=(PointMass(position=0.3, mass=tip),),
-        loss_factor=loss_factor,
-    )
+    body = PointMass(position=0.3, mass=tip)
+    return Beam(**BRASS, supports=("clamped", "free"), mass=(body,), loss_factor=loss_factor)
 
 
 def brass_case(model=ExactModel, positions=(0.02, 0.28), frequency=2000.0, loss_factor=0.0, **settings):

@@ -95,8 +95,8 @@ def test_the_same_from_time_series_with_trend_noise_and_broken_periods(gamma, pe
     series = series + 3e-7 + 2e-4 * times[:, None] + 1e-8 * rng.standard_normal(series.shape)
     found = measure_series(BEAM, x, times, series, 4276.0, k=135.2)
     assert found.reflection == pytest.approx(gamma, abs=1e-3)
-    assert found.crest_speed == pytest.approx(measure(field, WINDOW, 135.2).crest_speed, rel=5e-3)
     wanted = measure(field, WINDOW, 135.2)
+    assert found.crest_speed == pytest.approx(wanted.crest_speed, rel=5e-3)
     assert found.ellipses[0].mean() == pytest.approx(wanted.ellipses[0].mean(), rel=0.04)
 
 
@@ -128,17 +128,13 @@ def test_the_ellipse_of_a_point_is_that_of_its_path():
     far = radius.argmax()
     assert np.tan(np.deg2rad(tilt[0])) == pytest.approx(py[far] / px[far], rel=1e-3)
     swept = 0.5 * np.sum(px[:-1] * np.diff(py) - py[:-1] * np.diff(px))
-    assert swept == pytest.approx(
-        -0.5 * np.pi * area[0], rel=1e-6
-    )  # e^{+i omega t}: negative area turns counter-clockwise
+    assert swept == pytest.approx(-0.5 * np.pi * area[0], rel=1e-6)  # negative area turns counter-clockwise
 
 
 def test_a_wave_towards_plus_x_turns_counter_clockwise_and_moves_crests_backwards():
     found = measure(two_waves(1e-6, 0.0), WINDOW, 135.2)
     assert found.s3_range[2] < 0.0
-    assert found.ellipses[0] == pytest.approx(
-        np.full(len(found.x), -found.guide.axis_ratio(found.omega, found.waves.wavenumber)), rel=1e-12
-    )
+    assert found.ellipses[0] == pytest.approx(-found.guide.axis_ratio(found.omega, found.waves.wavenumber), rel=1e-12)
     assert found.crest_speed == pytest.approx(-2 * np.pi * 4276 * 0.0005 * 135.2 * 1e-6, rel=1e-12)
     field = two_waves(1e-6, 0.0)
     t = -np.angle(field.deflection(0.2)[0]) / field.omega  # when the surface point at x = 0.2 is highest
@@ -171,9 +167,8 @@ def test_the_mean_axis_ratio_is_that_of_a_pure_wave_on_a_thin_beam(gamma, backwa
 def test_the_standing_wave_ratio_follows_its_law_undamped(frequency):
     kl = wavenumber(BEAM, frequency).real * 0.5
     law = np.sqrt((1 + abs(np.cos(kl))) / (1 - abs(np.cos(kl))))
-    assert measure(
-        driven(frequency=frequency), WINDOW, wavenumber(BEAM, frequency)
-    ).standing_wave_ratio == pytest.approx(law, rel=1e-6)
+    found = measure(driven(frequency=frequency), WINDOW, wavenumber(BEAM, frequency))
+    assert found.standing_wave_ratio == pytest.approx(law, rel=1e-6)
 
 
 def test_the_signed_area_is_the_energy_flux():
@@ -219,9 +214,7 @@ def test_the_best_frequency_is_where_the_law_is_least():
         best_frequency(case(ExactModel(BEAM)), 0.001)
 
 
-@pytest.mark.parametrize(
-    "model", [ExactModel(BEAM), SegmentModel(BEAM, 49), HermiteModel(BEAM, 49)], ids=lambda m: m.name
-)
+@pytest.mark.parametrize("model", [ExactModel(BEAM), SegmentModel(BEAM, 49), HermiteModel(BEAM, 49)])
 def test_a_force_on_a_support_makes_no_wave_to_measure(model):
     with pytest.raises(NoFigureError, match="the field is zero in the window"):
         measured(case(model, d=0.0))
@@ -275,16 +268,8 @@ def test_a_window_holds_no_attachment_no_device_and_a_wave(beam, devices, messag
 
 # --- Rotations of thick beams ---
 
-BAR = Beam(
-    length=0.2,
-    width=0.02,
-    thickness=0.018,
-    youngs_modulus=114e9,
-    density=4430.0,
-    poissons_ratio=0.33,
-    loss_factor=0.01,
-    supports=("free", "clamped"),
-)
+SIZES = {"length": 0.2, "width": 0.02, "thickness": 0.018, "youngs_modulus": 114e9, "density": 4430.0}
+BAR = Beam(**SIZES, poissons_ratio=0.33, loss_factor=0.01, supports=("free", "clamped"))
 FORCE = (PointForce(position=0.045),)
 
 

@@ -17,8 +17,8 @@ EIGENVALUE_FLOOR = 2e-14
 """Bound of rounding in a relative frequency error (measured: 1.1e-14 up to 10^4 segments or elements)."""
 ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
 """Smallest error for an observed order; below it rounding affects the order."""
-ORDER_SPREAD = 1.0
-"""Largest difference between the orders of neighbouring sizes in the asymptotic range."""
+ORDER_SPREAD = 0.5
+"""Largest distance of orders from size to size from the theoretical one, or their middle, in the asymptotic range."""
 AT_REST = 1e-11
 """Fraction of the typical size below which a shape is zero, such as mode 3 of a pinned beam at the nodes of 3 parts."""
 LEAST_MAC = 0.5
@@ -146,14 +146,14 @@ def asymptotic_order(
 ) -> float:
     """`observed_order` in the asymptotic range: orders from size to size within `ORDER_SPREAD` of `expected`.
 
-    Without `expected`, within `ORDER_SPREAD` of each other. Raises InputError outside the asymptotic range: sizes are
+    Without `expected`, of the middle between them. Raises InputError outside the asymptotic range: sizes are
     too coarse, or the error is about to change sign.
     """
     order = observed_order(counts, errors, label)
     by_size = sorted(zip(counts, np.abs(errors), strict=True))
     orders = [float(np.log(e / f) / np.log(m / n)) for (n, e), (m, f) in pairwise(by_size)]
-    low, high = (min(orders), max(orders)) if expected is None else (expected, expected)
-    if min(orders) <= 0.0 or max(orders) - low > ORDER_SPREAD or high - min(orders) > ORDER_SPREAD:
+    middle = 0.5 * (min(orders) + max(orders)) if expected is None else expected
+    if min(orders) <= 0.0 or max(orders) - middle > ORDER_SPREAD or middle - min(orders) > ORDER_SPREAD:
         listed = ", ".join(f"{one:.2f}" for one in orders)
         raise InputError(
             f"{label or f'counts = {list(counts)}'}: outside the asymptotic range, orders from size to size are "

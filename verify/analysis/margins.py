@@ -5,10 +5,10 @@ one-way coupling, lift-off, convergence and linearity; `verdict` derives the lev
 """
 
 from bisect import bisect_left
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from math import inf, pi
-from typing import TYPE_CHECKING
+from math import asinh, inf, pi, sinh
+from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
@@ -26,11 +26,14 @@ if TYPE_CHECKING:
     from verify.dynamics.result import Motion
     from verify.linear.field import HarmonicField
     from verify.problem.slider import Slider
+    from verify.scene.model import Scene
 
 MOST_PLATES = 60
 """Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
 SLOPE = 0.1, 0.3
 """Slopes up to which linear theory is trusted, and trusted under a condition: their squares are relative lengths."""
+UNEVEN = 2.0, 25.0
+"""Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
 OFF = 0.05
 """Discretisation error from which a chart is marked."""
 STILL = 1e-4
@@ -169,20 +172,46 @@ def marked(title: str, margins: Iterable[Margin]) -> str:
     return f"{title} ({', '.join(off)})" if off else title
 
 
-def slope_margin(what: str, field: "HarmonicField", remedy: str) -> Margin:
-    """Linear theory under the deflection of a field: the square of the largest slope is a relative length."""
+def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static: bool = False) -> list[Margin]:
+    """Linear theory under a deflection w: its largest slope, whose square is a relative length, and its stretching.
+
+    Linear models assume that an end slides. Between two ends that are pinned or clamped and fixed there is a tension
+    (EA/2L) int w'^2 dx (S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35). With c times the linear shape w, a static
+    load of work 2 U and U = 1/2 int EI w''^2 dx (and the energy of axial force and foundation) the potential energy is
+    U (c^2 - 2 c) + (EA/8L) (int w'^2 dx)^2 c^4, least for c + S c^3 = 1, where S = EA (int w'^2 dx)^2 / (4 L U): a
+    `static` deflection is too large by 1/c - 1 = S c^2, exact to first order. A free vibration c(t) is Duffing's, of
+    omega^2 (1 + 3 S/4) at amplitude 1: 3/16 (a/r)^2 of the source for w = a sin(pi x/L), I = A r^2. S = 4: both 1.
+    """
     import numpy as np
 
-    x = np.linspace(0.0, field.beam.length, 401)
-    bent, slope = float(abs(field.deflection(x)).max()), float(abs(field.slope(x)).max())
-    failure = f"{what} bends the beam by {with_unit(bent)}, {per_cent(bent / field.beam.length)} of its length"
-    return Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
-                  limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
-                  remedy=remedy, is_error=False)  # fmt: skip
+    from verify.linear.surface import piece_at
+    from verify.problem.supports import FIXED
+
+    beam, x = field.beam, np.linspace(0.0, field.beam.length, 401)
+    w, tilt, bend = (abs(field.derivative(x, order)) for order in range(3))
+    slope = float(tilt.max())
+    bends = f"{what} bends the beam by {with_unit(float(w.max()))}"
+    failure = f"{bends}, {per_cent(float(w.max()) / beam.length)} of its length"
+    found = [Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
+                    limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
+                    remedy=remedy, is_error=False)]  # fmt: skip
+    known = all(piece.youngs_modulus and piece.area for piece in beam.pieces)
+    if known and slope and all(FIXED[support].deflection for support in beam.supports):
+        axial = beam.length / sum(piece.length / piece.axial_stiffness for piece in beam.pieces)
+        bending = np.array([piece.bending_stiffness for piece in beam.pieces])[piece_at(beam, x)]
+        energy = np.trapezoid(bending * bend**2 + beam.tension * tilt**2 + beam.foundation * w**2, x)
+        ratio = float(axial * np.trapezoid(tilt**2, x) ** 2 / (2.0 * beam.length * energy))
+        c = 2.0 / (3.0 * ratio) ** 0.5 * sinh(asinh(1.5 * (3.0 * ratio) ** 0.5) / 3.0)
+        size = ratio * c**2 if static else (1.0 + 0.75 * ratio) ** 0.5 - 1.0
+        effect = f"{bends}, {per_cent(size)} {'too much' if static else 'in frequency'}"
+        found.append(Margin(name="stretching under " + what, size=size, limit=1.0, is_error=False, remedy=remedy,
+                            condition=f"an end may slide along the beam (otherwise {effect})",
+                            failure=f"{effect} unless an end slides along it"))  # fmt: skip
+    return found
 
 
 def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None = None) -> list[Margin]:
-    """Static sag of the beam under a slider's weight and preload: its slope, and its curvature under the feet.
+    """Static sag of the beam under a slider's weight and preload: its slope, stretching, and curvature under feet.
 
     The curvature counts over `amplitude` of the wave, m, and only with one-way coupling, which neglects it. Empty for a
     beam with rigid-body motions and for sliders without load.
@@ -202,12 +231,34 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
     except InputError:
         return []
     what, remedy = "the preload" if slider.preload else "the slider's weight", "press it less, or stiffen the beam"
-    found = [slope_margin(what, still, remedy)]
+    found = linearity_margins(what, still, remedy, static=True)
     if amplitude and slider.coupling == "one-way":
         bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
         found.append(Margin(name="sag under a foot relative to the wave's amplitude", size=float(bent) / amplitude,
                             remedy="use coupling = 'two-way', or shorter feet"))  # fmt: skip
     return found
+
+
+def figure_margins(
+    name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache, settings: Settings = ()
+) -> list[Margin]:
+    """Condition of `wave.crest_speed`, inverse to |w| at the crests, and of `mode.order`, near the order in theory."""
+    from verify.analysis.comparison import ORDER_SPREAD
+    from verify.quantities.base import evaluate
+
+    if name == "wave.crest_speed":
+        ratio: Any = evaluate("wave.standing_wave_ratio", arguments, scene, cache)
+        fast = f"the fastest over the slowest crests along the beam are the standing-wave ratio, {ratio:.3g}"
+        return [Margin(name="variation of the crest speed along the beam", size=ratio, fine=UNEVEN[0], limit=UNEVEN[1],
+                       condition=f"the crest speed of the rms amplitude is meant ({fast})", is_error=False,
+                       failure=f"a nearly standing wave has no crest speed: {fast}")]  # fmt: skip
+    known = name == "mode.order" and arguments["model"] in MODELS
+    if (order := Variant(arguments["model"], settings).expected_order(cache.beam) if known else None) is None:
+        return []
+    observed: Any = evaluate(name, arguments, scene, cache)
+    condition = f"the sizes count as asymptotic: the observed order is {observed:.2f}, in theory {order}"
+    return [Margin(name="observed order", size=abs(observed - order), fine=0.2 * ORDER_SPREAD, limit=ORDER_SPREAD,
+                   condition=condition, is_error=False)]  # fmt: skip
 
 
 def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:

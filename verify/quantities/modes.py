@@ -140,7 +140,7 @@ def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None =
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
 def bracket(cache: "SolutionCache", options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
-    """Two-sided bound on the exact frequency: segments below, Hermite elements above."""
+    """Segments below, fem above the exact frequency of a uniform beam: no clamped end, axial force or attachments."""
     return cache.bracket(mode, count, options.settings)
 
 
@@ -177,7 +177,11 @@ def rule_frequency(
 
 @quantity("drive.quarter_wavelength", unit="m", reads=("beam", "drive"))
 def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
-    """Quarter of the bending wavelength, the paper's distance of a force from its end of the beam."""
+    """Quarter of the bending wavelength: best distance of a force from a pinned end; 0.364 of one from a clamped end.
+
+    A force at d in a half-infinite beam causes a wave proportional to sin kd beside a pinned end (the paper's), to
+    sin kd - cos kd + e^{-kd} beside a clamped one; beside a free end it is best at the end itself.
+    """
     closed_forms.check_uniform(scene.beam)
     return sqrt(0.125 * pi * scene.beam.wave_constant / opt.drive_frequency(scene, frequency_hz))
 

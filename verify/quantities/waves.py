@@ -101,7 +101,10 @@ MEASURES = {
         "Feeny's index 1/cond([Re w, Im w]) over whole half wavelengths; (1 - Gamma)/(1 + Gamma) for two waves.",
     ),
     "signed_area_spread": ("1", "Spread (max - min)/|mean| of the signed area of the surface ellipses in the window."),
-    "crest_speed": ("m/s", "Surface velocity along +x at the wave crests."),
+    "crest_speed": (
+        "m/s",
+        "Surface velocity along +x at crests of rms amplitude; its sign is against the energy flux.",
+    ),
     "energy_flux": ("W", "Power transmitted towards +x at the middle of the window by the two fitted waves."),
 }
 for _name, (_unit, _text) in MEASURES.items():
@@ -227,7 +230,7 @@ def lumped_swr(
 def fastest_crests(
     scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
 ) -> float:
-    """Largest crest speed of the exact beam with reflection <= `limit`, frequency within 1.5 %, phase 5 to 175 deg."""
+    """Largest crest speed at reflections up to `limit`: forces in place, frequency within 1.5 %, phase 5 to 175 deg."""
     from verify.travelling_wave import maximum_crest_speed
 
     return maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed

@@ -167,12 +167,12 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
 
 def _margins(scene: Scene, cache: "SolutionCache") -> "tuple[Margin, ...]":
     """Margins of the exact steady motion; none without a drive and at a resonance."""
-    from verify.analysis.margins import sag_margins, slope_margin
+    from verify.analysis.margins import linearity_margins, sag_margins
     from verify.quantities.waves import FieldOptions, driven_case
     from verify.waves.driven_case import driven
 
     found = sag_margins(cache, scene.slider) if scene.slider else []
     if scene.forces:
         with suppress(InputError):
-            found.append(slope_margin("the drive", driven(driven_case(scene, FieldOptions()), cache), "drive it less"))
+            found += linearity_margins("the drive", driven(driven_case(scene, FieldOptions()), cache), "drive it less")
     return tuple(found)

@@ -23,14 +23,12 @@ if TYPE_CHECKING:
 
 Counts: TypeAlias = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(min_length=1)]
 Row: TypeAlias = dict[str, Any]
-ORDER_TOLERANCE = 1.0
-"""Distance of an observed order from the theoretical one up to which sizes count as asymptotic."""
 STYLES = ("-o", "--s", ":^", "-.d", "-v")
 """Line and marker of each mode."""
 NOTES = [
-    "Order: from the size before. GCI: grid convergence index of this size and the two before, the error bound that a "
+    "Order: from the size before. GCI: grid convergence index of this size and the two before, the uncertainty that a "
     "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
-    "In range: the order at this size and at all larger ones is within 1 of the theoretical order (of the last "
+    "In range: the order at this size and at all larger ones is within 0.5 of the theoretical order (of the last "
     "observed order where theory gives none): the asymptotic range.",
     "Time: warm solve of all modes, assembly included, median of repeats.",
 ]
@@ -75,7 +73,9 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
             columns += [percent("width", ".4g"), percent("error of the mean")]
             rule = " with wall half" if "clamped" in cache.beam.supports else ""
             bound = f"Two-sided bound: segments{rule} below, Hermite elements above"
-            note = "The exact frequency lies in it for every N; no reference solution is needed for that."
+            note = (
+                "For a bare uniform beam the exact frequency lies in it at every N; that needs no reference solution."
+            )
             tables.append(Table(bound, columns, [tuple(row.values()) for row in bounds], [note]))
         errors = ", ".join(settled)
         return Result(
@@ -89,7 +89,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:
         """A row for each mode, variant and size, in this order."""
-        from verify.analysis.comparison import ORDER_FLOOR, grid_convergence, relative_error
+        from verify.analysis.comparison import ORDER_FLOOR, ORDER_SPREAD, grid_convergence, relative_error
         from verify.analysis.solution_cache import theory_of
         from verify.linear.registry import MODELS
         from verify.timing import interleaved_medians
@@ -135,7 +135,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                     two, observed = (last["error"] or 0.0, finer["error"] or 0.0), finer["order"]
                     if observed is not None:
                         expected = observed if expected is None else expected
-                        finer["asymptotic"] = within = within and abs(observed - expected) <= ORDER_TOLERANCE
+                        finer["asymptotic"] = within = within and abs(observed - expected) <= ORDER_SPREAD
                     elif two[0] * two[1] < 0.0 and min(map(abs, two)) >= ORDER_FLOOR:  # the error changes its sign
                         finer["asymptotic"] = within = False
         return rows
@@ -202,6 +202,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
     def _draw_errors(self, cache: "SolutionCache", rows: list[Row], bounds: list[Row], ax: "Axes") -> None:
         from matplotlib.ticker import NullLocator
 
+        from verify.analysis.comparison import ORDER_SPREAD
         from verify.report.plotting import PAPER, slope_guide
 
         mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
@@ -229,7 +230,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         means = [row | {"error": row["mean_error"]} for row in bounds if row["mean_error"]]
         if len(means) > 1 and means[-1]["N"] > means[-2]["N"]:  # of the highest mode
             ratio, growth = (means[-2]["error"] / means[-1]["error"], means[-1]["N"] / means[-2]["N"])
-            guides |= {6: means} if abs(log(abs(ratio)) / log(growth) - 6.0) <= ORDER_TOLERANCE else {}
+            guides |= {6: means} if abs(log(abs(ratio)) / log(growth) - 6.0) <= ORDER_SPREAD else {}
         for order, own in guides.items():
             if order and own and span:
                 slope_guide(ax, -order, (own[0]["N"], 250.0 * abs(own[0]["error"])), span)

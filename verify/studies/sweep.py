@@ -130,7 +130,7 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, A
 
 def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
     """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
-    from verify.analysis.margins import beam_margins, run_margins, sag_margins
+    from verify.analysis.margins import beam_margins, figure_margins, run_margins, sag_margins
     from verify.analysis.variants import DEFAULTS
     from verify.linear.registry import EXACT, MODELS
     from verify.quantities.base import QUANTITIES
@@ -147,6 +147,7 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
         at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
         with suppress(InputError):
             found += beam_margins(cache, [size], **at, settings=settings)
+        found += figure_margins(name, arguments, scene, cache, settings)
     runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
     if scene.slider is not None and (sliding := [run for run in runs if run.coupling is not None]):
         found += [one for run in sliding for one in run_margins(run, scene.slider, MODELS[run.model].title)]

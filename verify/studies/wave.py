@@ -101,8 +101,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
         columns += [si("crest speed there", "m/s", "+.5g")]
         notes = [
-            "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Right: at the "
-            "model's own frequency of least reflection.",
+            "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest "
+            "speed: of the surface, against the wave. Right: at the model's own frequency of least reflection.",
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
