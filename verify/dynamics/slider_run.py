@@ -24,7 +24,7 @@ from verify.linear.time_basis import TimeBasis
 
 COLUMNS = {
     "travelled": lay.KEPT_X, "speed": lay.KEPT_V, "friction": lay.KEPT_FRICTION, "normal_force": lay.KEPT_NORMAL,
-    "surface_speed": lay.KEPT_SURFACE, "contact_share": lay.KEPT_TOUCH, "stuck_share": lay.KEPT_STUCK,
+    "surface_speed": lay.KEPT_SURFACE, "contact_fraction": lay.KEPT_TOUCH, "stick_fraction": lay.KEPT_STUCK,
     "friction_loss": lay.KEPT_LOSS, "tangential_work": lay.KEPT_ALONG,
 }  # fmt: skip
 """Column of the engine's samples by field of `Motion`."""

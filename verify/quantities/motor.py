@@ -1,6 +1,7 @@
 """Quantities of a motor: a slider with unilateral contact, at a prescribed speed or free."""
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
@@ -83,8 +84,9 @@ _at_speed("force_speed", "N", "Mean friction force on the slider", lambda at: at
 _at_speed("power", "W", "Mean mechanical power on the slider", lambda at: at.power, "force")
 _at_speed("efficiency", "1", "Power over tangential surface power", lambda at: at.efficiency, "force", "powers")
 _at_speed("normal_mean", "N", "Mean normal force on the slider", lambda at: at.means.normal_force, "normal force")
-_at_speed("contact_share", "1", "Fraction of points and time in contact", lambda at: at.means.contact_share, "shares")
-_at_speed("stuck_share", "1", "Fraction of points and time in stick", lambda at: at.means.stuck_share, "shares")
+for _one in ("contact", "stick"):
+    _read = attrgetter(f"means.{_one}_fraction")
+    _at_speed(f"{_one}_fraction", "1", f"Fraction of points and time in {_one}", _read, "fractions")
 _at_speed("friction_power", "W", "Power lost in friction and compliance", lambda at: at.means.friction_power, "powers")
 
 

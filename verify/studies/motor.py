@@ -201,8 +201,8 @@ def _tables(fields: list[Field]) -> "list[Table]":
         percent("best efficiency", ".3g"): lambda field: (
             max(_if(at, at.efficiency, "powers") or 0.0 for at in field.curve) or None
         ),
-        percent("contact", ".3g"): lambda field: last(field, "contact_share"),
-        percent("stick", ".3g"): lambda field: last(field, "stuck_share"),
+        percent("contact", ".3g"): lambda field: last(field, "contact_fraction"),
+        percent("stick", ".3g"): lambda field: last(field, "stick_fraction"),
         si("start", "s", ".3g"): lambda field: field.times["start"],
         si("stop", "s", ".3g"): lambda field: field.times["stop"],
         si("reversal", "s", ".3g"): lambda field: field.times["reversal"],
@@ -216,8 +216,8 @@ def _tables(fields: list[Field]) -> "list[Table]":
         si("±", "N", ".1g"): lambda row: row[1].errors.force,
         si("power", "W", "+.4g"): lambda row: _if(row[1], row[1].power),
         percent("efficiency", ".3g"): lambda row: _if(row[1], row[1].efficiency, "powers"),
-        percent("contact", ".3g"): lambda row: row[1].means.contact_share,
-        percent("stick", ".3g"): lambda row: row[1].means.stuck_share,
+        percent("contact", ".3g"): lambda row: row[1].means.contact_fraction,
+        percent("stick", ".3g"): lambda row: row[1].means.stick_fraction,
         Column("converged"): lambda row: row[1].converged(),
     }
     rows = [(field.name, at) for field in fields for at in field.curve]
