@@ -199,7 +199,7 @@ def test_scenes_without_what_a_study_needs_are_refused(study, scene, word):
 
 def test_motor_figures_equal_the_quantities(run):
     scene = load_scene("preloaded-motor")
-    overview, held = run("preloaded-motor", QUICK).tables
+    overview, _, _, held = run("preloaded-motor", QUICK).tables
     cache = SolutionCache(scene.beam)
     first, arguments = overview.records()[0], {"model": "fem", "count": 49}
     for name, heading in (("stall_force", "stall force"), ("no_load_speed", "no-load speed")):

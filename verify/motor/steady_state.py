@@ -56,8 +56,8 @@ class MotorCase(Struct, frozen=True, kw_only=True):
     forces: tuple[PointForce, ...]
     frequency_hz: float
     slider: Slider
-    model: str = "segment"
-    count: int | None = 49
+    model: str
+    count: int | None = None
     modes: int | None = None
     start: Start = "steady"
     soft_start_periods: float = 0.0

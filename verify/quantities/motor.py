@@ -25,6 +25,7 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
 
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
+    theory: opt.TimeTheory = "euler-bernoulli"
     modal_damping: opt.ModalDamping | None = None
     steps_per_period: Annotated[int, Meta(ge=4, description="least number; stiff contact takes more")] = 61
 
@@ -33,10 +34,11 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         from verify.motor.steady_state import MotorCase
 
         opt.check_count(self.model, self.count)
+        opt.check_time_theory(self.theory)
         opt.check_forces(scene, "a motor")
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("slider.contact is missing: add [slider] with mass, mu and [slider.contact] to the scene")
-        settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__}
+        settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__ if name != "theory"}
         forces, hertz = opt.DriveOptions().forces(scene), opt.drive_frequency(scene)
         return MotorCase(beam=scene.beam, forces=forces, frequency_hz=hertz, slider=scene.slider, **settings)
 
