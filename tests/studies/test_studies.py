@@ -216,3 +216,11 @@ def test_a_free_run_that_is_too_short_is_not_converged(run, renders):
     axes = renders(result)
     assert axes["motor-force"].get_xlabel() == "speed, mm/s"
     assert "mu N" in [line.get_label() for line in axes["motor-force"].lines]
+
+
+def test_the_speed_on_a_standing_wave_is_not_distinguishable_from_zero(run):
+    scene = load_scene("preloaded-motor", ("drive.force.1.phase_deg=0", "slider.position=0.2437"))
+    result = run(scene, replace(QUICK, speeds=2, periods=50))
+    assert "(not distinguishable from zero), stall force" in result.summary
+    row = result.tables[0].records()[0]
+    assert abs(row["free speed"]) < row["its error"] < 1e-3 * row["crest speed"]
