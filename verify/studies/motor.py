@@ -189,7 +189,7 @@ def _with_error(name: str, value: float, error: float, symbol: str) -> str:
 def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
     """Margins of the beam at the drive, free runs, static sag, and figures that have not converged."""
     from verify.analysis.margins import beam_margins, run_margins, sag_margins
-    from verify.analysis.verdict import void
+    from verify.analysis.verdict import Margin, void
     from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
 
@@ -202,6 +202,10 @@ def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
             margins.append(void("the free run", f"{REASONS['free speed']} ({field.name})"))
         if not field.curve[0].converged("force"):
             margins.append(void("the stall force", f"{REASONS['force']} ({field.name})"))
+    if case.slider.coupling == "two-way" and not (case.modal_damping or case.beam.loss_factor):
+        margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, remedy="give modal_damping",
+                              condition="free vibrations of the undamped beam, which decay by contact alone, may be "
+                              "left out"))  # fmt: skip
     return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
 
 
