@@ -50,7 +50,7 @@ def errors(case, steps):
         np.abs(run.height[1:, 0] - rows[:, 0]).max() / 1e-6,
         np.abs(run.pitch[1:, 0] - rows[:, 2]).max() * spans * LENGTH / 1e-6,
     )
-    means = np.array([run.normal_force[1:].mean(), run.friction[1:].mean(), run.contact_share[1:].mean()])
+    means = np.array([run.normal_force[1:].mean(), run.friction[1:].mean(), run.contact_fraction[1:].mean()])
     return motion, *np.abs(means - rows[-1, 4:7] / (PERIODS * PERIOD)) / (foot.load, foot.load, 1.0)
 
 
@@ -89,7 +89,7 @@ def test_a_foot_of_many_points_is_a_driving_layer(phi, r, epsilon):
     run, load = slid(phi, r, epsilon, steps=257)
     found = -run.friction[-1] / (MU * load)
     assert found == pytest.approx(layer.force(phi, r, epsilon), abs=2e-3)
-    assert run.contact_share[-1] == pytest.approx(phi / pi, abs=2e-3)
+    assert run.contact_fraction[-1] == pytest.approx(phi / pi, abs=2e-3)
     assert run.margins.presliding == pytest.approx(epsilon, rel=1e-12)
     assert run.height[-1, 0] / HEIGHT == pytest.approx(cos(phi), abs=2e-3)
 

@@ -169,7 +169,7 @@ def test_a_hard_point_that_stays_on_sticks_and_slips_as_the_ode_says(law, slope)
     def error(steps):
         run = on_strip(slider, amplitude, 0.1, 3, steps, samples=4)
         assert len(run.events[run.events[:, 1] == LEAVES]) == 0
-        assert law == "tanh" or 0.1 < run.stuck_share[1:].mean() < 0.9
+        assert law == "tanh" or 0.1 < run.stick_fraction[1:].mean() < 0.9
         return np.abs(run.speed[1:] - known).max() / np.abs(known).max()
 
     coarse, fine = (np.mean([error(n) for n in steps]) for steps in ((97, 103, 107, 113), (1552, 1648, 1712, 1808)))
@@ -184,7 +184,7 @@ def test_a_point_kept_at_its_place_lands_once_a_period_at_any_speed(speed, steps
     run = on_strip(slider, amplitude, periods=20, steps=steps, samples=21, prescribed_speed=speed, fixed_position=True)
     share = 1.0 - (impact.landing_phase(ratio) - asin(1.0 / ratio)) / (2.0 * pi)
     assert np.count_nonzero(run.events[:, 1] == LANDS) == 20
-    assert run.contact_share[2:].mean() == pytest.approx(share, abs=1e-5)
+    assert run.contact_fraction[2:].mean() == pytest.approx(share, abs=1e-5)
     assert run.energy.slope_work == 0.0
 
 

@@ -53,7 +53,7 @@ def test_force_power_and_efficiency_at_a_speed_are_the_layers(phi, epsilon, rati
     found = steady_state(case, -ratio * CRESTS)
     assert -found.means.force / (MU * load) == pytest.approx(layer.force(phi, ratio, epsilon), abs=3e-3)
     assert found.means.normal_force == pytest.approx(load, rel=1e-3)
-    assert found.means.contact_share == pytest.approx(phi / pi, abs=2e-3)
+    assert found.means.contact_fraction == pytest.approx(phi / pi, abs=2e-3)
     assert found.means.surface_power == pytest.approx(found.power + found.means.friction_power, rel=1e-6)
     if not epsilon:
         assert found.efficiency == pytest.approx(layer.efficiency(phi, ratio), abs=3e-3)

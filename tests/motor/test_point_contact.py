@@ -50,8 +50,8 @@ def test_motion_impulses_and_contact_times_equal_the_event_driven_ode(name):
     assert motion_error(name, 4000).max() < 1e-3
     assert found.normal_force[1:].mean() == pytest.approx(last[PRESSED], abs=5e-6 * LOAD)
     assert found.friction[1:].mean() == pytest.approx(last[DRAGGED], abs=2e-4 * LOAD)
-    assert found.contact_share[1:].mean() == pytest.approx(last[TOUCHED], abs=2e-4)
-    assert found.stuck_share[1:].mean() == pytest.approx(last[STUCK], abs=2e-4)
+    assert found.contact_fraction[1:].mean() == pytest.approx(last[TOUCHED], abs=2e-4)
+    assert found.stick_fraction[1:].mean() == pytest.approx(last[STUCK], abs=2e-4)
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -51,7 +51,7 @@ def errors(name, steps):
     motion = np.abs(motion - states[:, [by.X, by.V, by.Z]]).max(axis=0) / (1e-6, 1e-2, 1e-5)
     pressed, stuck = states[-1, [by.PRESSED, by.STUCK]] / (TURNS * TURN)
     assert stuck > 0.0 or name != "coulomb"
-    return *motion, abs(found.normal_force[1:].mean() - pressed) / LOAD, abs(found.stuck_share[1:].mean() - stuck)
+    return *motion, abs(found.normal_force[1:].mean() - pressed) / LOAD, abs(found.stick_fraction[1:].mean() - stuck)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -113,7 +113,7 @@ def test_a_stiff_contact_under_a_large_preload_tends_to_a_slider_that_never_leav
     for foot in (4e-4, 2e-4, 1e-4):
         contact = Contact(stiffness=2e8, damping=2.0 * np.sqrt(2e8 * foot))
         found = on_strip(Slider(**given, contact=contact, foot=(Foot(mass=foot),)), 1e-6, 0.1, 6, 4000, samples=7)
-        assert np.all(found.contact_share > 0.999)
+        assert np.all(found.contact_fraction > 0.999)
         off.append(np.abs(found.speed - always.speed).max() / np.abs(always.speed).max())
     assert off[-1] < 1e-2
     assert np.log2(np.array(off)[:-1] / np.array(off)[1:]) == pytest.approx(1.0, abs=0.4)
@@ -125,7 +125,7 @@ def held_at(speed, steps):
     asked = {"model": "analytic", "modes": 4, "modal_damping": ZETA, "start": "rest", "samples": 13}
     asked |= {"step": TURN / steps, "prescribed_speed": speed, "fixed_position": True}
     found = simulate(BEAM, FORCES, HERTZ, 12 * TURN, slider=slider, **asked)
-    assert found.contact_share[1:].mean() == pytest.approx(1.0, rel=1e-9)
+    assert found.contact_fraction[1:].mean() == pytest.approx(1.0, rel=1e-9)
     return found.friction[1:].mean() / (slider.mu * slider.preload)
 
 

@@ -199,7 +199,7 @@ def test_scenes_without_what_a_study_needs_are_refused(study, scene, word):
 
 def test_motor_figures_equal_the_quantities(run):
     scene = load_scene("preloaded-motor")
-    overview, held = run("preloaded-motor", QUICK).tables
+    overview, _, _, held = run("preloaded-motor", QUICK).tables
     cache = SolutionCache(scene.beam)
     first, arguments = overview.records()[0], {"model": "fem", "count": 49}
     for name, heading in (("stall_force", "stall force"), ("no_load_speed", "no-load speed")):
@@ -216,3 +216,11 @@ def test_a_free_run_that_is_too_short_is_not_converged(run, renders):
     axes = renders(result)
     assert axes["motor-force"].get_xlabel() == "speed, mm/s"
     assert "mu N" in [line.get_label() for line in axes["motor-force"].lines]
+
+
+def test_the_speed_on_a_standing_wave_is_not_distinguishable_from_zero(run):
+    scene = load_scene("preloaded-motor", ("drive.force.1.phase_deg=0", "slider.position=0.2437"))
+    result = run(scene, replace(QUICK, speeds=2, periods=50))
+    assert "(not distinguishable from zero), stall force" in result.summary
+    row = result.tables[0].records()[0]
+    assert abs(row["free speed"]) < row["its error"] < 1e-3 * row["crest speed"]

@@ -60,9 +60,12 @@ def _run_one(task: Task, as_json: bool) -> None:
     from verify.report.archive import report_name, save_run
     from verify.report.summary import run_data
     from verify.report.terminal import print_run
+    from verify.scene.load import load_scene
     from verify.scene.run import plan, run_scene
+    from verify.studies.base import studies_of
 
-    steps = sum(row.runs for row in plan(task.scene, task.overrides)) if not as_json else None
+    scene = load_scene(task.scene, task.overrides)
+    steps = sum(row.runs for row in plan(scene, task.overrides)) + sum(study.steps for _, study in studies_of(scene))
     with progress(steps, quiet=as_json) as step:
         result = run_scene(task.scene, step, task.overrides)
         name = report_name(result.scene.name, task.overrides)

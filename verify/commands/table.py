@@ -40,7 +40,7 @@ def run_study(
     loaded = load_scene(scene, (*overrides, *(f"{name}.{option}" for option in options)))
     study = dict(studies_of(loaded)).get(name) or convert({}, STUDIES[name], name)
     study.check(loaded)
-    with shared.progress(quiet=any(formats.values())) as step:
+    with shared.progress(study.steps or None, quiet=any(formats.values()), lines=study.steps > 0) as step:
         result = study.run(loaded, SolutionCache(loaded.beam), step)
     shared.show(result, **formats)
     shared.save_charts(result, charts)

@@ -165,9 +165,9 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     """Normal force on the slider, N; may be negative in bilateral contact."""
     surface_speed: Array = NONE
     """Tangential velocity of the surface under the slider, m/s."""
-    contact_share: Array = NONE
+    contact_fraction: Array = NONE
     """Fraction of points and time in contact, 0 to 1."""
-    stuck_share: Array = NONE
+    stick_fraction: Array = NONE
     """Fraction of points and time in stick, 0 to 1."""
     friction_loss: Array = NONE
     """Energy lost in friction and tangential compliance since the previous sample, J."""

@@ -24,7 +24,7 @@ from verify.linear.time_basis import TimeBasis
 
 COLUMNS = {
     "travelled": lay.OUT_X, "speed": lay.OUT_V, "friction": lay.OUT_FRICTION, "normal_force": lay.OUT_NORMAL,
-    "surface_speed": lay.OUT_SURFACE, "contact_share": lay.OUT_TOUCH, "stuck_share": lay.OUT_STUCK,
+    "surface_speed": lay.OUT_SURFACE, "contact_fraction": lay.OUT_TOUCH, "stick_fraction": lay.OUT_STUCK,
     "friction_loss": lay.OUT_LOSS, "tangential_work": lay.OUT_ALONG,
 }  # fmt: skip
 """Column of the engine's samples by field of `Motion`."""

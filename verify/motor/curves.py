@@ -33,7 +33,7 @@ PORTRAIT = 48
 REASONS = {
     "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
     "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
-    "shares": "the fractions of contact and stick have not converged, raise periods or slider.contact.damping",
+    "fractions": "the fractions of contact and stick have not converged, raise periods or slider.contact.damping",
     "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
     "efficiency": "no power flows from the surface to the load, choose a speed between zero and the no-load speed",
     "no load": "mean friction has one sign at all speeds up to twice the crest speed, raise slider.preload",

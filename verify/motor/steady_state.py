@@ -30,7 +30,7 @@ from verify.options import Start
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
 
-Figure = Literal["force", "normal force", "shares", "powers"]
+Figure = Literal["force", "normal force", "fractions", "powers"]
 BATCHES = 16
 FIRST = 48
 """Periods of the first two windows: batches of 3, then of 6 periods, multiples of subharmonics of order 2 and 3."""
@@ -41,7 +41,7 @@ CHAOTIC = 768
 TOLERANCES: "dict[Figure, tuple[float, float]]" = {
     "force": (3e-4, 1e-2),
     "normal force": (3e-3, 1e-2),
-    "shares": (1e-2, 1e-2),
+    "fractions": (1e-2, 1e-2),
     "powers": (1e-2, 1e-2),
 }
 """Largest error over full scale (mu N, N, 1, mu N times the largest slip speed), before and from `CHAOTIC` on."""
@@ -56,8 +56,8 @@ class MotorCase(Struct, frozen=True, kw_only=True):
     forces: tuple[PointForce, ...]
     frequency_hz: float
     slider: Slider
-    model: str = "segment"
-    count: int | None = 49
+    model: str
+    count: int | None = None
     modes: int | None = None
     start: Start = "steady"
     soft_start_periods: float = 0.0
@@ -101,9 +101,9 @@ class Means(NamedTuple):
     """Friction on the slider along +x, N."""
     normal_force: float
     """N."""
-    contact_share: float
+    contact_fraction: float
     """Fraction of points and time in contact."""
-    stuck_share: float
+    stick_fraction: float
     """Fraction of points and time in stick."""
     surface_power: float
     """Power of the surface's tangential motion on the slider, W."""
@@ -173,7 +173,7 @@ def _window(
     if not run.statistics.finished:
         stopped = run.statistics.stopped
         raise InputError(f"steps_per_period = {case.steps_per_period!r}: the slider {stopped}, give more")
-    batches = np.stack([run.friction, run.normal_force, run.contact_share, run.stuck_share], axis=1)[1:]
+    batches = np.stack([run.friction, run.normal_force, run.contact_fraction, run.stick_fraction], axis=1)[1:]
     assert run.energy is not None
     powers = np.array([run.energy.tangential_work, run.energy.friction_loss]) / run.duration
     slider, means = case.slider, Means(*np.append(batches.mean(axis=0), powers).tolist())
@@ -184,13 +184,13 @@ def _window(
             errors = errors._replace(normal_force=abs(means.normal_force - slider.normal_force))
     load, total = max(means.normal_force, slider.normal_force), periods + (last.periods if last else 0)
     fastest = crest_speed(case) + abs(speed)
-    shares: dict[Figure, float] = {
+    relative: dict[Figure, float] = {
         "force": errors.force / (slider.mu * load),
         "normal force": errors.normal_force / load,
-        "shares": max(errors[2:4]),
+        "fractions": max(errors[2:4]),
         "powers": max(errors[4:]) / max(slider.mu * load * fastest, abs(means.surface_power)),
     }
-    missing = tuple(name for name, share in shares.items() if share > TOLERANCES[name][total >= CHAOTIC])
+    missing = tuple(name for name, error in relative.items() if error > TOLERANCES[name][total >= CHAOTIC])
     return SteadyState(speed=speed, means=means, errors=errors, periods=total, not_converged=missing, run=run)
 
 

@@ -1,6 +1,7 @@
 """Quantities of a motor: a slider with unilateral contact, at a prescribed speed or free."""
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
@@ -24,6 +25,7 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
 
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
+    theory: opt.TimeTheory = "euler-bernoulli"
     modal_damping: opt.ModalDamping | None = None
     steps_per_period: Annotated[int, Meta(ge=4, description="least number; stiff contact takes more")] = 61
 
@@ -32,10 +34,11 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         from verify.motor.steady_state import MotorCase
 
         opt.check_count(self.model, self.count)
+        opt.check_time_theory(self.theory)
         opt.check_forces(scene, "a motor")
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("slider.contact is missing: add [slider] with mass, mu and [slider.contact] to the scene")
-        settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__}
+        settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__ if name != "theory"}
         forces, hertz = opt.DriveOptions().forces(scene), opt.drive_frequency(scene)
         return MotorCase(beam=scene.beam, forces=forces, frequency_hz=hertz, slider=scene.slider, **settings)
 
@@ -83,8 +86,9 @@ _at_speed("force_speed", "N", "Mean friction force on the slider", lambda at: at
 _at_speed("power", "W", "Mean mechanical power on the slider", lambda at: at.power, "force")
 _at_speed("efficiency", "1", "Power over tangential surface power", lambda at: at.efficiency, "force", "powers")
 _at_speed("normal_mean", "N", "Mean normal force on the slider", lambda at: at.means.normal_force, "normal force")
-_at_speed("contact_share", "1", "Fraction of points and time in contact", lambda at: at.means.contact_share, "shares")
-_at_speed("stuck_share", "1", "Fraction of points and time in stick", lambda at: at.means.stuck_share, "shares")
+for _one in ("contact", "stick"):
+    _read = attrgetter(f"means.{_one}_fraction")
+    _at_speed(f"{_one}_fraction", "1", f"Fraction of points and time in {_one}", _read, "fractions")
 _at_speed("friction_power", "W", "Power lost in friction and compliance", lambda at: at.means.friction_power, "powers")
 
 

@@ -59,6 +59,7 @@ TimeModel = Annotated[str, model_name("model of the beam", "time_basis")]
 Frequency = Annotated[float, unit("Hz"), Meta(gt=0, description="drive frequency, Hz; default: the scene's")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
 Theory = Annotated[options.Theory, Meta(description="beam theory")]
+TimeTheory = Annotated[options.Theory, Meta(description="beam theory; in time Euler-Bernoulli alone")]
 Wall = Annotated[options.Wall, Meta(description="joints at a clamped end; half: k = 2EI/l")]
 Joints = Annotated[options.Joints, Meta(description="joint stiffness, Eq. (1)")]
 Attachment = Annotated[options.Attachment, Meta(description="distribution of point masses and springs on segments")]
@@ -161,6 +162,15 @@ def drive_frequency(scene: Scene, frequency_hz: float | None = None) -> float:
         raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")
     check_frequency("frequency_hz", float(hertz), scene.beam)
     return float(hertz)
+
+
+def check_time_theory(theory: options.Theory) -> None:
+    """Raise InputError for a theory other than Euler-Bernoulli's, the only one in time."""
+    if theory != "euler-bernoulli":
+        raise InputError(
+            f"theory = {theory!r}: motion in time is in Euler-Bernoulli theory, leave it out and compare "
+            "wave.standing_wave_ratio by both theories"
+        )
 
 
 def check_forces(scene: Scene, subject: str) -> None:

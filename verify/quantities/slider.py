@@ -31,6 +31,7 @@ class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
 
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
+    theory: opt.TimeTheory = "euler-bernoulli"
     time: Time | None = None
     start: Annotated[options.Start, Meta(description="default: the scene's motion.start")] | None = None
     soft_start_periods: opt.SoftStart | None = None
@@ -69,6 +70,7 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     if time is None:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
     opt.check_count(by.model, by.count)
+    opt.check_time_theory(by.theory)
     if by.modes is not None and by.count is not None:
         raise InputError(f"modes = {by.modes!r} is for model = analytic: {by.model} uses all its modes, leave it out")
     opt.check_forces(scene, "motion in time")

@@ -31,6 +31,11 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     devices: ClassVar[bool] = False
     """Whether it accepts a drive with devices on the beam."""
 
+    @property
+    def steps(self) -> int:
+        """Number of steps of a study that takes minutes, which `verify table` counts; 0 for the others."""
+        return 0
+
     def check(self, scene: "Scene") -> None:
         """Raise InputError where the scene lacks what the study needs, or has what it does not model."""
 

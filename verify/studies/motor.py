@@ -10,6 +10,7 @@ from msgspec import Meta
 from msgspec.structs import asdict, replace
 
 from verify.errors import InputError
+from verify.formatting import unit_of, with_unit
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
@@ -36,9 +37,12 @@ CHARTS = {
     "motor-portrait": ("Phase portrait of a foot", ("height", "m"), ("rate", "m/s"), "Height and its rate of the first "
     "foot over one period of the drive, at standstill."),
 }  # fmt: skip
-NOTE = (
-    "No-load speed: prescribed, without mean friction, that of a heavy slider. Free speed, contact, stick, friction "
-    "power: last quarter of a free run. Start, stop, reversal: time constants (1 - 1/e) of means over a sliding period."
+NOTES = (
+    "Crest speed: amplitude of the tangential surface velocity. No-load speed: prescribed, with zero mean force, of a "
+    "heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run.",
+    "Largest power and best efficiency: over the prescribed speeds. Friction and dashpot power: of the free run.",
+    "Fractions of points and time: over the last quarter of the free run. Start, stop, reversal: time constants "
+    "(1 - 1/e) of means over a sliding period.",
 )
 
 
@@ -51,7 +55,7 @@ class Field:
     curve: "list[SteadyState]"
     """From standstill to the crest speed, in the direction of the force."""
     no_load: float | None
-    """Prescribed speed without mean friction, m/s."""
+    """Prescribed speed with zero mean force, m/s."""
     free: "Transient"
     stop: "Transient | None"
     """Drive switched off; None where the beam would ring on."""
@@ -85,6 +89,11 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             ModelName("time_basis").check(model, "motor.models")
         check_start("motor", self.start, self.soft_start_periods)
 
+    @property
+    def steps(self) -> int:
+        """Points of force over speed, no-load speed and free run on every model."""
+        return len(self.models) * (self.speeds + 2)
+
     def check(self, scene: "Scene") -> None:
         """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
         from verify.dynamics.contact_assembly import check_sliders
@@ -105,17 +114,23 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
         fields: list[Field] = []
+        number = iter(range(1, self.steps + 1))
+
+        def step(what: str) -> None:
+            progress(f"{next(number)} of {self.steps}: {what}")
+
         for model in self.models:
             count, options = n if MODELS[model].sized else None, asdict(self)
             own = {name: options[name] for name in ("modal_damping", "steps_per_period")}
             case = MotorOptions(model=model, count=count, **own).case(scene)
-            fields.append(self._field(case, fields[0].curve if fields else [], cache, progress))
+            fields.append(self._field(case, fields[0].curve if fields else [], cache, step))
         first, margins = fields[0], _margins(fields, cache)
         valid = verdict_of(margins).level != "not trusted"
-        speed, force = 100 * first.free.speed, first.curve[0].means.force
-        summary = f"Without load {speed:+.4g} cm/s, stall force {force:+.4g} N ({first.name})."
+        still = first.curve[0]
+        speed = _with_error("Free speed", first.free.speed, first.free.error, "m/s")
+        force = _with_error("stall force", still.means.force, still.errors.force, "N")
         return Result(
-            summary=summary if valid else "",
+            summary=f"{speed}, {force} ({first.name})." if valid else "",
             tables=[*_tables(fields), *([readings(scene)] if scene.motion else [])],
             figures=_figures(fields, margins),
             warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
@@ -129,13 +144,17 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.quantities.motor import cached
 
         name = sized_title(case.model, case.count)
-        progress(f"force over speed, {name}")
+        progress(f"stall force, {name}")
         still: SteadyState = cached(cache, steady_state, case, 0.0, PERIODS)
         crest = copysign(crest_speed(case), still.means.force)
         speeds = [at.speed for at in like] or [crest * k / (self.speeds - 1) for k in range(self.speeds)]
-        curve = [still, *(steady_state(case, speed, PERIODS, still.run) for speed in speeds[1:])]
+        curve = [still]
+        for speed in speeds[1:]:
+            progress(f"force at {with_unit(speed, 'm/s', '+.4g')}, {name}")
+            curve.append(steady_state(case, speed, PERIODS, still.run))
         missing: list[str] = list(dict.fromkeys(one for at in curve for one in at.not_converged))
         unloaded = None
+        progress(f"no-load speed, {name}")
         try:
             unloaded = cached(cache, curves.no_load, case, PERIODS).speed
         except InputError as error:
@@ -160,10 +179,17 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return Field(case, name, curve, unloaded, free, stop, reversal, times, missing)
 
 
+def _with_error(name: str, value: float, error: float, symbol: str) -> str:
+    """'Free speed -26.68 ± 0.02 mm/s', with a remark where the value lies within its error."""
+    unit = unit_of(max(abs(value), error), symbol)
+    text = f"{name} {unit.factor * value:+.4g} ± {float(f'{unit.factor * error:.1g}'):g} {unit.name}"
+    return text if abs(value) > error else f"{text} (not distinguishable from zero)"
+
+
 def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
     """Margins of the beam at the drive, free runs, static sag, and figures that have not converged."""
     from verify.analysis.margins import beam_margins, run_margins, sag_margins
-    from verify.analysis.verdict import void
+    from verify.analysis.verdict import Margin, void
     from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
 
@@ -176,6 +202,10 @@ def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
             margins.append(void("the free run", f"{REASONS['free speed']} ({field.name})"))
         if not field.curve[0].converged("force"):
             margins.append(void("the stall force", f"{REASONS['force']} ({field.name})"))
+    if case.slider.coupling == "two-way" and not (case.modal_damping or case.beam.loss_factor):
+        margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, remedy="give modal_damping",
+                              condition="free vibrations of the undamped beam, which decay by contact alone, may be "
+                              "left out"))  # fmt: skip
     return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
 
 
@@ -190,39 +220,45 @@ def _tables(fields: list[Field]) -> "list[Table]":
         return float(getattr(field.free.run.energy, loss)) / field.free.run.duration
 
     model: dict[Any, Callable[[Field], Any]] = {Column("model"): lambda field: field.name}
-    overview = model | {
+    speed = model | {
         si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
         si("crest speed", "m/s", ".5g"): lambda field: surface_motion(field.case)[1],
         si("no-load speed", "m/s", "+.5g"): lambda field: field.no_load,
         si("free speed", "m/s", "+.5g"): lambda field: field.free.speed if field.free.converged else None,
-        si("±", "m/s", ".1g"): lambda field: field.free.error,
+        si("its error", "m/s", ".3g"): lambda field: field.free.error,
         si("stall force", "N", "+.4g"): lambda field: _if(field.curve[0], field.curve[0].means.force),
+    }
+    powers = model | {
         si("largest power", "W"): lambda field: max(_if(at, at.power) or 0.0 for at in field.curve) or None,
         percent("best efficiency", ".3g"): lambda field: (
             max(_if(at, at.efficiency, "powers") or 0.0 for at in field.curve) or None
         ),
-        percent("contact", ".3g"): lambda field: last(field, "contact_share"),
-        percent("stick", ".3g"): lambda field: last(field, "stuck_share"),
+        si("friction power", "W"): lambda field: power(field, "friction_loss"),
+        si("dashpot power", "W"): lambda field: power(field, "contact_loss"),
+    }
+    times = model | {
+        percent("contact fraction", ".3g"): lambda field: last(field, "contact_fraction"),
+        percent("stick fraction", ".3g"): lambda field: last(field, "stick_fraction"),
         si("start", "s", ".3g"): lambda field: field.times["start"],
         si("stop", "s", ".3g"): lambda field: field.times["stop"],
         si("reversal", "s", ".3g"): lambda field: field.times["reversal"],
-        si("friction power", "W"): lambda field: power(field, "friction_loss"),
-        si("dashpot power", "W"): lambda field: power(field, "contact_loss"),
     }
     curve: dict[Any, Callable[[Any], Any]] = {
         Column("model"): lambda row: row[0],
         si("speed", "m/s", "+.4g"): lambda row: row[1].speed,
         si("force", "N", "+.4g"): lambda row: row[1].means.force,
-        si("±", "N", ".1g"): lambda row: row[1].errors.force,
+        si("its error", "N", ".3g"): lambda row: row[1].errors.force,
         si("power", "W", "+.4g"): lambda row: _if(row[1], row[1].power),
         percent("efficiency", ".3g"): lambda row: _if(row[1], row[1].efficiency, "powers"),
-        percent("contact", ".3g"): lambda row: row[1].means.contact_share,
-        percent("stick", ".3g"): lambda row: row[1].means.stuck_share,
+        percent("contact fraction", ".3g"): lambda row: row[1].means.contact_fraction,
+        percent("stick fraction", ".3g"): lambda row: row[1].means.stick_fraction,
         Column("converged"): lambda row: row[1].converged(),
     }
     rows = [(field.name, at) for field in fields for at in field.curve]
-    curves = table("Force over speed, slider at a fixed position", rows, curve)
-    return [table("The motor on each model", fields, overview, NOTE), curves]
+    curves = table("Force at prescribed speeds, slider at a fixed position", rows, curve)
+    titles = "Speeds and stall force", "Power and efficiency", "Contact and time constants"
+    overview = zip(titles, (speed, powers, times), NOTES, strict=True)
+    return [*(table(title, fields, columns, note) for title, columns, note in overview), curves]
 
 
 def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
