@@ -214,6 +214,7 @@ def test_words_are_read_by_type():
         ("wave.reflection", "bare", {}, "drive.force is missing: add"),
         ("slider.displacement", "bare", {}, "time is missing and the scene has no"),
         ("motor.stall_force", "driven", {}, "slider.contact is missing: add"),
+        ("motor.stall_force", "motor", {**HELD, "theory": "rayleigh"}, "a motor has Euler-Bernoulli theory alone"),
         ("chain.transient_deflection", "bare", {}, "drive.force is missing: add"),
         ("drive.quarter_wavelength", "bare", {}, "frequency_hz is missing"),
         ("mode.frequency", "device", {"count": 14}, "does not model drive.device"),

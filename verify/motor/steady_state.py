@@ -73,11 +73,10 @@ class MotorCase(Struct, frozen=True, kw_only=True):
         self, periods: float, samples: int, before: Motion | None = None, prescribed_speed: float | None = None
     ) -> Motion:
         """A run of `periods` drive periods, fixed in position if the speed (m/s) is prescribed. Raises InputError."""
-        run = simulate(
+        return simulate(
             **asdict(self), duration=periods * self.period, samples=samples, continue_from=before,
             prescribed_speed=prescribed_speed, fixed_position=prescribed_speed is not None,
         )  # fmt: skip
-        return run
 
 
 @lru_cache(maxsize=16)

@@ -34,8 +34,7 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         from verify.motor.steady_state import MotorCase
 
         opt.check_count(self.model, self.count)
-        opt.check_time_theory(self.theory)
-        opt.check_forces(scene, "a motor")
+        opt.check_forces(scene, "a motor", self.theory)
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("slider.contact is missing: add [slider] with mass, mu and [slider.contact] to the scene")
         settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__ if name != "theory"}
@@ -103,8 +102,7 @@ def no_load_speed(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> fl
     """No-load speed along +x of a heavy slider: the prescribed speed at which the mean friction force vanishes."""
     from verify.motor.curves import no_load
 
-    state: SteadyState = cached(cache, no_load, motor.case(scene), motor.periods)
-    return state.speed
+    return float(cached(cache, no_load, motor.case(scene), motor.periods).speed)
 
 
 class FreeRun(MotorOptions, frozen=True, kw_only=True):
@@ -118,8 +116,8 @@ class FreeRun(MotorOptions, frozen=True, kw_only=True):
 
         free: Transient = cached(cache, transient, self.case(scene), self.periods)
         if not free.converged:
-            reason = "free speed" if free.run.statistics.finished else "left"
-            raise InputError(f"periods = {self.periods!r}: {REASONS[reason]}")
+            reason = REASONS["free speed" if free.run.statistics.finished else "left"]
+            raise InputError(f"periods = {self.periods!r}: {reason}")
         return free
 
 

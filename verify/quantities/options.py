@@ -164,17 +164,11 @@ def drive_frequency(scene: Scene, frequency_hz: float | None = None) -> float:
     return float(hertz)
 
 
-def check_time_theory(theory: options.Theory) -> None:
-    """Raise InputError for a theory other than Euler-Bernoulli's, the only one in time."""
+def check_forces(scene: Scene, subject: str, theory: options.Theory = "euler-bernoulli") -> None:
+    """Raise InputError for a drive by displacements, or a theory that `subject` does not have."""
     if theory != "euler-bernoulli":
-        raise InputError(
-            f"theory = {theory!r}: motion in time is in Euler-Bernoulli theory, leave it out and compare "
-            "wave.standing_wave_ratio by both theories"
-        )
-
-
-def check_forces(scene: Scene, subject: str) -> None:
-    """Raise InputError for a drive by displacements; `subject` is the subject of the message."""
+        both = "leave it out and compare wave.standing_wave_ratio by both theories"
+        raise InputError(f"theory = {theory!r}: {subject} has Euler-Bernoulli theory alone, {both}")
     if scene.drive is not None and scene.drive.kind != "force":
         raise InputError(f"drive.kind = {scene.drive.kind!r}: {subject} takes imposed forces, give kind = 'force'")
 

@@ -70,10 +70,9 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     if time is None:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
     opt.check_count(by.model, by.count)
-    opt.check_time_theory(by.theory)
     if by.modes is not None and by.count is not None:
         raise InputError(f"modes = {by.modes!r} is for model = analytic: {by.model} uses all its modes, leave it out")
-    opt.check_forces(scene, "motion in time")
+    opt.check_forces(scene, "motion in time", by.theory)
     start = by.start or (motion.start if motion else "rest")
     if soft is None:
         soft = motion.soft_start_periods if motion and start == "rest" else None

@@ -7,7 +7,7 @@ from math import copysign
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
-from msgspec.structs import asdict, replace
+from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.formatting import unit_of, with_unit
@@ -41,28 +41,23 @@ NOTES = (
     "Crest speed: amplitude of the tangential surface velocity. No-load speed: prescribed, with zero mean force, of a "
     "heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run.",
     "Largest power and best efficiency: over the prescribed speeds. Friction and dashpot power: of the free run.",
-    "Fractions of points and time: over the last quarter of the free run. Start, stop, reversal: time constants "
-    "(1 - 1/e) of means over a sliding period.",
+    "Fractions: last quarter of the free run. Start, stop, reversal: time constants of means over a sliding period.",
 )
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """One model under the slider."""
+    """One model under the slider, SI; `stop` is None where the beam would ring on, `times` are time constants."""
 
     case: "MotorCase"
     name: str
     curve: "list[SteadyState]"
     """From standstill to the crest speed, in the direction of the force."""
     no_load: float | None
-    """Prescribed speed with zero mean force, m/s."""
     free: "Transient"
     stop: "Transient | None"
-    """Drive switched off; None where the beam would ring on."""
     reversal: "Transient | None"
-    """Drive phases reversed."""
     times: dict[str, float | None]
-    """Time constants of start, stop and reversal, s."""
     missing: list[str]
     """Why figures are not available, keys of `curves.REASONS`."""
 
@@ -113,24 +108,20 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.report.result import Result
 
         n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
-        fields: list[Field] = []
-        number = iter(range(1, self.steps + 1))
-
-        def step(what: str) -> None:
-            progress(f"{next(number)} of {self.steps}: {what}")
-
+        fields, number = list[Field](), iter(range(1, self.steps + 1))
         for model in self.models:
-            count, options = n if MODELS[model].sized else None, asdict(self)
-            own = {name: options[name] for name in ("modal_damping", "steps_per_period")}
-            case = MotorOptions(model=model, count=count, **own).case(scene)
-            fields.append(self._field(case, fields[0].curve if fields else [], cache, step))
-        first, margins = fields[0], _margins(fields, cache)
+            own: dict[str, Any] = {name: getattr(self, name) for name in ("modal_damping", "steps_per_period")}
+            case = MotorOptions(model=model, count=n if MODELS[model].sized else None, **own).case(scene)
+            like = fields[0].curve if fields else []
+            fields.append(
+                self._field(case, like, cache, lambda what: progress(f"{next(number)} of {self.steps}: {what}"))
+            )
+        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache)
         valid = verdict_of(margins).level != "not trusted"
-        still = first.curve[0]
-        speed = _with_error("Free speed", first.free.speed, first.free.error, "m/s")
-        force = _with_error("stall force", still.means.force, still.errors.force, "N")
+        summary = _with_error("Free speed", first.free.speed, first.free.error, "m/s")
+        summary += ", " + _with_error("stall force", still.means.force, still.errors.force, "N")
         return Result(
-            summary=f"{speed}, {force} ({first.name})." if valid else "",
+            summary=f"{summary} ({first.name})." if valid else "",
             tables=[*_tables(fields), *([readings(scene)] if scene.motion else [])],
             figures=_figures(fields, margins),
             warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
@@ -162,10 +153,9 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         progress(f"free run, {name}")
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
         free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
-        finished, coupling = free.run.statistics.finished, free.run.coupling
-        rings = coupling is not None and coupling.two_way
+        rings = case.slider.coupling == "two-way"
         begin = free.time_constant() if free.converged else None
-        if finished and self.start == "steady":
+        if free.run.statistics.finished and self.start == "steady":
             shown = 2.0 * TIME_CONSTANTS * begin / case.period + 2.0 if begin else self.periods
             periods = min(int(shown), self.periods)
             stop = None if rings else curves.stop(case, free, periods)
@@ -203,9 +193,8 @@ def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
         if not field.curve[0].converged("force"):
             margins.append(void("the stall force", f"{REASONS['force']} ({field.name})"))
     if case.slider.coupling == "two-way" and not (case.modal_damping or case.beam.loss_factor):
-        margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, remedy="give modal_damping",
-                              condition="free vibrations of the undamped beam, which decay by contact alone, may be "
-                              "left out"))  # fmt: skip
+        free = "free vibrations of the beam, which decay by contact alone, may be left out"
+        margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, condition=free))
     return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
 
 
@@ -257,8 +246,7 @@ def _tables(fields: list[Field]) -> "list[Table]":
     rows = [(field.name, at) for field in fields for at in field.curve]
     curves = table("Force at prescribed speeds, slider at a fixed position", rows, curve)
     titles = "Speeds and stall force", "Power and efficiency", "Contact and time constants"
-    overview = zip(titles, (speed, powers, times), NOTES, strict=True)
-    return [*(table(title, fields, columns, note) for title, columns, note in overview), curves]
+    return [*map(table, titles, (fields,) * 3, (speed, powers, times), NOTES), curves]
 
 
 def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
