@@ -109,8 +109,8 @@ def _run_several(tasks: list[Task], as_json: bool, command: str, expected: str) 
 def _turns(tasks: list[Task]) -> list[int]:
     """Indices of tasks in the order in which they run: the longest first, with the number of gates as a measure.
 
-    A short one is before them, since the first runs alone; all sliders except one are last, since they share kernels,
-    which the first compiles meanwhile.
+    A short one is before them, since the first runs alone; all scenes with contact except one are last, since they
+    share kernels, which that one compiles meanwhile.
     """
     from verify.errors import InputError
     from verify.scene.load import load_scene
@@ -118,7 +118,8 @@ def _turns(tasks: list[Task]) -> list[int]:
     def weight(i: int) -> tuple[bool, int]:
         with suppress(InputError):
             scene = load_scene(tasks[i].scene, tasks[i].overrides)
-            return scene.slider is not None, -len(scene.gate)
+            contact = any(gate.quantity.startswith(("contact.", "friction.")) for gate in scene.gate)
+            return contact or scene.slider is not None, -len(scene.gate)
         return False, 0
 
     turns = sorted(range(len(tasks)), key=weight)
