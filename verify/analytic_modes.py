@@ -92,11 +92,11 @@ class ExactModel(BeamModel):
         Modes are numbered by frequency; above sqrt(kappa G A / rho I) a Timoshenko beam has a second family of modes.
         """
         closed_forms.check_mode(mode)
-        return (
-            wavenumber_length(self.layout, mode + self.beam.rigid_motions) ** 2
-            * self.beam.wave_constant
-            / (2.0 * pi * self.beam.length**2)
-        )
+        return float(self._hertz(wavenumber_length(self.layout, mode + self.beam.rigid_motions)))
+
+    def _hertz(self, beta: Any) -> Any:
+        """Frequency at beta L."""
+        return beta**2 * self.beam.wave_constant / (2.0 * pi * self.beam.length**2)
 
     def _omega2(self, frequency_hz: Any) -> Any:
         """Dimensionless omega^2, over EI / (rho A L^4)."""
@@ -105,22 +105,23 @@ class ExactModel(BeamModel):
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes; shapes have derivatives of any order. Raises InputError."""
         check_integer("n_modes", n_modes, 1, MOST_MODES)
-        frequencies = np.array([self.frequency_hz(mode) for mode in range(1, n_modes + 1)])
-
-        blocks = [range(first, min(first + _TOGETHER, n_modes + 1)) for first in range(1, n_modes + 1, _TOGETHER)]
+        layout, rigid = self.layout, self.beam.rigid_motions
+        betas = np.array([wavenumber_length(layout, mode + rigid) for mode in range(1, n_modes + 1)])
+        together = n_modes if layout.plain else _TOGETHER
+        blocks = [range(first, min(first + together, n_modes + 1)) for first in range(1, n_modes + 1, together)]
         empty = np.empty(0)
         return Modes(
             model=self.name,
             count=None,
             length=self.beam.length,
-            frequencies_hz=frequencies,
+            frequencies_hz=self._hertz(betas),
             shapes=lambda x, derivative: np.concatenate([self._shapes(some, x, derivative) for some in blocks]),
             nodes=empty,
             points=empty,
             sampled=lambda: np.empty((n_modes, 0)),
             curvature_points=empty,
             curvatures=lambda: np.empty((n_modes, 0)),
-            method="closed form" if self.theory == "euler-bernoulli" and self.beam.uniform else "counted",
+            method="closed form" if layout.plain else "counted",
         )
 
     def mode_shape(self, mode: int, x: Numbers, derivative: int = 0) -> Array:
@@ -136,8 +137,7 @@ class ExactModel(BeamModel):
 
     def _shapes(self, modes: range, x: Array, derivative: int) -> Array:
         scale = (self.beam.mass_per_length * self.beam.length) ** -0.5 / self.beam.length**derivative
-        values = _modal_motion(self, modes).read(np.minimum(x / self.beam.length, 1.0), derivative)
-        return np.asarray(values[:, 0] * scale)
+        return np.asarray(scale * _unit_shapes(self, modes)(np.minimum(x / self.beam.length, 1.0), derivative))
 
     # --- Harmonic fields ---
 
@@ -290,7 +290,7 @@ class ExactModel(BeamModel):
         for frequency, number in zip(frequencies.tolist(), numbers, strict=True):
             if number and (mode := number if devices or drives else number - self.beam.rigid_motions):
                 where = " with its devices or imposed displacements" if devices or drives else ""
-                resonance = wavenumber_length(layout, number) ** 2 * self.beam.wave_constant / (2.0 * pi * length**2)
+                resonance = float(self._hertz(wavenumber_length(layout, number)))
                 raise ResonanceError(
                     f"frequency_hz = {frequency!r} lies {abs(frequency / resonance - 1.0):.1e} (relative) from the "
                     f"undamped resonance of mode {mode} of the {self.name} model{where} at {resonance!r} Hz: give the "
@@ -386,8 +386,11 @@ def check_in_time(beam: Beam, remedy: str = "give model = 'fem' or 'segment'") -
 
 
 @lru_cache(maxsize=256)  # a basis of 400 modes has some twenty blocks
-def _modal_motion(model: ExactModel, modes: range) -> Motion:
-    """Free motions of consecutive modes."""
+def _unit_shapes(model: ExactModel, modes: range) -> Callable[[Array, int], Array]:
+    """Shapes of consecutive modes: (x / L, derivative) -> (n, n_x), of modal mass 1 over rho A L."""
     numbers, rigid = range(modes[0] - 1, modes[-1] + 2), model.beam.rigid_motions
-    betas = [wavenumber_length(model.layout, mode + rigid) if mode else 0.0 for mode in numbers]
-    return modal_motion(model.layout, np.array(betas), np.array(modes))
+    betas = np.array([wavenumber_length(model.layout, mode + rigid) if mode else 0.0 for mode in numbers])
+    if model.layout.plain:
+        return closed_forms.unit_shapes(model.layout.supports, betas[1:-1])
+    motion = modal_motion(model.layout, betas, np.array(modes))
+    return lambda xi, derivative: np.asarray(motion.read(xi, derivative)[:, 0])

@@ -21,10 +21,10 @@ def map_processes(
 ) -> list[Result]:
     """`[function(item) for item in items]` in `max_workers` processes; default: VERIFY_JOBS.
 
-    `progress` is called with the number of completed items. The first item runs in this process, so that workers
-    inherit compiled functions and caches. Function and items must be picklable where the platform cannot fork. Raises
-    the error of the first item that fails, pending items are cancelled; and InputError unless VERIFY_JOBS is a positive
-    integer.
+    `progress` is called with the index of each item that completes. The first item runs in this process, so that
+    workers inherit compiled functions and caches. Function and items must be picklable where the platform cannot fork.
+    Raises the error of the first item that fails, pending items are cancelled; and InputError unless VERIFY_JOBS is a
+    positive integer.
     """
     text = str(max_workers or os.environ.get(VARIABLE, "") or 1)
     if not (text.isascii() and text.isdigit() and int(text)):
@@ -33,22 +33,23 @@ def map_processes(
     workers = min(int(text), len(todo) - 1)
     alone = len(todo) if workers < 2 else 1
     results = []
-    for item in todo[:alone]:
+    for i, item in enumerate(todo[:alone]):
         results.append(function(item))
-        progress(len(results))
+        progress(i)
     if alone == len(todo):
         return results
-    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import get_context
 
     # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
     context = get_context("fork" if sys.platform == "linux" else "spawn")
     with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        futures = {pool.submit(function, item): i for i, item in enumerate(todo[1:], 1)}
         try:
-            for result in pool.map(function, todo[1:]):
-                results.append(result)
-                progress(len(results))
+            for future in as_completed(futures):
+                future.result()
+                progress(futures[future])
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    return results
+    return results + [future.result() for future in futures]

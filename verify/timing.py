@@ -6,6 +6,7 @@ from itertools import pairwise
 from statistics import median, quantiles
 from time import get_clock_info, perf_counter, process_time
 
+_SOLVERS = ("verify.elements.", "verify.segments.", "verify.exact.", "verify.analytic_modes", "verify.dynamics.")
 _CLOCK = process_time if get_clock_info("process_time").resolution < 1e-5 else perf_counter
 
 
@@ -31,7 +32,7 @@ def spread(times: Sequence[float]) -> float:
 def forget() -> None:
     """Clear the models' caches of solutions."""
     for name, module in list(sys.modules.items()):
-        if name.startswith(("verify.elements.", "verify.segments.", "verify.exact.")):
+        if name.startswith(_SOLVERS):
             for value in list(vars(module).values()):
                 if callable(clear := getattr(value, "cache_clear", None)):
                     clear()

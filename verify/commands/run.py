@@ -1,5 +1,7 @@
 """`verify run`: gates and studies of one or several scenes, with reports."""
 
+from contextlib import suppress
+from itertools import count
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -85,8 +87,13 @@ def _run_several(tasks: list[Task], as_json: bool, command: str, expected: str) 
     start = perf_counter()
     with progress(len(tasks), quiet=as_json, lines=True) as step:
         step(f"{len(tasks)} scenes{expected}")
-        n = len(tasks)
-        lines = map_processes(_line_of, tasks, lambda done: step(f"{done} of {n} scenes: {tasks[done - 1].scene}"))
+        done, turns = count(1), _turns(tasks)
+
+        def completed(turn: int) -> None:
+            step(f"{next(done)} of {len(tasks)} scenes: {tasks[turns[turn]].scene}")
+
+        by_turn = map_processes(_line_of, [tasks[i] for i in turns], completed)
+    lines = [by_turn[turns.index(i)] for i in range(len(tasks))]
     reports = tasks[0].reports
     if reports is not None:
         write_index(lines, reports / "index.html", command, perf_counter() - start)
@@ -100,6 +107,27 @@ def _run_several(tasks: list[Task], as_json: bool, command: str, expected: str) 
         raise SystemExit(CANNOT_RUN)
     if not all(line["passed"] for line in lines):
         raise SystemExit(GATE_FAILED)
+
+
+def _turns(tasks: list[Task]) -> list[int]:
+    """Indices of tasks in the order in which they run: the longest first, with the number of gates as a measure.
+
+    A short one is before them, since the first runs alone; all scenes with contact except one are last, since they
+    share kernels, which that one compiles meanwhile.
+    """
+    from verify.errors import InputError
+    from verify.scene.load import load_scene
+
+    def weight(i: int) -> tuple[bool, int]:
+        with suppress(InputError):
+            scene = load_scene(tasks[i].scene, tasks[i].overrides)
+            contact = any(gate.quantity.startswith(("contact.", "friction.")) for gate in scene.gate)
+            return contact or scene.slider is not None, -len(scene.gate)
+        return False, 0
+
+    turns = sorted(range(len(tasks)), key=weight)
+    k = max(sum(not weight(i)[0] for i in turns) - 1, 0)
+    return turns[k : k + 2] + turns[:k] + turns[k + 2 :] if len(turns) > 2 else [*range(len(turns))]
 
 
 def _line_of(task: Task) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """A driven linear beam in time: complex modal rows and rows of the drive in consecutive stages."""
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -224,8 +225,9 @@ def _to_the_end(edges: Array, beam: Beam) -> Array:
     return np.append(edges[:-1], beam.length)
 
 
+@lru_cache(maxsize=8)  # of all windows of a motor at a fixed position
 def damped_field(
-    model: str, count: int | None, beam: Beam, forces: Sequence[PointForce], frequency_hz: float, damping: float | None
+    model: str, count: int | None, beam: Beam, forces: tuple[PointForce, ...], hertz: float, damping: float | None
 ) -> "HarmonicField":
     """The steady field of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0
@@ -233,4 +235,4 @@ def damped_field(
         # the exact field has no modes: a loss factor of twice the ratio is equivalent
         modal_damping = damping if kind.sized else 0.0
         beam = replace(beam, loss_factor=0.0 if kind.sized else 2.0 * damping)
-    return kind.build(beam, count).harmonic(tuple(forces), frequency_hz, modal_damping=modal_damping)
+    return kind.build(beam, count).harmonic(forces, hertz, modal_damping=modal_damping)

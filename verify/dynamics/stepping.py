@@ -18,8 +18,8 @@ SPANS = 12
 """Largest number of spans between events in a step, as in `friction`."""
 RESOLVED = 1.5
 """Phase or decay of a row per step, rad or neper, above which rates are means over the step."""
-REACH = 8
-"""Number of pieces of a table on each side of the points."""
+REACH, FARTHEST = 8, 128
+"""Number of pieces of a table on each side of the points: in the first table, and at most; each doubles the last."""
 
 
 class Contacts(msgspec.Struct, eq=False, kw_only=True):
@@ -100,8 +100,8 @@ class Run:
         self.couplings, self.feet_of = np.zeros((2, n, n)), np.zeros(n_feet, dtype=np.int64)
         if n_feet:
             self.feet_of[contacts.indices[:, lay.OF_FOOT]] = contacts.indices[:, lay.OF_SLIDER]
-        self.n_steps, self.loop_s, self.set_up_s = 0, 0.0, 0.0
-        """Number of steps; processor time of the compiled loop, and of tables and arrays."""
+        self.n_steps, self.loop_s, self.set_up_s, self.reach = 0, 0.0, 0.0, REACH
+        """Number of steps; processor time of the compiled loop, and of tables and arrays; pieces on each side."""
         self.stopped, self.z = "end", np.empty(0, dtype=complex)
         """"end", a message of `Stage.beyond`, "diverged" or "chatters"; the total state of the rows at the end."""
 
@@ -176,6 +176,7 @@ class Run:
                 why = "diverged" if reason == lay.NOT_FINITE else "chatters"
                 break
             began, last = thread_time(), first
+            self.reach = min(2 * self.reach, FARTHEST)
             first = self._around(stage)
             if reason == lay.OFF_PIECES and first == last:
                 first = None
@@ -236,7 +237,7 @@ class Run:
             return None
         pieces = len(edges) - 1
         low, high = np.clip(np.searchsorted(edges, [x.min(), x.max()], side="right") - 1, 0, pieces - 1)
-        return max(int(low) - REACH, 0), min(int(high) + 1 + REACH, pieces)
+        return max(int(low) - self.reach, 0), min(int(high) + 1 + self.reach, pieces)
 
     def _go_on(self, stage: Stage) -> None:
         """Advance the beam to the end of the stage after a moving load has left it."""

@@ -272,8 +272,7 @@ def wavenumber_length(layout: BeamLayout, number: int) -> float:
 
     In closed form for a uniform Euler-Bernoulli beam without attachments.
     """
-    plain = set(layout.stations) == {_NOTHING} and not (layout.tension or layout.foundation)
-    if plain and all(span[1:] == (1.0, 1.0, 0.0, 0.0) for span in layout.spans):
+    if layout.plain:
         deflections, rotations = (sum(s in (held, "clamped") for s in layout.supports) for held in ("pinned", "guided"))
         rigid = max(2 - deflections - min(rotations, 1), 0)
         return closed_forms.wavenumber_length(layout.supports, number - rigid) if number > rigid else 0.0

@@ -1,12 +1,17 @@
-"""Exact frequencies of uniform beams in closed form.
+"""Exact frequencies and mode shapes of uniform beams in closed form.
 
-Roots of the Euler-Bernoulli frequency equations for every pair of supports, and the frequencies of a pinned-pinned beam
-by Rayleigh's and Timoshenko's theories.
+Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair of supports, and the frequencies of a
+pinned-pinned beam by Rayleigh's and Timoshenko's theories.
 """
 
+from collections.abc import Callable
 from math import atan, exp, pi, sqrt
 
+import numpy as np
+
+from verify.arrays import Array
 from verify.errors import InputError
+from verify.exact.layout import HELD
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Piece
 from verify.validation import check_integer
@@ -55,6 +60,30 @@ def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
             break
         remainder = following
     return whole + remainder
+
+
+def unit_shapes(supports: tuple[str, str], betas: Array) -> Callable[[Array, int], Array]:
+    """Euler-Bernoulli shapes at beta L (n,): (xi (m,), derivative by x / L) -> (n, m), mean square 1 over the length.
+
+    Each is a sum of cos, sin, exp(-beta xi) and exp(-beta (1 - xi)), positive next to the left end.
+    """
+
+    def waves(factors: Array, xi: Array, derivative: int) -> Array:  # derivative over beta^derivative
+        phase = betas[:, None] * xi + 0.5 * pi * (derivative % 4)
+        c, s, left, right = factors.T[:, :, None]
+        oscillating = c * np.cos(phase) + s * np.sin(phase)
+        left = -left if derivative % 2 else left
+        return np.asarray(oscillating + left * np.exp(-betas[:, None] * xi) + right * np.exp(betas[:, None] * (xi - 1)))
+
+    unit, ends = np.eye(4)[:, None].repeat(len(betas), axis=1), np.array([0.0, 1.0])
+    values = np.array([[waves(one, ends, d) for one in unit] for d in range(4)])  # (derivative, wave, n, end)
+    conditions = [values[d, :, :, end] for end, support in enumerate(supports) for d in HELD[support]]
+    factors = np.linalg.svd(np.array(conditions).transpose(2, 0, 1))[2][:, -1]  # the null vectors
+    start, end = np.einsum("dwne,nw->edn", values, factors)
+    # 4 k^4 times the integral of y^2 is the change of x (k^4 y^2 - 2 y' y''' + y''^2) for y'''' = k^4 y
+    factors /= 0.5 * np.sqrt(end[0] ** 2 - 2.0 * end[1] * end[3] + end[2] ** 2)[:, None]
+    factors *= np.sign(start[min({0, 1, 2} - set(HELD[supports[0]]))])[:, None]
+    return lambda xi, derivative: waves(factors, xi, derivative) * betas[:, None] ** derivative
 
 
 def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:

@@ -73,6 +73,12 @@ class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
         """Positions of the stations, x / L."""
         return tuple(accumulate((span.length for span in self.spans), initial=0.0))
 
+    @property
+    def plain(self) -> bool:
+        """Whether it is a uniform Euler-Bernoulli beam without attachments and axial force."""
+        bare = set(self.stations) == {Station()} and not (self.tension or self.foundation)
+        return bare and all(span[1:] == (1.0, 1.0, 0.0, 0.0) for span in self.spans)
+
     def station_at(self, xi: float) -> int:
         """Index of the station nearest to x / L."""
         positions = self.positions

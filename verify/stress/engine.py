@@ -143,7 +143,7 @@ def run(
     from verify.parallel import map_processes
 
     ids = [one.id for one in checks]
-    return map_processes(_run_by_id, ids, lambda n: progress(ids[n - 1]), jobs)
+    return map_processes(_run_by_id, ids, lambda i: progress(ids[i]), jobs)
 
 
 def _run_by_id(name: str) -> Outcome:

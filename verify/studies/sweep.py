@@ -76,7 +76,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         values = map_processes(
             _evaluate,
             [(tables, self, one) for one in combinations],
-            lambda done: progress(f"combination {done} of {len(combinations)}"),
+            lambda i: progress(f"combination {i + 1} of {len(combinations)}"),
             max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
         )
         rows = [one | found for one, found in zip(combinations, values, strict=True)]
