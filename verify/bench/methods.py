@@ -20,8 +20,7 @@ from verify.problem.slider import Slider
 SIZES = (24, 49, 98, 196, 392)
 PARTS = {"segment": "segments", "fem": "elements"}
 LINKS = 49
-SOFT_START = 2.0
-"""Periods over which forces grow: a step load has no integer order of convergence."""
+SOFT_START = 2.0  # periods over which forces grow: a step load has no integer order of convergence
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
 SLIDER = Slider(mass=1.0193679918450561e-3, mu=0.2, slope=1e4)

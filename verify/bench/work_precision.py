@@ -19,10 +19,8 @@ from verify.timing import forget, spread
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROUNDS, TURN_S = 9, 2e-3
-"""Largest number of rounds; time for which short runs are repeated within a round, s."""
-ERRORS = (1e-2, 1e-3, 1e-4, 1e-5)
-"""Errors at which methods are compared."""
+ROUNDS, TURN_S = 9, 2e-3  # largest number of rounds; time for which short runs are repeated within a round, s
+ERRORS = (1e-2, 1e-3, 1e-4, 1e-5)  # errors at which methods are compared
 ABOVE_REFERENCE = 3.0
 """Multiple of the reference's uncertainty below which errors have no order and are excluded from comparisons."""
 
@@ -32,16 +30,11 @@ class Method:
     """A method and its sizes."""
 
     name: str
-    run: Callable[[Any], Any]
-    """Size -> result."""
-    sizes: Sequence[Any]
-    """From coarse to fine."""
-    size_name: str = "N"
-    """Name of the size: N, dt, tolerance; empty without refinement."""
-    model: str = ""
-    """Name of the model, which defines the colour."""
-    error: Callable[[Any], float] | None = None
-    """Relative error of a result; default: that of the question."""
+    run: Callable[[Any], Any]  # size -> result
+    sizes: Sequence[Any]  # from coarse to fine
+    size_name: str = "N"  # name of the size: N, dt, tolerance; empty without refinement
+    model: str = ""  # name of the model, which defines the colour
+    error: Callable[[Any], float] | None = None  # relative error of a result; default: that of the question
 
 
 @dataclass(frozen=True)
@@ -49,13 +42,10 @@ class Question:
     """A quantity of interest, its methods and the reference of their errors."""
 
     id: str
-    title: str
-    """Quantity and conditions."""
+    title: str  # quantity and conditions
     reference: str
-    uncertainty: float
-    """Relative uncertainty of the reference."""
-    error: Callable[[Any], float]
-    """Relative error of a result."""
+    uncertainty: float  # relative uncertainty of the reference
+    error: Callable[[Any], float]  # relative error of a result
     methods: Sequence[Method]
 
 
@@ -67,11 +57,9 @@ class Row:
     size_name: str
     size: float
     error: float
-    order: float | None
-    """Observed order from the coarser size."""
+    order: float | None  # observed order from the coarser size
     seconds: float
-    spread: float
-    """Relative interquartile range of the rounds."""
+    spread: float  # relative interquartile range of the rounds
     model: str = ""
 
 

@@ -32,8 +32,7 @@ EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CA
 """EI of `CANTILEVER`, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
 NODE = 1e-9
 """Displacement over that of the free beam, F / (m omega^2), below which a position is a node within rounding."""
-START_PHASES = (0.0, 45.0, 90.0, 135.0)
-"""Phases of the drive at the start, deg; 180 more mirrors the motion."""
+START_PHASES = (0.0, 45.0, 90.0, 135.0)  # phases of the drive at the start, deg; 180 more mirrors the motion
 
 
 def silent(part: float) -> None:
@@ -230,11 +229,9 @@ def transient(
 class Departure(NamedTuple):
     """Deflection of the nonlinear less the linear chain at one position, over the rms of the latter."""
 
-    end: float
-    """Value at the end of the run."""
+    end: float  # value at the end of the run
     rms: float
-    slope: float
-    """Rms rotation of the links, rad."""
+    slope: float  # rms rotation of the links, rad
 
 
 def departure(

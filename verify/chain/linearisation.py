@@ -10,26 +10,19 @@ from verify.chain.statics import inertia_products, potential
 from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
 
-FLUTTER = 1e-6
-"""Ratio of real and imaginary part above which a root of a rotating chain is flutter and not rounding."""
-ROUNDING = 1e-13
-"""Relative rounding error of the roots of a dense eigenvalue problem."""
+FLUTTER = 1e-6  # ratio of real and imaginary part above which a root of a rotating chain is flutter and not rounding
+ROUNDING = 1e-13  # relative rounding error of the roots of a dense eigenvalue problem
 
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
     """M q'' + (C + G) q' + K q = 0 with constraint q = 0, q the relative angles; N x N matrices."""
 
-    mass: Array
-    """kg m^2."""
-    damping: Array
-    """N m s."""
-    stiffness: Array
-    """N m, with the geometric stiffness of loads and of the roller's reaction."""
-    gyroscopic: Array
-    """N m s, antisymmetric; 0 unless a rotating chain is bent."""
-    constraint: Array
-    """(n, N), m: derivatives of the roller's y; n = 0 for a free tip."""
+    mass: Array  # kg m^2
+    damping: Array  # N m s
+    stiffness: Array  # N m, with the geometric stiffness of loads and of the roller's reaction
+    gyroscopic: Array  # N m s, antisymmetric; 0 unless a rotating chain is bent
+    constraint: Array  # (n, N), m: derivatives of the roller's y; n = 0 for a free tip
 
     def independent(self) -> Array:
         """Basis (N, N - n) of the admissible motions; the angle with the longest lever arm is dependent.

@@ -15,24 +15,19 @@ from verify.linear.registry import MODELS
 if TYPE_CHECKING:
     from verify.scene.model import Scene
 
-MODES, EXACT = 10, 201
-"""Default number of modes, and points of the exact beam."""
-PHASES, INSTANTS = 36, 101
-"""Default number of steps of a period and of a motion."""
+MODES, EXACT = 10, 201  # default number of modes, and points of the exact beam
+PHASES, INSTANTS = 36, 101  # default number of steps of a period and of a motion
 
 
 class Request(msgspec.Struct, frozen=True, kw_only=True):
     """What to export."""
 
-    what: str | None = None
-    """modes, wave or motion; by default what the scene has and the file type holds."""
+    what: str | None = None  # modes, wave or motion; by default what the scene has and the file type holds
     model: str = "segment"
     count: int | None = None
     """Segments or elements; by default those of the scene's study of the same subject, else the fewest within 1 %."""
-    mode: int | None = None
-    """Number of modes of data, the mode of a picture."""
-    samples: int | None = None
-    """Steps of a period or of a motion."""
+    mode: int | None = None  # number of modes of data, the mode of a picture
+    samples: int | None = None  # steps of a period or of a motion
 
 
 @dataclass(frozen=True)

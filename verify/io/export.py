@@ -25,8 +25,7 @@ TYPES = {
     **dict.fromkeys(("xdmf", "csv", "json", "npz", "gif", "webp"), DATA),
     "png": (*DATA, CHART),
     "svg": (CHART,),
-}
-"""What a file type holds."""
+}  # what a file type holds
 
 
 def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:

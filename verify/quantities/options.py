@@ -22,12 +22,9 @@ if TYPE_CHECKING:
 class ModelName(msgspec.Struct, frozen=True):
     """The models that an argument accepts."""
 
-    verb: str
-    """Method of `BeamModel` that the models implement."""
-    sized: bool = False
-    """Whether only discrete models are accepted."""
-    mean: bool = False
-    """Whether "mean", the middle of the models below and above, is accepted."""
+    verb: str  # method of `BeamModel` that the models implement
+    sized: bool = False  # whether only discrete models are accepted
+    mean: bool = False  # whether "mean", the middle of the models below and above, is accepted
 
     def names(self) -> tuple[str, ...]:
         """Accepted names in alphabetical order."""

@@ -20,12 +20,10 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     value: Any = None
     """A float, a complex number or a `Bracket`; None where the gate was skipped or could not be evaluated."""
     unit: str = ""
-    passed: bool | None = None
-    """None where the gate was skipped."""
+    passed: bool | None = None  # None where the gate was skipped
     fraction: float | None = None
     """Fraction of the tolerance: 0 in the middle of the band, 1 at its edge; None where the band has no width."""
-    reason: str = ""
-    """Why it failed or was skipped."""
+    reason: str = ""  # why it failed or was skipped
     seconds: float = 0.0
 
     @property

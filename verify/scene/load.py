@@ -14,8 +14,7 @@ from verify.scene.model import Scene
 
 DATA = Path(__file__).parent / "data"
 STARTER = DATA / "starter.toml"
-MAX_SENTENCES = 30
-"""Errors of one scene that are listed."""
+MAX_SENTENCES = 30  # errors of one scene that are listed
 SCHEMA_LINE = "#:schema ./verify.schema.json"
 """Names the schema for TOML editors; `verify schema --json > verify.schema.json` writes the file."""
 _OWN = tuple(name for name in Scene.__struct_fields__ if name != "studies")

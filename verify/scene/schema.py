@@ -15,8 +15,7 @@ from verify.scene.model import Scene
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 """Read by TOML editors."""
-TOP = "scene"
-"""Name of the keys outside of any section."""
+TOP = "scene"  # name of the keys outside of any section
 
 
 def sections() -> dict[str, type[msgspec.Struct]]:

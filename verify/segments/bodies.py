@@ -16,8 +16,7 @@ class Body(NamedTuple):
     """Sum of the attachments at one position (m), dimensionless."""
 
     position: float
-    end: int | None = None
-    """The end, 0 or 1, behind whose joint the body is."""
+    end: int | None = None  # the end, 0 or 1, behind whose joint the body is
     mass: float = 0.0
     rotary_inertia: float = 0.0
     stiffness: float = 0.0

@@ -26,17 +26,12 @@ class Outcome:
     """Measured values of one check."""
 
     id: str
-    worst: float
-    """Largest error over the guaranteed range."""
+    worst: float  # largest error over the guaranteed range
     passed: bool
-    points: Points
-    """(value, error)."""
-    breaks_at: float | None
-    """Value from which the tolerance is exceeded or the input refused; None if neither occurs."""
-    breaks_by: str
-    """'error', 'refused', or empty."""
-    baseline: Points
-    """(value, error) of the standard method; infinite if it fails."""
+    points: Points  # (value, error)
+    breaks_at: float | None  # value from which the tolerance is exceeded or the input refused; None if neither occurs
+    breaks_by: str  # 'error', 'refused', or empty
+    baseline: Points  # (value, error) of the standard method; infinite if it fails
     seconds: float
 
 
@@ -49,12 +44,10 @@ class Check:
     parameter: str
     values: Sequence[float]
     tolerance: float
-    error: Error
-    """Raises InputError where the value is refused."""
+    error: Error  # raises InputError where the value is refused
     beyond: Sequence[float] = ()
     """Values beyond the guaranteed range, to determine where the tolerance is exceeded or the value refused."""
-    refused: bool = False
-    """Whether the range has to end with an InputError and not with a large error."""
+    refused: bool = False  # whether the range has to end with an InputError and not with a large error
     baseline: tuple[Any, ...] = ()
     """(name, error, values if different) of the standard method, which may raise any error."""
     slow: bool = False

@@ -14,8 +14,7 @@ from verify.problem.beam import Beam
 
 D = Decimal
 PI = D("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803")
-BLOCKED = D("1e99")
-"""Diagonal entry of K at an unknown that a support blocks."""
+BLOCKED = D("1e99")  # diagonal entry of K at an unknown that a support blocks
 Bands: TypeAlias = Any
 """Array of Decimal; row j holds the entries (j, j), (j, j + 1), ... up to the half bandwidth."""
 _BENDING = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], object)

@@ -12,8 +12,7 @@ from verify.stress.engine import check, worst
 from verify.stress.reference import ALL, CANTILEVER, PI, STRIP, D, cos, pinned_hertz, sin, sinh
 
 N, MODE = 40, 3
-AT, FROM = 11, 17
-"""Joints at which the field is evaluated and driven."""
+AT, FROM = 11, 17  # joints at which the field is evaluated and driven
 
 
 def deflection(model: str, beam: Beam, hertz: float, x: float, at: float, **more: str) -> complex:

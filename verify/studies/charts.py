@@ -11,8 +11,7 @@ if TYPE_CHECKING:
     from verify.analysis.variants import Variant
     from verify.report.result import Column, Movie, Table
 
-THIN, BROAD = 1.4, 4.0
-"""Widths of lines of discrete models, and of the exact beam below them."""
+THIN, BROAD = 1.4, 4.0  # widths of lines of discrete models, and of the exact beam below them
 MOST_POINTS = 2000
 
 

@@ -23,10 +23,8 @@ if TYPE_CHECKING:
 
 Counts: TypeAlias = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(min_length=1)]
 Row: TypeAlias = dict[str, Any]
-ORDER_TOLERANCE = 1.0
-"""Distance of an observed order from the theoretical one up to which sizes count as asymptotic."""
-STYLES = ("-o", "--s", ":^", "-.d", "-v")
-"""Line and marker of each mode."""
+ORDER_TOLERANCE = 1.0  # distance of an observed order from the theoretical one up to which sizes count as asymptotic
+STYLES = ("-o", "--s", ":^", "-.d", "-v")  # line and marker of each mode
 NOTES = [
     "Order: from the size before. GCI: grid convergence index of this size and the two before, the error bound that a "
     "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
-LONG = 10
-"""Durations of a long run."""
+LONG = 10  # durations of a long run
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 

@@ -20,10 +20,8 @@ if TYPE_CHECKING:
     from verify.report.result import Figure, Result
     from verify.scene.model import Scene
 
-MOST_COUNTED = 200
-"""Modes up to which frequencies by other theories are computed where they have no closed form."""
-MOST_PLATES = 60
-"""The same for plate theory, about 0.1 s a mode."""
+MOST_COUNTED = 200  # modes up to which frequencies by other theories are computed where they have no closed form
+MOST_PLATES = 60  # the same for plate theory, about 0.1 s a mode
 THEORY_COLORS = {"rayleigh": "#8f5bd1", "timoshenko": "#cc3f76", "plate": "#008f8f"}
 CAPTIONS = {
     "mode-errors": "Solid: against the exact beam of the same theory. Dashed: what Euler-Bernoulli theory neglects, "

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 MOST = 100_000
 AGREE = "claims that agree"
-WIDE = 30.0
-"""Ratio of largest to smallest value from which an axis is logarithmic."""
+WIDE = 30.0  # ratio of largest to smallest value from which an axis is logarithmic
 
 
 class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
