@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.errors import InputError
 from verify.files import whole
 from verify.formatting import unit_of
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
-    from verify.arrays import Array
     from verify.scene.model import Scene
 
 FRAMES, FPS = 36, 20  # frames of one period of a mode, and per second

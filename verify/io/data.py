@@ -9,8 +9,12 @@ import numpy as np
 from verify.analysis.margins import sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.arrays import Array
+from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.linear.registry import MODELS
+from verify.quantities.slider import TimeOptions, motion_arguments
+from verify.quantities.waves import FieldOptions, driven_case
+from verify.waves.driven_case import driven
 
 if TYPE_CHECKING:
     from verify.scene.model import Scene
@@ -91,9 +95,6 @@ def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | 
 
 
 def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.quantities.waves import FieldOptions, driven_case
-    from verify.waves.driven_case import driven
-
     if scene.drive is None or not scene.forces:
         raise InputError("what = 'wave': the scene has no drive with forces, add [drive] or export modes")
     field_ = driven(driven_case(scene, FieldOptions(model=request.model, count=count)), cache)
@@ -110,9 +111,6 @@ def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | N
 
 
 def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.dynamics.simulate import simulate
-    from verify.quantities.slider import TimeOptions, motion_arguments
-
     if scene.motion is None:
         raise InputError("what = 'motion': the scene has no [motion], add it or --set motion.duration=1e-3")
     if scene.devices:
