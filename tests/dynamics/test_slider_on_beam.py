@@ -239,18 +239,6 @@ def test_default_steps_resolve_a_step_load_and_report_their_convergence():
     assert len(refined.times) == 11
 
 
-@pytest.mark.parametrize("law", [{"slope": 3e4}, {"law": "coulomb"}])
-def test_friction_dissipates_at_coarse_steps_too(law):
-    """Steps of more than half a turn of the fastest modes."""
-    beam = Beam(length=0.37, width=0.02, thickness=0.0043, youngs_modulus=70e9, density=2700.0)
-    forces = (PointForce(position=0.05, amplitude=0.007), PointForce(position=0.31, amplitude=0.005, phase_deg=70.0))
-    slider = Slider(mass=0.44, mu=0.6, position=0.14, preload=0.3, **law)
-    asked = {"count": 40, "slider": slider, "samples": 5}
-    energy = simulate(beam, forces, 900.0, 5 / 900, step=1 / (64 * 900.0), **asked).energy
-    assert energy.friction_loss >= -1e-20
-    assert energy.friction_on_beam + energy.normal_on_beam < energy.drive_work
-
-
 def test_the_slider_stops_at_the_end_of_its_section_and_of_the_beam():
     sections = (Section(length=0.22, thickness=0.001), Section(length=0.18, thickness=0.0016))
     stepped = Beam(length=0.4, width=0.02, thickness=0.001, youngs_modulus=7e10, density=2700.0, section=sections)

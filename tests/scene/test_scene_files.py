@@ -57,16 +57,6 @@ def test_packaged_scene_loads(name):
     assert scene_from(tables_of(name)) == scene
 
 
-def test_numbers_are_floats_and_studies_their_own_types(tmp_path):
-    scene = scene_of(tmp_path, SCENE + "[spectrum]\nmodes = 7\n[motion]\nduration = 0.02\n" + DRIVE)
-    assert isinstance(scene.beam.density, float)
-    assert scene.studies["spectrum"].modes == 7
-    assert scene.motion.duration == 0.02
-    assert scene.bare.studies == {}
-    assert scene.bare.gate == ()
-    assert scene.bare.forces == scene.forces
-
-
 DRIVE = "[drive]\nfrequency_hz = 310\nforce = [{ position = 0.11, measured_from = 'right', amplitude = 2 }]\n"
 
 
