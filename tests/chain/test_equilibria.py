@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipk, jn_zeros
 
 from verify import bend
-from verify.chain.benchmarks import cantilever_tip, hanging_frequency, rollup_gap, rotating_frequency
+from verify.chain.benchmarks import hanging_frequency, rollup_gap, rotating_frequency
 from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.statics import solve_static
@@ -42,7 +42,6 @@ def test_the_tip_tends_to_the_elastica_with_order_two(load):
     ):
         assert order(np.array(found) - exact) == pytest.approx(2.0, abs=0.15)
         assert found[1] == pytest.approx(exact, rel=2e-3)
-    assert cantilever_tip(load, 30).deflection == pytest.approx(bent[0].deflection / L, rel=1e-9)
 
 
 def elastica_under(along, across, moment):

@@ -7,14 +7,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from math import exp, isfinite, log
-from statistics import median
+from statistics import median, quantiles
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.report.result import Column, Figure, Result, Table
 from verify.report.summary import environment
-from verify.timing import forget, spread
+from verify.timing import forget
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,9 +94,9 @@ def measure(question: Question, limit: float = 5.0) -> list[Row]:
         order, before = None, rows[-1] if rows else None
         if before and before.method == m.name and min(error, before.error) > floor and before.size != size:
             order = log(before.error / error) / abs(log(before.size / size))
-        rows.append(
-            Row(m.name, m.size_name, float(size), error, order, median(own), spread(own) / median(own), m.model)
-        )
+        low, _, high = quantiles(own, n=4, method="inclusive")
+        spread = (high - low) / median(own)
+        rows.append(Row(m.name, m.size_name, float(size), error, order, median(own), spread, m.model))
     return rows
 
 
@@ -153,7 +153,8 @@ RATIO_NOTE = "Time of a method over that of the first of its set at the same err
 
 def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
     """Tables, a log-log chart for each question, and data."""
-    rows = [(q.id, *_cells(row)) for q, rows_of in measured for row in rows_of]
+    sized = [(q, row, row.size_name and f"{row.size_name} = {row.size:.3g}") for q, own in measured for row in own]
+    rows = [(q.id, row.method, size, row.error, row.order, row.seconds, row.spread) for q, row, size in sized]
     compared = {q.id: ratios(q, rows_of) for q, rows_of in measured}
     times = [(title, method, *own) for title, each in compared.items() for method, own in each.items()]
     references = [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured]
@@ -169,11 +170,6 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
     }
     figures = [_figure(q, rows_of) for q, rows_of in measured]
     return Result(tables=tables, figures=figures, data=data)
-
-
-def _cells(row: Row) -> tuple[Any, ...]:
-    size = f"{row.size_name} = {row.size:.3g}" if row.size_name else ""
-    return row.method, size, row.error, row.order, row.seconds, row.spread
 
 
 def _figure(question: Question, rows: Sequence[Row]) -> Figure:

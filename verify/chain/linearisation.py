@@ -36,10 +36,10 @@ class Linearisation:
         pivot = int(abs(row).argmax())
         return np.delete(np.eye(n) - np.outer(np.eye(n)[pivot], row / row[pivot]), pivot, axis=1)
 
-    def squares(self) -> Array:
-        """Signed squares of the undamped circular frequencies, (N - n,), ascending, 1/s^2; negative where unstable.
+    def frequencies(self) -> Array:
+        """Undamped circular frequencies, (N - n,), ascending, rad/s; squares within rounding are 0.
 
-        Squares within rounding are 0. Raises InputError for flutter of a bent rotating chain.
+        Raises InputError at an unstable equilibrium, and for flutter of a bent rotating chain.
         """
         from scipy.linalg import LinAlgError, eigh
 
@@ -52,17 +52,13 @@ class Linearisation:
             scale = FLUTTER * abs(roots) + ROUNDING * abs(roots).max()
             if (np.minimum(abs(roots.real), abs(roots.imag)) > scale).any():
                 raise InputError("the equilibrium is unstable: flutter, give a smaller load or a slower rotation.rate")
-            squares = np.sort(-(roots**2).real)[::2]  # roots come in pairs of both signs
-            return np.where(abs(squares) <= ROUNDING * abs(squares).max(), 0.0, squares)
-        try:  # low frequencies are accurate in the inverse problem
-            return np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1])
-        except LinAlgError:  # unstable, or with a rigid-body rotation
-            squares = eigh(stiffness, mass, eigvals_only=True)
-            return np.where(abs(squares) <= n * np.finfo(float).eps * abs(squares).max(), 0.0, squares)
-
-    def frequencies(self) -> Array:
-        """Undamped circular frequencies, (N - n,), ascending, rad/s. Raises InputError at an unstable equilibrium."""
-        squares = self.squares()
+            squares, rounding = np.sort(-(roots**2).real)[::2], ROUNDING  # roots come in pairs of both signs
+        else:
+            try:  # low frequencies are accurate in the inverse problem
+                squares, rounding = np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1]), 0.0
+            except LinAlgError:  # unstable, or with a rigid-body rotation
+                squares, rounding = eigh(stiffness, mass, eigvals_only=True), n * np.finfo(float).eps
+        squares = np.where(abs(squares) <= rounding * abs(squares).max(), 0.0, squares)
         growing = squares[squares < 0.0]
         if len(growing):
             raise InputError(

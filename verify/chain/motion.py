@@ -58,10 +58,6 @@ class ChainMotion(ABC):
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), rad."""
 
-    @abstractmethod
-    def energies(self) -> Array:
-        """Kinetic, elastic and gravitational energy, (3, n), J."""
-
     def deflection(self, x: Sequence[float]) -> Array:
         """Deflection of material points at x of the straight chain, on their links, (n, len(x)), m."""
         columns, heights = [], self.joints()[..., 1]

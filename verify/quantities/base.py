@@ -77,10 +77,6 @@ class Quantity:
         self.types = {field[0]: field[1] for field in fields}
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
-    def __call__(self, *values: Any, **arguments: Any) -> Value:
-        """Call the function, with option groups as values."""
-        return self.function(*values, **arguments)
-
     @property
     def arguments(self) -> list[dict[str, Any]]:
         """The arguments as plain data: name, type, whether required, default, description."""
