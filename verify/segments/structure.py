@@ -13,6 +13,7 @@ from verify.linear.system import StructuralSystem
 from verify.options import Attachment, Joints, Wall
 from verify.problem.supports import FIXED
 from verify.segments import shear
+from verify.segments.attachments import attachment_weights
 from verify.segments.bodies import Attached
 from verify.segments.chain import Chain, Motions, at_joints, link_mass, plain_factors, selection, squares
 
@@ -78,7 +79,7 @@ class ChainStructure(DiscreteModel):
 
     @cached_property
     def _weights(self) -> tuple[Any, Any]:
-        return self.attached.weights(self.chain)
+        return attachment_weights(self.chain, [body.position for body in self.attached.bodies], self.attachment)
 
     @cached_property
     def _rotations(self) -> Any:
