@@ -3,10 +3,12 @@
 Times are processor seconds of one thread, medians over the rounds, from the beam to the result.
 """
 
+import platform
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from math import exp, isfinite, log
+from pathlib import Path
 from statistics import median, quantiles
 from time import process_time
 from typing import TYPE_CHECKING, Any
@@ -191,9 +193,6 @@ def _figure(question: Question, rows: Sequence[Row]) -> Figure:
 
 def processor() -> str:
     """Name of the processor."""
-    import platform
-    from pathlib import Path
-
     info = Path("/proc/cpuinfo")
     lines = info.read_text("utf-8").splitlines() if info.exists() else []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]

@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from verify.errors import InputError, near_name
+from verify.parallel import map_processes
 
 MODULES = ("modes", "waves", "motion")
 DIGITS = 60
@@ -133,8 +134,6 @@ def run(
     checks: Sequence[Check], jobs: int | None = None, progress: Callable[[str], None] = lambda id: None
 ) -> list[Outcome]:
     """Outcomes in the order of the checks, with `jobs` processes; default: VERIFY_JOBS."""
-    from verify.parallel import map_processes
-
     ids = [one.id for one in checks]
     return map_processes(_run_by_id, ids, lambda n: progress(ids[n - 1]), jobs)
 

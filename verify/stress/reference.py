@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from msgspec.structs import replace
+from scipy.sparse import diags_array
 
 from verify.problem.beam import Beam
 
@@ -139,8 +140,6 @@ def response(k: Bands, m: Bands, omega: D, at: int) -> list[D]:
 
 def sparse(k: Bands, m: Bands) -> list[Any]:
     """K and M of the free unknowns in double precision, scipy.sparse."""
-    from scipy.sparse import diags_array
-
     moves, matrices = k[:, 0] < BLOCKED, []
     for bands in (k, m):
         upper = [bands[: len(bands) - c, c].astype(float) for c in range(bands.shape[1])]
