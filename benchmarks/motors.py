@@ -13,7 +13,7 @@ from time import process_time
 from msgspec.structs import replace
 
 from verify import Beam, Contact, Foot, PointForce, Slider, simulate
-from verify.bench.work_precision import machine
+from verify.report.summary import environment
 
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = (PointForce(position=0.0116, amplitude=3.0), PointForce(position=0.4884, amplitude=3.0, phase_deg=90.0))
@@ -33,7 +33,7 @@ def main(rounds: int) -> None:
     """Print the table."""
     cases = list(product(FIELDS, SLIDERS, ("coulomb", "tanh"), ("one-way", "two-way")))
     table = [[seconds(*case) for case in cases] for _ in range(rounds + 1)][1:]  # the first compiles
-    print(", ".join(machine().values()), "\n")
+    print(", ".join(environment().values()), "\n")
     print("| field | slider | friction | coupling | processor seconds for one second |\n|---|---|---|---|---|")
     for case, spent in zip(cases, zip(*table, strict=True), strict=True):
         print(f"| {' | '.join(case)} | {median(spent):.3f} |")

@@ -13,7 +13,7 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from verify.bench.work_precision import machine
+from verify.report.summary import environment
 from verify.scene.load import packaged_scenes
 
 
@@ -38,7 +38,7 @@ def main(rounds: int, scenes: list[str]) -> None:
         for _ in range(rounds):
             for scene in scenes:
                 warm[scene].append(seconds(scene, folder))
-    print(", ".join(machine().values()), f", load {os.getloadavg()[0]:.1f}\n")
+    print(", ".join(environment().values()), f", load {os.getloadavg()[0]:.1f}\n")
     print("| scene | cold, processor s | warm, processor s | cold, wall s | warm, wall s |\n|---|---|---|---|---|")
     for scene, times in warm.items():
         cells = cold[scene][0], median(t for t, _ in times), cold[scene][1], min(wall for _, wall in times)

@@ -7,6 +7,14 @@ from msgspec.structs import replace
 from verify import Beam, Device, ExactModel, HermiteModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
+STRIP_TOML = """
+[beam]
+length = 0.73
+width = 0.031
+thickness = 0.0023
+youngs_modulus = 113e9
+density = 4470
+"""
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 BAR = Beam(length=0.41, width=0.03, thickness=0.037, youngs_modulus=206e9, density=7850.0, poissons_ratio=0.29)
 ENDS = ("pinned", "clamped", "free", "guided")
@@ -48,14 +56,9 @@ MODELS = {
     "fem": lambda beam, count=14, **settings: HermiteModel(beam, count, **settings),
 }
 PAIRED = Beam(
-    length=0.7,
-    width=0.02,
-    thickness=0.001,
-    youngs_modulus=70e9,
-    density=2700.0,
-    supports=("clamped", "clamped"),
-    section=(Section(length=0.2), Section(length=0.3, thickness=0.3, density=1e8), Section(length=0.2)),
-)
+    length=0.7, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0, supports=("clamped", "clamped"),
+    section=(Section(length=0.2), Section(length=0.3, thickness=0.3, density=1e8), Section(length=0.2))
+)  # fmt: skip
 """Two thin strips clamped in a block too heavy to move: frequencies 4 and 5 are 2.4e-7 apart."""
 ABSTRACT = Beam(length=0.73, bending_stiffness=3.7, mass_per_length=0.31, rotary_inertia=3e-5, shear_stiffness=2e4)
 """A beam by its stiffnesses, slenderness L sqrt(A / I) = 74."""

@@ -120,16 +120,6 @@ def test_what_is_added_is_named():
         beam.check_features("the wheel", ("section", "tension"))
 
 
-def test_supports_in_a_row_of_numpys_are_those_of_a_pair():
-    sizes = {"length": 0.3, "width": 0.015, "thickness": 0.002, "youngs_modulus": 110e9, "density": 4500.0}
-    found = Beam(**sizes, supports=np.array(["clamped", "free"]))
-    assert found == Beam(**sizes, supports=("clamped", "free"))
-    assert [type(one) for one in found.supports] == [str, str]
-    for wrong in (np.array([["clamped", "free"]]), np.array(["clamped"]), np.array("clamped")):
-        with pytest.raises(InputError, match=r"^beam\.supports"):
-            Beam(**sizes, supports=wrong)
-
-
 def test_numbers_of_numpy_and_whole_numbers_become_pythons():
     beam = Beam(**SIZES | {"length": 1, "width": np.float32(0.5), "loss_factor": np.array(0.01)})
     assert [type(one) for one in (beam.length, beam.width, beam.loss_factor)] == [float] * 3

@@ -23,6 +23,7 @@ from verify import (
     load_scene,
     simulate,
 )
+from verify.dynamics.belt import creep_speed, stick_slip_times
 from verify.errors import NAMES, SENTENCE, near_name, one_line, shown
 
 TITANIUM = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
@@ -154,6 +155,9 @@ VERBS = [
     (lambda: free_vibration(STRIP, 0, 1e-3, model="fem", count=9), r"shape = 0"),
     (lambda: bend(CANTILEVER, 9, nan), r"load\.force y = nan"),
     (lambda: bend(STRIP, 9, 1.0), r"beam\.supports"),
+    *((lambda part=part: creep_speed(0.2, 900.0, part * 1.962), "acceleration = ") for part in (1.0, -1.2, 1 - 1e-8)),
+    (lambda: stick_slip_times(0.7, 310.0, 1.7, 1.7, 0.11), "kinetic"),
+    (lambda: stick_slip_times(0.7, 310.0, 2.9, 1.7, 1e12), "lower the speed"),
     (lambda: bend(CANTILEVER, 0, 1.0), r"count = 0"),
     (lambda: Beam(**TITANIUM, mass=np.array(3.0)), r"beam\.mass = 3\.0: give a list"),
     (

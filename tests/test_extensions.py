@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.beams import STRIP_TOML
 from verify import SegmentModel, load_scene, run_scene
 from verify.cli import status_of
 from verify.engines import ENGINES, chain_of
@@ -28,14 +29,10 @@ load = toys:Load
 Toy = toys:TOY
 """
 WEIGHT = 4470.0 * 0.031 * 0.0023 * 0.73  # kg
-SCENE = """name = "toy"
-[beam]
-length = 0.73
-width = 0.031
-thickness = 0.0023
-youngs_modulus = 113e9
-density = 4470.0
-[load]
+SCENE = (
+    'name = "toy"'
+    + STRIP_TOML
+    + """[load]
 factors = [1.0, 2.5]
 [[gate]]
 id = "sines-mode-2"
@@ -52,6 +49,7 @@ expect = 2.09393127
 within = 1e-6
 why = "rho b h L g."
 """
+)
 
 
 @pytest.fixture

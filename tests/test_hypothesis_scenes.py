@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from verify import InputError
-from verify.scene.load import override, packaged_scenes, scene_from, tables_of
+from verify.scene.load import packaged_scenes, scene_from, tables_of
 from verify.scene.model import Scene
 from verify.scene.schema import sections
 
@@ -62,20 +62,3 @@ def test_packaged_scene_with_changed_values(data):
         if not tables:
             break
     check(tables)
-
-
-@settings(max_examples=150, deadline=None)
-@given(
-    st.sampled_from(sorted(WHOLE)),
-    st.lists(st.sampled_from([*KEYS, *sections(), "0", "7"]), min_size=1, max_size=4).map(".".join),
-    st.text(string.printable, max_size=8) | st.floats().map(str) | st.sampled_from(["1-3", "5%", "[]", "{}"]),
-)
-def test_any_override_gives_tables_or_a_sentence(name, key, value):
-    tables = deepcopy(WHOLE[name])
-    tables["gate"] = tables["gate"][:3]
-    try:
-        override(tables, f"{key}={value}")
-    except InputError as error:
-        assert "\n" not in str(error)
-    else:
-        check(tables)

@@ -39,17 +39,14 @@ from verify.problem.device import Device
 from verify.problem.supports import FIXED
 from verify.validation import check_integer
 
-EXACT_MODES = 400
-"""Default number of modes of a time basis; higher modes respond quasi-statically."""
+EXACT_MODES = 400  # default number of modes of a time basis; higher modes respond quasi-statically
 MOST_MODES = 100_000
 _TAYLOR_DEGREE = 8
 """Degree of the shapes' polynomials in time integration: error 1e-9 for the highest mode, less for lower modes."""
-_TOGETHER, _SWEPT_TOGETHER = 32, 128
-"""Number of modes, or frequencies of a sweep, in one multiple-shooting solution."""
+_TOGETHER, _SWEPT_TOGETHER = 32, 128  # number of modes, or frequencies of a sweep, in one multiple-shooting solution
 _SAME_PLACE = 1e-9
 """Distance, relative to the beam's length, below which two imposed displacements have the same position."""
-_NEAR = 1e-4
-"""Relative distance to an undamped resonance within which field and modal part differ by rounding alone."""
+_NEAR = 1e-4  # relative distance to an undamped resonance within which field and modal part differ by rounding alone
 _LOSSES = 0.06 * np.arange(1.0, 7.0)
 """Relative loss factors from which a tail is extrapolated to zero loss: error 1e-9, the product of their squares."""
 

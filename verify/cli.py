@@ -16,8 +16,7 @@ BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
 COMMANDS = (
     *("run", "plan", "scenes", "quantities", "measure", "table", "choose", "sweep"),
     *("compare", "bench", "stress", "export", "diff", "schema"),
-)
-"""Names of the commands and of their modules in `verify.commands`."""
+)  # names of the commands and of their modules in `verify.commands`
 
 
 class BrokenPipe(Exception):  # noqa: N818

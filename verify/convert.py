@@ -13,8 +13,7 @@ from verify.units import FACTORS, in_si
 
 T = TypeVar("T")
 
-RELATIVE = "relative"
-"""Key in `extra` of a dimensionless number, which a command line accepts in per cent as well."""
+RELATIVE = "relative"  # key in `extra` of a dimensionless number, which a command line accepts in per cent as well
 LONGEST_RANGE = 10_000
 _WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/*^]")
 _PLAIN = {"int": "a whole number", "float": "a number", "str": "a word", "bool": "true or false"}

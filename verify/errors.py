@@ -3,10 +3,8 @@
 from collections.abc import Sequence
 from reprlib import Repr
 
-SENTENCE, VALUE = 1600, 120
-"""Largest length of a message, and of a value in a message, characters."""
-NAMES = 12
-"""Largest number of known names in a message."""
+SENTENCE, VALUE = 1600, 120  # largest length of a message, and of a value in a message, characters
+NAMES = 12  # largest number of known names in a message
 
 
 class InputError(ValueError):

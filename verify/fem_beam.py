@@ -30,8 +30,7 @@ from verify.problem.beam import Beam
 from verify.problem.supports import FIXED
 from verify.validation import MOST_PARTS, check_integer
 
-RIGID = 1e14
-"""Largest stiffness relative to that of an element: above it frequencies change by less than 1e-13."""
+RIGID = 1e14  # largest stiffness relative to that of an element: above it frequencies change by less than 1e-13
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ from typing import NamedTuple
 from verify.errors import written
 
 PREFIXES = {"G": 1e-9, "M": 1e-6, "k": 1e-3, "": 1.0, "m": 1e3, "µ": 1e6, "n": 1e9, "p": 1e12, "f": 1e15, "a": 1e18}
-LARGEST = {"m": "k", "g": "k", "s": ""}
-"""Largest prefix in use: no megametres, no kiloseconds."""
+LARGEST = {"m": "k", "g": "k", "s": ""}  # largest prefix in use: no megametres, no kiloseconds
 
 
 class Unit(NamedTuple):

@@ -25,8 +25,7 @@ _NAMES = (
 _SOURCES = sorted({Path(__file__), *(source for name in _NAMES for source in _PACKAGE.glob(name))})
 _DIGEST = sha256(b"".join(source.read_bytes() for source in _SOURCES)).hexdigest()[:16]
 _CACHE = Path(config.CACHE_DIR or _PACKAGE / "__pycache__") / f"kernels-{_DIGEST}"  # type: ignore[attr-defined]
-FAST = {"reassoc", "contract", "nsz"}
-"""`fastmath` of sums over modes, whose order is free."""
+FAST = {"reassoc", "contract", "nsz"}  # `fastmath` of sums over modes, whose order is free
 
 
 @overload  # `@inline`: the decorated function keeps its type

@@ -9,8 +9,7 @@ from verify.errors import InputError
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-VARIABLE = "VERIFY_JOBS"
-"""Environment variable with the number of worker processes; 1 where it is unset."""
+VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; 1 where it is unset
 
 
 def map_processes(

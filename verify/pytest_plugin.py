@@ -27,20 +27,17 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile
     """Collect any .toml named on the command line, and those with a beam and gates in folders."""
     if file_path.suffix != ".toml":
         return None
-    if not parent.session.isinitpath(file_path) and not _has_gates(file_path):
-        return None
+    if not parent.session.isinitpath(file_path):
+        from verify.errors import InputError
+        from verify.scene.load import read_toml
+
+        try:
+            tables = read_toml(file_path)
+        except InputError:
+            return None
+        if not isinstance(tables.get("gate"), list) or "beam" not in tables:
+            return None
     return SceneFile.from_parent(parent, path=file_path)
-
-
-def _has_gates(path: Path) -> bool:
-    from verify.errors import InputError
-    from verify.scene.load import read_toml
-
-    try:
-        tables = read_toml(path)
-    except InputError:
-        return False
-    return isinstance(tables.get("gate"), list) and "beam" in tables
 
 
 class SceneFile(pytest.File):

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from statistics import median, quantiles
+from statistics import median
 from time import get_clock_info, perf_counter, process_time
 
 _SOLVERS = ("verify.elements.", "verify.segments.", "verify.exact.", "verify.analytic_modes", "verify.dynamics.")
@@ -21,12 +21,6 @@ def interleaved_medians(jobs: Sequence[Callable[[], object]], budget_s: float = 
             times.append(_CLOCK())
         rounds.append([after - before for before, after in pairwise(times)])
     return [median(times) for times in zip(*rounds, strict=True)]
-
-
-def spread(times: Sequence[float]) -> float:
-    """Interquartile range of two times or more."""
-    low, _, high = quantiles(times, n=4, method="inclusive")
-    return high - low
 
 
 def forget() -> None:

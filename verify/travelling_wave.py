@@ -47,8 +47,7 @@ __all__ = [
 ]  # fmt: skip
 POINTS_PER_HALF_WAVE = 24
 """Points per half wavelength for tables of surface quantities and as start of the search for extremes."""
-POINTS_PER_PART = 8
-"""Points per segment or element in the search for extremes: a discrete field ripples at that length."""
+POINTS_PER_PART = 8  # points per segment or element in the search for extremes: a discrete field ripples at that length
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -13,8 +13,7 @@ FACTORS = {
     "Hz": {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6},
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
     "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "um/s": 1e-6},
-}
-"""Factor of every unit to the SI unit of the key; lb is the international pound, lbf its weight (NIST SP 811, B.8)."""
+}  # factor of every unit to the SI unit of the key; lb is the international pound, lbf its weight (NIST SP 811, B.8)
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 ALIKE = str.maketrans({"^": "", "³": "3", "µ": "u", "μ": "u"})
 

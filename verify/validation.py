@@ -12,8 +12,7 @@ from msgspec import Meta
 from verify.convert import RELATIVE, convert, entry_of, sentence
 from verify.errors import InputError, near_name, shown
 
-MOST_PARTS = 10**9
-"""Largest number of segments or elements."""
+MOST_PARTS = 10**9  # largest number of segments or elements
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
 """A dimensionless number, which a command line also accepts in per cent: 0.001 or 0.1%."""
 Item = TypeVar("Item")

@@ -67,7 +67,6 @@ def test_the_observed_order_of_an_exact_power_is_that_power(order):
 @pytest.mark.parametrize(
     ("counts", "errors", "message"),
     [
-        ((10, 20), (1e-3, 1e-4), "three or more"),
         ((10, 20, 20), (1e-3, 1e-4, 1e-4), "three or more"),
         ((10, 20, 40), (1e-3, -1e-4, -1e-5), "changes sign"),
         ((10, 20, 40), (1e-9, 1e-11, 3e-13), "within rounding"),
@@ -138,7 +137,6 @@ def test_values_that_do_not_converge_have_an_infinite_band():
 @pytest.mark.parametrize(
     ("counts", "values", "message"),
     [
-        ((10, 20), (1.0, 1.1), "three different sizes"),
         ((10, 20, 20), (1.0, 1.1, 1.2), "three different sizes"),
         ((10, 20, 30), (1.0, 0.0, 1.2), "other than zero"),
         ((10, 20, 30), (1.0, 1.1, 1.1 + 1e-14), "within rounding"),
@@ -228,11 +226,9 @@ def worst_error(bench, model, modes, count):
     [
         ("segment", ("clamped", "clamped"), range(3, 4), 70),
         ("segment", ("clamped", "free"), range(2, 3), 70),
-        ("segment", ("pinned", "clamped"), range(4, 5), 70),
         ("segment", ("free", "free"), range(3, 4), 70),
         ("segment", ("guided", "pinned"), range(5, 6), 70),
         ("fem", ("clamped", "guided"), range(3, 4), 40),
-        ("fem", ("pinned", "pinned"), range(4, 5), 40),
         ("segment", ("pinned", "pinned"), range(7, 10), 60),
         ("fem", ("pinned", "pinned"), range(7, 10), 60),
     ],

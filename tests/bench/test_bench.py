@@ -77,18 +77,9 @@ def test_ratio_compares_equal_errors(capsys):
     assert data["ratios"]["second"][3] is None
 
 
-def test_segments_and_elements_converge_at_order_four():
-    (question,) = questions(["modes"], Problem(mode=5, sizes=(49, 98, 196)))
-    rows = measure(question, limit=0.5)
-    orders = {row.method: row.order for row in rows if row.size == 196}
-    assert 3.95 < orders["segments"] < 4.05
-    assert 3.95 < orders["elements"] < 4.05
-    assert 5.9 < orders["mean of both"] < 6.1
-    assert max(row.error for row in rows if row.method == "exact") == 0.0
-
-
 @pytest.mark.parametrize(
-    ("name", "bound"), [("field", 2e-2), ("transient", 2e-2), ("slider", 0.1), ("ride", 1e-3), ("chain", 1e-3)]
+    ("name", "bound"),
+    [("modes", 1e-3), ("field", 2e-2), ("transient", 2e-2), ("slider", 0.1), ("ride", 1e-3), ("chain", 1e-3)],
 )
 def test_every_set_reaches_its_reference(name, bound):
     found = list(questions([name], Problem(sizes=(98,))))

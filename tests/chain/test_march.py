@@ -1,20 +1,11 @@
-"""The Runge-Kutta march with other accelerations than a chain's, and in pieces under forces that change."""
-
-from dataclasses import replace
+"""The Runge-Kutta march with another acceleration than a chain's."""
 
 import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from verify.chain import rigid_links
-from verify.chain.kinematics import at_rest
-from verify.chain.motion import simulate
-from verify.chain.runge_kutta import ACCELERATION, DONE, DORMAND_PRINCE, RK4, integrate, march
-from verify.chain.system import LinkLoad, build_system
+from verify.chain.runge_kutta import ACCELERATION, DONE, DORMAND_PRINCE, RK4, integrate
 from verify.jit import jit
-from verify.problem.beam import Beam
-
-STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0)
 
 
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False)
@@ -66,30 +57,3 @@ def test_controlled_steps_converge_with_their_tolerance():
     loose, tight = (error(DORMAND_PRINCE, 0.1, size) for size in (1e-5, 1e-8))
     assert tight < 1e-6
     assert 100.0 < loose / tight < 10_000.0
-
-
-@jit
-def advance(forces, spacing, links, loads, numbers, scratch, a, c, weights, n, y, k, clock, kept, control, counts):
-    """March in pieces from compiled code, each under its own force at the last load."""
-    samples = kept[1]
-    for piece in range(forces.size):
-        loads[loads.shape[0] - 1, rigid_links.FY] = forces[piece]
-        samples[0], counts[3] = (piece + 1) * spacing, 0
-        march(rigid_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock, samples[:1], kept,
-              control, counts, 1000)  # fmt: skip
-
-
-def test_a_march_in_pieces_from_compiled_code_is_that_of_loads_that_jump():
-    forces, spacing, n = np.array([0.7, -1.9, 0.4]), 1.3e-4, 7
-    system = build_system(STRIP, n)
-    state = at_rest(system)
-    for piece, force in enumerate(forces):
-        changed = replace(system, loads=(LinkLoad(link=3, at=0.01, force=(0.0, force)),))
-        state = simulate(changed, state, [(piece + 1) * spacing], tolerance=1e-11).state(0)
-    model = rigid_links.flatten(replace(system, loads=(LinkLoad(link=3, at=0.01),)))
-    y, control, clock = np.zeros(2 * n + 2), np.array([1e-11, 1e-20, 1e-16, np.inf, 0, 0, 0]), np.array([0.0, 1e-7])
-    work = (y, np.zeros((9, y.size)), clock, np.zeros((2, y.size)), control, np.zeros(4, dtype=np.int64))
-    advance(forces, spacing, *model, *DORMAND_PRINCE, n, *work)
-    assert clock[0] == 3 * spacing
-    assert y[:n] == pytest.approx(np.cumsum(state.angles), rel=1e-8, abs=1e-9 * abs(state.angles).max())
-    assert y[n : 2 * n] == pytest.approx(np.cumsum(state.rates), rel=1e-7, abs=1e-8 * abs(state.rates).max())

@@ -41,12 +41,6 @@ def test_the_force_of_a_layer_is_that_of_return_mapping(phi, r, epsilon):
     assert layer.force(phi, r, epsilon) == pytest.approx(return_mapped(phi, r, epsilon), abs=2e-5)
 
 
-def test_no_load_speeds_of_a_layer():
-    """By return mapping in 2e6 steps; for small contacts 2 G(psi) = G(phi), psi/phi = 2 sin(pi/18)."""
-    assert layer.no_load_speed(1.27, 0.4) == pytest.approx(0.7548422402, rel=1e-9)
-    assert (1.0 - layer.no_load_speed(1e-3)) / 5e-7 == pytest.approx(4.0 * sin(pi / 18) ** 2, rel=1e-6)
-
-
 @given(phi=ANGLES, r=SPEEDS, epsilon=COMPLIANCES)
 def test_a_layer_transmits_at_most_mu_n_and_less_at_a_higher_speed(phi, r, epsilon):
     slow, fast = layer.force(phi, r, epsilon), layer.force(phi, r + 0.05, epsilon)

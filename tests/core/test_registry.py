@@ -23,18 +23,6 @@ def models(tmp_path, monkeypatch):
     return Registry("model", "toys.models", own=[NEAR])
 
 
-def test_known_names_need_no_entry_points(models, monkeypatch):
-    monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: pytest.fail("looked up"))
-    assert models["near"] is NEAR
-    assert models.named("near") is NEAR
-    assert models.built_in == ("near",)
-
-
-def test_entry_points_join_the_members(models):
-    assert list(models) == ["near", "far"]
-    assert models["far"].name == "far"
-
-
 def test_broken_entry_points_are_left_out(models):
     assert "lost" not in models
     with pytest.raises(InputError, match=r"'lost' of toys, no_such_module:LOST, cannot be used .*No module named"):

@@ -10,20 +10,12 @@ from verify import Beam, Device, ExactModel, PointForce, PointMass, PointSpring,
 from verify.errors import InputError, ResonanceError
 
 BAR = Beam(
-    length=0.61,
-    width=0.023,
-    thickness=0.031,
-    youngs_modulus=113e9,
-    density=4470.0,
-    supports=("clamped", "free"),
+    length=0.61, width=0.023, thickness=0.031, youngs_modulus=113e9, density=4470.0, supports=("clamped", "free"),
     section=(Section(length=0.2), Section(length=0.17, thickness=0.019), Section(length=0.24, youngs_modulus=70e9)),
-    mass=(
-        PointMass(position=0.29, mass=0.3, rotary_inertia=4e-4),
-        PointMass(position=0.61, mass=0.11, rotary_inertia=2e-5),
-    ),
-    spring=(PointSpring(position=0.11, stiffness=2e6, rotational=700.0),),
-    foundation=3.1e6,
-)
+    mass=(PointMass(position=0.29, mass=0.3, rotary_inertia=4e-4),
+          PointMass(position=0.61, mass=0.11, rotary_inertia=2e-5)),
+    spring=(PointSpring(position=0.11, stiffness=2e6, rotational=700.0),), foundation=3.1e6,
+)  # fmt: skip
 PLAIN = replace(BAR, section=(), mass=(), spring=(), foundation=0.0)
 LOSSY = replace(BAR, loss_factor=0.013)
 FORCES = (

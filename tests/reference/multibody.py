@@ -88,16 +88,6 @@ def elastica_tip(load):
     return deflection, 1 - np.sqrt(2) / alpha * np.sqrt(2 * p**2 - 1)
 
 
-def woinowsky_krieger(amplitude):
-    """Frequency ratio of a hinged beam with immovable ends, amplitude in radii of gyration.
-
-    q'' + q + (a^2/4) q^3 = 0 of unit amplitude: S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35. Exact for the
-    first mode where the strain is its mean along the beam and slopes are small.
-    """
-    cubic = amplitude**2 / 4
-    return np.pi * np.sqrt(1 + cubic) / (2 * ellipk(cubic / (2 * (1 + cubic))))
-
-
 def rigid_motion(system, duration):
     """T -> (heights of the joints, their rates, the joints' speeds along x), from rest by DOP853 on the multipliers."""
     n = system.n_links

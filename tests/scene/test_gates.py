@@ -5,7 +5,8 @@ from math import inf, nan
 import pytest
 from msgspec.structs import replace
 
-from verify import Beam, load_scene, run_scene
+from tests.beams import STRIP, STRIP_TOML
+from verify import load_scene, run_scene
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.convert import convert
 from verify.errors import InputError
@@ -22,7 +23,7 @@ def _own_quantities(monkeypatch):
     monkeypatch.setattr(QUANTITIES, "_members", dict(QUANTITIES._members))
 
 
-SCENE = Scene(name="strip", beam=Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0))
+SCENE = Scene(name="strip", beam=STRIP)
 
 
 def judged(value, **band):
@@ -118,37 +119,29 @@ def test_gate_without_a_clear_band_is_refused(band, message):
 
 # --- Run ---
 
-SCENE_RUN = """
-name = "s"
-[beam]
-length = 0.73
-width = 0.031
-thickness = 0.0023
-youngs_modulus = 113e9
-density = 4470
-[drive]
+SCENE_RUN = f"""name = "s"{STRIP_TOML}[drive]
 frequency_hz = 311
-force = [{ position = 0.11, measured_from = "right", amplitude = 2.5 }]
+force = [{{ position = 0.11, measured_from = "right", amplitude = 2.5 }}]
 [spectrum]
 modes = 3
 count = 12
 [[gate]]
 id = "segments"
 quantity = "mode.frequency_error"
-arguments = { model = "segment", mode = 3, count = 20 }
+arguments = {{ model = "segment", mode = 3, count = 20 }}
 expect = -3.6e-5
 within = 5e-6
 why = "mu^4/1440"
 [[gate]]
 id = "wrong"
 quantity = "mode.frequency"
-arguments = { model = "analytic", mode = 2 }
+arguments = {{ model = "analytic", mode = 2 }}
 at_most = 1.0
 why = "test"
 [[gate]]
 id = "too-few"
 quantity = "mode.frequency"
-arguments = { model = "fem", mode = 40, count = 3 }
+arguments = {{ model = "fem", mode = 40, count = 3 }}
 at_most = 1.0
 why = "test"
 """

@@ -4,18 +4,14 @@ from xml.etree import ElementTree
 
 import pytest
 
-from verify import Beam, run_scene
+from tests.beams import STRIP, STRIP_TOML
+from verify import run_scene
 from verify.exact.closed_forms import frequency_hz
 
-SCENE = """
-name = "mine"
-[beam]
-length = 0.73
-width = 0.031
-thickness = 0.0023
-youngs_modulus = 113e9
-density = 4470
-[[gate]]
+SCENE = (
+    'name = "mine"'
+    + STRIP_TOML
+    + """[[gate]]
 id = "good"
 quantity = "mode.frequency_error"
 arguments = { model = "segment", mode = 3, count = 20 }
@@ -29,6 +25,7 @@ arguments = { mode = 3, count = 20 }
 expect = EXACT
 why = "two-sided"
 """
+)
 
 
 @pytest.fixture(scope="module")
@@ -41,8 +38,7 @@ def imported(tmp_path_factory):
 
 @pytest.fixture
 def scene(imported, pytester):
-    beam = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
-    scene = SCENE.replace("EXACT", repr(frequency_hz(beam, 3)))
+    scene = SCENE.replace("EXACT", repr(frequency_hz(STRIP, 3)))
 
     def write(name="any name.toml", text=scene, **replaced):
         path = pytester.path / name

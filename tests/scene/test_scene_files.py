@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from tests.beams import STRIP_TOML
 from verify import Beam, load_scene
 from verify.errors import InputError
 from verify.scene.load import STARTER, packaged_scenes, scene_from, tables_of, toml_text
@@ -14,14 +15,6 @@ from verify.scene.warnings import static_sag, unit_warnings
 
 # --- Loading ---
 
-BEAM = """
-[beam]
-length = 0.73
-width = 0.031
-thickness = 0.0023
-youngs_modulus = 113e9
-density = 4470
-"""
 GATE = """
 [[gate]]
 id = "g"
@@ -31,7 +24,7 @@ expect = 1.0
 within = 1.0
 why = "test"
 """
-SCENE = 'name = "s"' + BEAM + GATE
+SCENE = 'name = "s"' + STRIP_TOML + GATE
 
 
 def scene_of(tmp_path, text, *overrides):
@@ -55,16 +48,6 @@ def test_packaged_scene_loads(name):
     assert all(gate.reference for gate in scene.gate) or name == str(STARTER)
     assert unit_warnings(scene) == ()
     assert scene_from(tables_of(name)) == scene
-
-
-def test_numbers_are_floats_and_studies_their_own_types(tmp_path):
-    scene = scene_of(tmp_path, SCENE + "[spectrum]\nmodes = 7\n[motion]\nduration = 0.02\n" + DRIVE)
-    assert isinstance(scene.beam.density, float)
-    assert scene.studies["spectrum"].modes == 7
-    assert scene.motion.duration == 0.02
-    assert scene.bare.studies == {}
-    assert scene.bare.gate == ()
-    assert scene.bare.forces == scene.forces
 
 
 DRIVE = "[drive]\nfrequency_hz = 310\nforce = [{ position = 0.11, measured_from = 'right', amplitude = 2 }]\n"
@@ -239,7 +222,7 @@ def test_schema_describes_every_key():
 # --- Overrides ---
 
 SCENE_OVERRIDES = f"""
-name = "s"{BEAM}
+name = "s"{STRIP_TOML}
 [drive]
 frequency_hz = 310
 force = [{{ position = 0.11 }}, {{ position = 0.52, phase_deg = 70 }}]

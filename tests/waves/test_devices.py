@@ -84,15 +84,6 @@ def test_segments_and_elements_with_devices_are_of_order_four(model, beam, devic
     assert 1e-8 < errors[1] < (1e-3 if model is SegmentModel else 1e-4)
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_a_force_equal_to_its_reaction_replaces_a_device(model):
-    solve, device = MODELS[model](STRIP).harmonic, matched_device(STRIP, 739.0, 0.81)
-    passive = solve(FORCES[:1], 739.0, devices=device)
-    reaction = passive.forces[-1]
-    active = Device(position=0.81, amplitude=reaction.amplitude, phase_deg=reaction.phase_deg)
-    assert off(solve(FORCES[:1], 739.0, devices=active).deflection(X), passive.deflection(X)) < 1e-10
-
-
 @pytest.mark.parametrize("model", ["exact", "elements"])
 def test_a_dashpot_dissipates_the_power_of_the_forces(model):
     device = Device(position=0.71, dashpot=3.1, stiffness=5200.0, mass=0.002)

@@ -15,24 +15,19 @@ from verify.linear.modes import Modes
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
 """Bound of rounding in a relative frequency error (measured: 1.1e-14 up to 10^4 segments or elements)."""
-ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
-"""Smallest error for an observed order; below it rounding affects the order."""
+ORDER_FLOOR = 50 * EIGENVALUE_FLOOR  # smallest error for an observed order; below it rounding affects the order
 ORDER_SPREAD = 0.5
 """Largest distance of orders from size to size from the theoretical one, or their middle, in the asymptotic range."""
 AT_REST = 1e-11
 """Fraction of the typical size below which a shape is zero, such as mode 3 of a pinned beam at the nodes of 3 parts."""
-LEAST_MAC = 0.5
-"""Smallest MAC of paired modes."""
+LEAST_MAC = 0.5  # smallest MAC of paired modes
 LOW_MAC = 0.8
 """MAC below which supports are different: 0.62 and 0.75 between the first modes of a clamped beam and a cantilever;
 mode 6 of a cantilever of 20 links has 0.996 with the exact one."""
 
-SAFETY = 1.25
-"""Factor of safety on the extrapolated error for three sizes (Roache)."""
-VALUE_ROUNDING = 1e-12
-"""Relative difference of values that is rounding."""
-_LOWEST, _HIGHEST = 1e-3, 40.0
-"""Range of observed orders."""
+SAFETY = 1.25  # factor of safety on the extrapolated error for three sizes (Roache)
+VALUE_ROUNDING = 1e-12  # relative difference of values that is rounding
+_LOWEST, _HIGHEST = 1e-3, 40.0  # range of observed orders
 
 
 def relative_error(value: T, exact: T) -> T:
@@ -165,14 +160,10 @@ def asymptotic_order(
 class GridConvergence(msgspec.Struct, frozen=True, kw_only=True):
     """Estimate of the discretisation error at the finest of three sizes."""
 
-    value: float
-    """Value at the finest size."""
-    order: float | None
-    """Observed order; None where the values do not converge."""
-    extrapolated: float
-    """Richardson extrapolation to vanishing part length; `value` without an observed order."""
-    index: float
-    """GCI: half width of the uncertainty band about `value`, relative to it; infinite without an order."""
+    value: float  # value at the finest size
+    order: float | None  # observed order; None where the values do not converge
+    extrapolated: float  # Richardson extrapolation to vanishing part length; `value` without an observed order
+    index: float  # GCI: half width of the uncertainty band about `value`, relative to it; infinite without an order
 
 
 def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: int | None = None) -> GridConvergence:

@@ -22,29 +22,22 @@ LAW_FROM = 60
 """Size from which on the error law replaces the scan (measured: within a third of its terms from 20 parts on)."""
 EVERY, FINE, COARSE = 60, 1.05, 1.5
 """Size up to which a scan tries every size; larger ones are 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %."""
-LOWER_MODES = 100
-"""Highest mode below which all lower modes are checked."""
-ROUNDING = 1e-12
-"""Smallest error above rounding."""
+LOWER_MODES = 100  # highest mode below which all lower modes are checked
+ROUNDING = 1e-12  # smallest error above rounding
 
 PROVEN = "all larger N are within the limit by the discrete dispersion"
 BY_LAW = "larger N are within the limit by the error law"
 
-Modes: TypeAlias = int | range
-"""One mode, or a range of modes, numbered from 1."""
-Within: TypeAlias = Callable[[int], bool]
-"""Whether the errors at a size are within the limit."""
+Modes: TypeAlias = int | range  # one mode, or a range of modes, numbered from 1
+Within: TypeAlias = Callable[[int], bool]  # whether the errors at a size are within the limit
 
 
 class Sufficient(msgspec.Struct, frozen=True, kw_only=True):
     """The sufficient size for an error limit."""
 
-    count: int
-    """The error is within the limit for this and all larger sizes, by the argument `known_by`."""
-    mode: int
-    """The mode that requires it."""
-    smaller: int | None = None
-    """The smallest size within the limit, if a larger one is not."""
+    count: int  # the error is within the limit for this and all larger sizes, by the argument `known_by`
+    mode: int  # the mode that requires it
+    smaller: int | None = None  # the smallest size within the limit, if a larger one is not
     known_by: str
 
 
@@ -56,12 +49,10 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     lower: tuple[int, ...]
     """Lower modes whose error exceeds the limit at this size; empty where all modes of a range are required."""
     unknowns: int
-    error: float
-    """Signed relative frequency error of the mode that requires the size."""
+    error: float  # signed relative frequency error of the mode that requires the size
     expected_error: float | None
     """`error` by the error law; None without a law (steps, attachments, settings, modes beyond the lower branch)."""
-    run_time_s: float
-    """Median of warm solves, assembly included."""
+    run_time_s: float  # median of warm solves, assembly included
 
 
 def sufficient_size(

@@ -8,10 +8,19 @@ from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
+from scipy.interpolate import CubicSpline
 
 from verify.analytic_modes import ExactModel
 from verify.arrays import Array
 from verify.bench.work_precision import Method, Question
+from verify.chain.benchmarks import linear_deflection
+from verify.chain.kinematics import at_rest
+from verify.chain.motion import simulate as simulate_chain
+from verify.chain.motion import step_limit
+from verify.chain.system import build_system
+from verify.dynamics.simulate import simulate
+from verify.elements.stock import stock_frequency_hz
+from verify.engines import ENGINES, chain_of, missing
 from verify.errors import InputError, near_name
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
@@ -20,8 +29,7 @@ from verify.problem.slider import Slider
 SIZES = (24, 49, 98, 196, 392)
 PARTS = {"segment": "segments", "fem": "elements"}
 LINKS = 49
-SOFT_START = 2.0
-"""Periods over which forces grow: a step load has no integer order of convergence."""
+SOFT_START = 2.0  # periods over which forces grow: a step load has no integer order of convergence
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
 SLIDER = Slider(mass=1.0193679918450561e-3, mu=0.2, slope=1e4)
@@ -60,8 +68,6 @@ def rms(values: Any, exact: Any) -> float:
 
 def modes(problem: Problem) -> Iterator[Question]:
     """Natural frequency by number of parts."""
-    from verify.elements.stock import stock_frequency_hz
-
     beam, mode = problem.beam, problem.mode
     exact = ExactModel(beam).frequency_hz(mode)
 
@@ -105,8 +111,6 @@ def field(problem: Problem) -> Iterator[Question]:
 
 def moved(problem: Problem, model: str, count: int | None, **more: Any) -> Any:
     """Motion from rest."""
-    from verify.dynamics.simulate import simulate
-
     driven = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
     run = simulate(*driven, model=model, count=count, soft_start_periods=SOFT_START, **more)
     if not run.statistics.finished:
@@ -163,24 +167,18 @@ def ride(problem: Problem) -> Iterator[Question]:
 
 def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], float]:
     """(settings -> times and mid-span deflections of the nonlinear chain from rest, step limit of RK4)."""
-    from verify.chain.kinematics import at_rest
-    from verify.chain.motion import simulate, step_limit
-    from verify.chain.system import build_system
-
     system = build_system(problem.beam, LINKS, problem.forces, problem.frequency_hz)
     start, x = at_rest(system), 0.5 * problem.beam.length
 
     def run(samples: int = 200, **how: Any) -> tuple[Array, Array]:
         times = np.linspace(0.0, problem.duration, samples + 1)[1:]
-        return times, simulate(system, start, times, **how).deflection([x])[:, 0]
+        return times, simulate_chain(system, start, times, **how).deflection([x])[:, 0]
 
     return run, step_limit(system)
 
 
 def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array, Array]], float], float]:
     """(methods RK4 and adaptive, error against adaptive steps at 1e-10, uncertainty: change from 1e-9 to 1e-10)."""
-    from scipy.interpolate import CubicSpline
-
     run, limit = chain_solver(problem)
     times, exact = run(4000, tolerance=1e-10)
     spline = CubicSpline(np.append(0.0, times), np.append(0.0, exact))
@@ -194,9 +192,6 @@ def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array
 
 def chain(problem: Problem) -> Iterator[Question]:
     """Nonlinear chain by step or tolerance, and the linear chain, exact in time."""
-    from verify.chain.benchmarks import linear_deflection
-    from verify.chain.system import build_system
-
     methods, error, uncertainty = chain_methods(problem)
     times, x = np.linspace(0.0, problem.duration, 201)[1:], 0.5 * problem.beam.length
 
@@ -211,8 +206,6 @@ def chain(problem: Problem) -> Iterator[Question]:
 
 def engines(problem: Problem) -> Iterator[Question]:
     """Modes and the nonlinear chain in other engines and with segments."""
-    from verify.engines import ENGINES, chain_of, missing
-
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
     if not adapters:
         raise InputError("engines: none is installed: pip install exudyn mujoco, or leave this set out")

@@ -3,26 +3,26 @@
 Times are processor seconds of one thread, medians over the rounds, from the beam to the result.
 """
 
+import platform
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from math import exp, isfinite, log
-from statistics import median
+from pathlib import Path
+from statistics import median, quantiles
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.report.result import Column, Figure, Result, Table
 from verify.report.summary import environment
-from verify.timing import forget, spread
+from verify.timing import forget
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROUNDS, TURN_S = 9, 2e-3
-"""Largest number of rounds; time for which short runs are repeated within a round, s."""
-ERRORS = (1e-2, 1e-3, 1e-4, 1e-5)
-"""Errors at which methods are compared."""
+ROUNDS, TURN_S = 9, 2e-3  # largest number of rounds; time for which short runs are repeated within a round, s
+ERRORS = (1e-2, 1e-3, 1e-4, 1e-5)  # errors at which methods are compared
 ABOVE_REFERENCE = 3.0
 """Multiple of the reference's uncertainty below which errors have no order and are excluded from comparisons."""
 
@@ -32,16 +32,11 @@ class Method:
     """A method and its sizes."""
 
     name: str
-    run: Callable[[Any], Any]
-    """Size -> result."""
-    sizes: Sequence[Any]
-    """From coarse to fine."""
-    size_name: str = "N"
-    """Name of the size: N, dt, tolerance; empty without refinement."""
-    model: str = ""
-    """Name of the model, which defines the colour."""
-    error: Callable[[Any], float] | None = None
-    """Relative error of a result; default: that of the question."""
+    run: Callable[[Any], Any]  # size -> result
+    sizes: Sequence[Any]  # from coarse to fine
+    size_name: str = "N"  # name of the size: N, dt, tolerance; empty without refinement
+    model: str = ""  # name of the model, which defines the colour
+    error: Callable[[Any], float] | None = None  # relative error of a result; default: that of the question
 
 
 @dataclass(frozen=True)
@@ -49,13 +44,10 @@ class Question:
     """A quantity of interest, its methods and the reference of their errors."""
 
     id: str
-    title: str
-    """Quantity and conditions."""
+    title: str  # quantity and conditions
     reference: str
-    uncertainty: float
-    """Relative uncertainty of the reference."""
-    error: Callable[[Any], float]
-    """Relative error of a result."""
+    uncertainty: float  # relative uncertainty of the reference
+    error: Callable[[Any], float]  # relative error of a result
     methods: Sequence[Method]
 
 
@@ -67,11 +59,9 @@ class Row:
     size_name: str
     size: float
     error: float
-    order: float | None
-    """Observed order from the coarser size."""
+    order: float | None  # observed order from the coarser size
     seconds: float
-    spread: float
-    """Relative interquartile range of the rounds."""
+    spread: float  # relative interquartile range of the rounds
     model: str = ""
 
 
@@ -106,9 +96,9 @@ def measure(question: Question, limit: float = 5.0) -> list[Row]:
         order, before = None, rows[-1] if rows else None
         if before and before.method == m.name and min(error, before.error) > floor and before.size != size:
             order = log(before.error / error) / abs(log(before.size / size))
-        rows.append(
-            Row(m.name, m.size_name, float(size), error, order, median(own), spread(own) / median(own), m.model)
-        )
+        low, _, high = quantiles(own, n=4, method="inclusive")
+        spread = (high - low) / median(own)
+        rows.append(Row(m.name, m.size_name, float(size), error, order, median(own), spread, m.model))
     return rows
 
 
@@ -165,7 +155,8 @@ RATIO_NOTE = "Time of a method over that of the first of its set at the same err
 
 def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
     """Tables, a log-log chart for each question, and data."""
-    rows = [(q.id, *_cells(row)) for q, rows_of in measured for row in rows_of]
+    sized = [(q, row, row.size_name and f"{row.size_name} = {row.size:.3g}") for q, own in measured for row in own]
+    rows = [(q.id, row.method, size, row.error, row.order, row.seconds, row.spread) for q, row, size in sized]
     compared = {q.id: ratios(q, rows_of) for q, rows_of in measured}
     times = [(title, method, *own) for title, each in compared.items() for method, own in each.items()]
     references = [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured]
@@ -181,11 +172,6 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
     }
     figures = [_figure(q, rows_of) for q, rows_of in measured]
     return Result(tables=tables, figures=figures, data=data)
-
-
-def _cells(row: Row) -> tuple[Any, ...]:
-    size = f"{row.size_name} = {row.size:.3g}" if row.size_name else ""
-    return row.method, size, row.error, row.order, row.seconds, row.spread
 
 
 def _figure(question: Question, rows: Sequence[Row]) -> Figure:
@@ -207,9 +193,6 @@ def _figure(question: Question, rows: Sequence[Row]) -> Figure:
 
 def processor() -> str:
     """Name of the processor."""
-    import platform
-    from pathlib import Path
-
     info = Path("/proc/cpuinfo")
     lines = info.read_text("utf-8").splitlines() if info.exists() else []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]

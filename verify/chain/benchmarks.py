@@ -17,7 +17,7 @@ from verify.arrays import Array
 from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.motion import ChainMotion, Method, Progress, check_moved, from_rest, simulate
-from verify.chain.statics import Bent, bend
+from verify.chain.statics import bend
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system, link_at, straight_chain
 from verify.errors import InputError
 from verify.options import Inertia, Links, Tip, Wall
@@ -32,20 +32,7 @@ EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CA
 """EI of `CANTILEVER`, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
 NODE = 1e-9
 """Displacement over that of the free beam, F / (m omega^2), below which a position is a node within rounding."""
-START_PHASES = (0.0, 45.0, 90.0, 135.0)
-"""Phases of the drive at the start, deg; 180 more mirrors the motion."""
-
-
-def silent(part: float) -> None:
-    """Ignore progress."""
-
-
-def cantilever_tip(load: float, count: int, wall: Wall = "gregory") -> Bent:
-    """A cantilever of unit length under a dead transverse tip force, `load` = P L^2 / EI.
-
-    The reference is the elastica: K. E. Bisshopp and D. C. Drucker, Quart. Appl. Math. 3 (1945) 272.
-    """
-    return bend(CANTILEVER, count, load * EI, wall=wall)
+START_PHASES = (0.0, 45.0, 90.0, 135.0)  # phases of the drive at the start, deg; 180 more mirrors the motion
 
 
 def rollup_gap(count: int, wall: Wall = "half", turns: float = 1.0) -> float:
@@ -94,7 +81,9 @@ def _sine_shape(
     return system, start, float(linearise(system, at_rest(system)).frequencies()[0])
 
 
-def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress: Progress = silent) -> float:
+def large_amplitude_frequency(
+    beam: Beam, amplitude: float, count: int, progress: Progress = lambda part: None
+) -> float:
     """First frequency between immovable hinges over the linear one; `amplitude` in radii of gyration sqrt(I/A).
 
     The immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J. Appl. Mech. 17 (1950) 35): q'' +
@@ -116,7 +105,7 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, count: int, progress
 
 
 def energy_drift(
-    beam: Beam, count: int, step: float | None = None, tolerance: float = 1e-8, progress: Progress = silent
+    beam: Beam, count: int, step: float | None = None, tolerance: float = 1e-8, progress: Progress = lambda part: None
 ) -> float:
     """Largest relative change of energy of an undamped roller-ended chain released from L/20 sin(pi x/L).
 
@@ -131,7 +120,7 @@ def energy_drift(
     return float(abs(motion.residual()).max() / (kinetic + elastic)[0])
 
 
-def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progress = silent) -> float:
+def energy_balance_error(count: int, tip: Tip, tolerance: float, progress: Progress = lambda part: None) -> float:
     """Largest residual of a chain's energy balance over its damping loss.
 
     Work is done by a hub that rotates and oscillates, an eccentric harmonic load with a moment, and dashpots; the tip
@@ -216,7 +205,7 @@ def transient(
     *,
     inertia: Inertia = "full",
     tolerance: float = 1e-9,
-    progress: Progress = silent,
+    progress: Progress = lambda part: None,
 ) -> ChainMotion:
     """The chain from rest under harmonic forces; rigid links ("full", "transverse") or links that stretch ("elastic").
 
@@ -230,11 +219,8 @@ def transient(
 class Departure(NamedTuple):
     """Deflection of the nonlinear less the linear chain at one position, over the rms of the latter."""
 
-    end: float
-    """Value at the end of the run."""
+    end: float  # value at the end of the run
     rms: float
-    slope: float
-    """Rms rotation of the links, rad."""
 
 
 def departure(
@@ -246,7 +232,7 @@ def departure(
     *,
     x: float | None = None,
     inertia: Inertia = "full",
-    progress: Progress = silent,
+    progress: Progress = lambda part: None,
 ) -> Departure:
     """Effect of axial inertia on the deflection at x (default: mid-span) from rest. Raises InputError at a node."""
     x = 0.5 * beam.length if x is None else x
@@ -258,7 +244,7 @@ def departure(
         raise InputError(f"x = {x!r}: these forces do not move the beam at this position, give another")
     motion = transient(beam, forces, frequency_hz, times, count, inertia=inertia, tolerance=1e-10, progress=progress)
     gap = motion.deflection([x])[:, 0] - linear
-    return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear), rms(motion.directions()))
+    return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear))
 
 
 def departure_over_beam(
@@ -269,7 +255,7 @@ def departure_over_beam(
     count: int,
     *,
     inertia: Inertia = "full",
-    progress: Progress = silent,
+    progress: Progress = lambda part: None,
 ) -> float:
     """Deflection of the nonlinear chain less the linear one's at the end of a run from rest, over the latter, rms.
 

@@ -13,14 +13,10 @@ from verify.validation import check_unmasked
 class Positions(NamedTuple):
     """Kinematics of the links; leading dimensions are times."""
 
-    directions: Array
-    """(..., N), absolute angles, rad."""
-    rates: Array
-    """(..., N), angular velocities, rad/s."""
-    joints: Array
-    """(..., N + 1, 2), m."""
-    velocities: Array
-    """(..., N + 1, 2), m/s."""
+    directions: Array  # (..., N), absolute angles, rad
+    rates: Array  # (..., N), angular velocities, rad/s
+    joints: Array  # (..., N + 1, 2), m
+    velocities: Array  # (..., N + 1, 2), m/s
 
 
 def hub(rotation: Rotation, times: float | Array) -> tuple[Array, Array]:

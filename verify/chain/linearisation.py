@@ -10,26 +10,19 @@ from verify.chain.statics import inertia_products, potential
 from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
 
-FLUTTER = 1e-6
-"""Ratio of real and imaginary part above which a root of a rotating chain is flutter and not rounding."""
-ROUNDING = 1e-13
-"""Relative rounding error of the roots of a dense eigenvalue problem."""
+FLUTTER = 1e-6  # ratio of real and imaginary part above which a root of a rotating chain is flutter and not rounding
+ROUNDING = 1e-13  # relative rounding error of the roots of a dense eigenvalue problem
 
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
     """M q'' + (C + G) q' + K q = 0 with constraint q = 0, q the relative angles; N x N matrices."""
 
-    mass: Array
-    """kg m^2."""
-    damping: Array
-    """N m s."""
-    stiffness: Array
-    """N m, with the geometric stiffness of loads and of the roller's reaction."""
-    gyroscopic: Array
-    """N m s, antisymmetric; 0 unless a rotating chain is bent."""
-    constraint: Array
-    """(n, N), m: derivatives of the roller's y; n = 0 for a free tip."""
+    mass: Array  # kg m^2
+    damping: Array  # N m s
+    stiffness: Array  # N m, with the geometric stiffness of loads and of the roller's reaction
+    gyroscopic: Array  # N m s, antisymmetric; 0 unless a rotating chain is bent
+    constraint: Array  # (n, N), m: derivatives of the roller's y; n = 0 for a free tip
 
     def independent(self) -> Array:
         """Basis (N, N - n) of the admissible motions; the angle with the longest lever arm is dependent.
@@ -43,10 +36,10 @@ class Linearisation:
         pivot = int(abs(row).argmax())
         return np.delete(np.eye(n) - np.outer(np.eye(n)[pivot], row / row[pivot]), pivot, axis=1)
 
-    def squares(self) -> Array:
-        """Signed squares of the undamped circular frequencies, (N - n,), ascending, 1/s^2; negative where unstable.
+    def frequencies(self) -> Array:
+        """Undamped circular frequencies, (N - n,), ascending, rad/s; squares within rounding are 0.
 
-        Squares within rounding are 0. Raises InputError for flutter of a bent rotating chain.
+        Raises InputError at an unstable equilibrium, and for flutter of a bent rotating chain.
         """
         from scipy.linalg import LinAlgError, eigh
 
@@ -59,17 +52,13 @@ class Linearisation:
             scale = FLUTTER * abs(roots) + ROUNDING * abs(roots).max()
             if (np.minimum(abs(roots.real), abs(roots.imag)) > scale).any():
                 raise InputError("the equilibrium is unstable: flutter, give a smaller load or a slower rotation.rate")
-            squares = np.sort(-(roots**2).real)[::2]  # roots come in pairs of both signs
-            return np.where(abs(squares) <= ROUNDING * abs(squares).max(), 0.0, squares)
-        try:  # low frequencies are accurate in the inverse problem
-            return np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1])
-        except LinAlgError:  # unstable, or with a rigid-body rotation
-            squares = eigh(stiffness, mass, eigvals_only=True)
-            return np.where(abs(squares) <= n * np.finfo(float).eps * abs(squares).max(), 0.0, squares)
-
-    def frequencies(self) -> Array:
-        """Undamped circular frequencies, (N - n,), ascending, rad/s. Raises InputError at an unstable equilibrium."""
-        squares = self.squares()
+            squares, rounding = np.sort(-(roots**2).real)[::2], ROUNDING  # roots come in pairs of both signs
+        else:
+            try:  # low frequencies are accurate in the inverse problem
+                squares, rounding = np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1]), 0.0
+            except LinAlgError:  # unstable, or with a rigid-body rotation
+                squares, rounding = eigh(stiffness, mass, eigvals_only=True), n * np.finfo(float).eps
+        squares = np.where(abs(squares) <= rounding * abs(squares).max(), 0.0, squares)
         growing = squares[squares < 0.0]
         if len(growing):
             raise InputError(

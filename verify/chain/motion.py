@@ -25,20 +25,16 @@ if TYPE_CHECKING:
     from verify.chain.runge_kutta import Marched
 
 Method = Literal["rk4", "adaptive"]
-Progress = Callable[[float], None]
-"""Called with the completed fraction of a motion, 0 to 1."""
-FAR = 0.3
-"""Rotation of links, rad, above which a motion from rest is confirmed by a second run."""
-AGREED = 0.01
-"""Largest distance of two runs, over the largest deflection, at which the second confirms the first."""
+Progress = Callable[[float], None]  # called with the completed fraction of a motion, 0 to 1
+FAR = 0.3  # rotation of links, rad, above which a motion from rest is confirmed by a second run
+AGREED = 0.01  # largest distance of two runs, over the largest deflection, at which the second confirms the first
 
 
 class ChainStatistics(Statistics, frozen=True, kw_only=True):
     """Cost and end of a chain's run."""
 
     method: Method
-    rejected: int = 0
-    """Number of steps that the error estimate rejected."""
+    rejected: int = 0  # number of steps that the error estimate rejected
     correction: float = 0.0
     """Largest change of an angle or (times 1 s) of a rate by the projection of the start onto the roller."""
     furthest: float
@@ -50,10 +46,8 @@ class ChainMotion(ABC):
     """Motion of a chain at its times."""
 
     system: ChainSystem
-    times: Array
-    """(n,), s; fewer than requested where the run stopped early."""
-    states: Array
-    """(n, size), coordinates of the march, their rates, quadratures."""
+    times: Array  # (n,), s; fewer than requested where the run stopped early
+    states: Array  # (n, size), coordinates of the march, their rates, quadratures
     statistics: ChainStatistics
 
     @abstractmethod
@@ -63,10 +57,6 @@ class ChainMotion(ABC):
     @abstractmethod
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), rad."""
-
-    @abstractmethod
-    def energies(self) -> Array:
-        """Kinetic, elastic and gravitational energy, (3, n), J."""
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Deflection of material points at x of the straight chain, on their links, (n, len(x)), m."""

@@ -28,8 +28,7 @@ COS, SIN, TORQUE, FORCE_X, FORCE_Y, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = ran
 """Columns of `scratch`, (N + 1, 11); `UNIT` ends as accelerations per force of the roller, the last the tip's."""
 TINY = 1e-250
 """Forces below this are zero: they fall by 0.27 a link, and subnormal numbers take a hundred times as long."""
-SHORT_ARM = 0.1
-"""Lever arm of the dependent joint over the chain's length below which another joint becomes dependent."""
+SHORT_ARM = 0.1  # lever arm of the dependent joint over the chain's length below which another joint becomes dependent
 Tip = tuple[float, float, float, float, float, float]
 
 

@@ -23,21 +23,17 @@ MARCH = types.int64(
     _table, _vector, types.Array(types.int64, 1, "C"), types.int64,
 )  # fmt: skip
 RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
-TIME, STEP = 0, 1
-"""Entries of `clock`."""
+TIME, STEP = 0, 1  # entries of `clock`
 RELATIVE, ABSOLUTE, ABSOLUTE_RATE, TURN, LARGEST, LARGEST_RATE, FURTHEST = range(7)
 """Entries of `control`: tolerances, largest mean change of a coordinate per step, largest rms and coordinate so far."""
-STEPS, REJECTED, EVALUATIONS, KEPT = range(4)
-"""Entries of `counts`."""
+STEPS, REJECTED, EVALUATIONS, KEPT = range(4)  # entries of `counts`
 
 
 class Tableau(NamedTuple):
     """An explicit method of s stages."""
 
-    a: Array
-    """(s + 1, s), the last row the result."""
-    c: Array
-    """(s,)."""
+    a: Array  # (s + 1, s), the last row the result
+    c: Array  # (s,)
     weights: Array
     """(s + 1,), error estimate of order 4, the last for the derivative at the result; empty for fixed steps."""
 
@@ -193,18 +189,12 @@ def march(
 class Marched(NamedTuple):
     """Outcome of `integrate`."""
 
-    kept: Array
-    """(completed samples, y.size), states."""
-    status: int
-    """DONE, DIVERGED or TOO_SMALL."""
-    time: float
-    """End time of the march, s."""
-    step: float
-    """The last step, s."""
-    counts: Indices
-    """(4,): steps, rejected steps, evaluations, samples."""
-    furthest: float
-    """Largest modulus of a coordinate at the ends of steps."""
+    kept: Array  # (completed samples, y.size), states
+    status: int  # DONE, DIVERGED or TOO_SMALL
+    time: float  # end time of the march, s
+    step: float  # the last step, s
+    counts: Indices  # (4,): steps, rejected steps, evaluations, samples
+    furthest: float  # largest modulus of a coordinate at the ends of steps
 
 
 def integrate(

@@ -29,14 +29,10 @@ from verify.dynamics.kinematics import (
 )
 from verify.jit import inline, jit
 
-CORRECTIONS = 20
-"""Largest number of marches of a step before it is not converged."""
-AGREED = 1e-9
-"""Tolerance of the change of a force between two marches, over the load."""
-STALE = 3
-"""Number of marches of a step after which the response is recomputed."""
-BUDGET = 1_000_000_000
-"""Largest number of steps of one march."""
+CORRECTIONS = 20  # largest number of marches of a step before it is not converged
+AGREED = 1e-9  # tolerance of the change of a force between two marches, over the load
+STALE = 3  # number of marches of a step after which the response is recomputed
+BUDGET = 1_000_000_000  # largest number of steps of one march
 
 
 @inline

@@ -33,10 +33,8 @@ from verify.problem.slider import Slider
 from verify.segments.reading import contact_line
 from verify.validation import check_integer, check_number
 
-RADIANS = 0.5
-"""Phase of the highest mode per step of the two-way march, rad."""
-CHUNK, MARCHED = 20_000, 200
-"""Steps between two interrupts, one-way and two-way."""
+RADIANS = 0.5  # phase of the highest mode per step of the two-way march, rad
+CHUNK, MARCHED = 20_000, 200  # steps between two interrupts, one-way and two-way
 
 
 def slide_on_chain(
@@ -111,10 +109,8 @@ def slide_on_chain(
 class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     """Sliders on the nonlinear chain before the first step; basis and stage are those of the linear chain."""
 
-    system: Any = None
-    """ChainSystem."""
-    line: Any = None
-    """Contact line per unit transverse step of each link, (x, derivative) -> (N, len(x))."""
+    system: Any = None  # ChainSystem
+    line: Any = None  # contact line per unit transverse step of each link, (x, derivative) -> (N, len(x))
     tolerance: float = 1e-9
 
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:

@@ -20,12 +20,9 @@ from verify.options import Joints, Wall
 from verify.problem.beam import Beam
 from verify.validation import check_integer, check_number
 
-RESIDUAL = 1e-9
-"""Tolerance of the residual moment, relative to the largest moment in the chain."""
-LAST_STEP = 1e-7
-"""Size of a Newton step, rad, after which the next one is rounding (quadratic convergence)."""
-LARGEST_STEP = 0.8
-"""Largest rotation of a link in one Newton step, rad."""
+RESIDUAL = 1e-9  # tolerance of the residual moment, relative to the largest moment in the chain
+LAST_STEP = 1e-7  # size of a Newton step, rad, after which the next one is rounding (quadratic convergence)
+LARGEST_STEP = 0.8  # largest rotation of a link in one Newton step, rad
 CORRECTION = 0.5
 """Largest correction of a step along the stable path, relative to its predictor; a larger one leads to another path."""
 

@@ -26,8 +26,7 @@ class Rotation:
     """The hub's prescribed angle, offset + rate t + amplitude sin(2 pi f t + phase), rad."""
 
     offset: float = 0.0
-    rate: float = 0.0
-    """rad/s."""
+    rate: float = 0.0  # rad/s
     amplitude: float = 0.0
     frequency_hz: float = 0.0
     phase_deg: float = 0.0
@@ -46,14 +45,10 @@ class Rotation:
 class LinkLoad:
     """A dead force and moment on one link, times cos(2 pi f t + phase)."""
 
-    link: int
-    """1..N."""
-    at: float
-    """Metres from the link's near joint."""
-    force: tuple[float, float] = (0.0, 0.0)
-    """(F_x, F_y), N, of constant direction."""
-    moment: float = 0.0
-    """N m."""
+    link: int  # 1..N
+    at: float  # metres from the link's near joint
+    force: tuple[float, float] = (0.0, 0.0)  # (F_x, F_y), N, of constant direction
+    moment: float = 0.0  # N m
     frequency_hz: float = 0.0
     phase_deg: float = 0.0
 
@@ -72,27 +67,18 @@ class ChainSystem:
     and a tip that cannot move along x.
     """
 
-    lengths: Array
-    """(N,)."""
-    masses: Array
-    """(N,)."""
-    inertias: Array
-    """(N,), kg m^2, about the middles."""
-    stiffness: Array
-    """(N,), N m/rad; the first at the hub; 0 for a pin."""
-    dashpots: Array
-    """(N,), N m s/rad."""
+    lengths: Array  # (N,)
+    masses: Array  # (N,)
+    inertias: Array  # (N,), kg m^2, about the middles
+    stiffness: Array  # (N,), N m/rad; the first at the hub; 0 for a pin
+    dashpots: Array  # (N,), N m s/rad
     tip: Tip = "free"
-    axial_spring: float = 0.0
-    """Spring against axial motion of the roller, N/m; EA/L models an immovable end."""
+    axial_spring: float = 0.0  # spring against axial motion of the roller, N/m; EA/L models an immovable end
     axial_stiffness: Array = field(default_factory=lambda: np.zeros(0))
     """(N,), EA of links that stretch, N; (0,) of rigid ones."""
-    axial_inertia: bool = True
-    """Whether links have inertia along x, which rigid links overestimate."""
-    gravity: tuple[float, float] = (0.0, 0.0)
-    """m/s^2."""
-    rotation: Rotation = Rotation()
-    """Rotation of the hub."""
+    axial_inertia: bool = True  # whether links have inertia along x, which rigid links overestimate
+    gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2
+    rotation: Rotation = Rotation()  # rotation of the hub
     loads: tuple[LinkLoad, ...] = ()
 
     def __post_init__(self) -> None:
@@ -150,12 +136,9 @@ class ChainSystem:
 class ChainState:
     """Relative angles and rates at one time."""
 
-    angles: Array
-    """(N,), rad; the first from the hub's direction."""
-    rates: Array
-    """(N,), rad/s."""
-    time: float = 0.0
-    """s."""
+    angles: Array  # (N,), rad; the first from the hub's direction
+    rates: Array  # (N,), rad/s
+    time: float = 0.0  # s
 
 
 def build_system(

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.errors import InputError
 from verify.files import whole
 from verify.formatting import unit_of
@@ -16,16 +17,12 @@ if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
-    from verify.arrays import Array
     from verify.scene.model import Scene
 
-FRAMES, FPS = 36, 20
-"""Frames of one period of a mode, and per second."""
-MAX_FRAMES = 300
-"""Largest number of frames of a motion; more are thinned out."""
+FRAMES, FPS = 36, 20  # frames of one period of a mode, and per second
+MAX_FRAMES = 300  # largest number of frames of a motion; more are thinned out
 MARKERS = {"pinned": "^", "clamped": "s", "guided": "D", "free": "none"}
-HEIGHT = 0.08
-"""Largest drawn deflection over the length."""
+HEIGHT = 0.08  # largest drawn deflection over the length
 
 
 def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -> None:

@@ -9,30 +9,29 @@ import numpy as np
 from verify.analysis.margins import sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.arrays import Array
+from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.linear.registry import MODELS
+from verify.quantities.slider import TimeOptions, motion_arguments
+from verify.quantities.waves import FieldOptions, driven_case
+from verify.waves.driven_case import driven
 
 if TYPE_CHECKING:
     from verify.scene.model import Scene
 
-MODES, EXACT = 10, 201
-"""Default number of modes, and points of the exact beam."""
-PHASES, INSTANTS = 36, 101
-"""Default number of steps of a period and of a motion."""
+MODES, EXACT = 10, 201  # default number of modes, and points of the exact beam
+PHASES, INSTANTS = 36, 101  # default number of steps of a period and of a motion
 
 
 class Request(msgspec.Struct, frozen=True, kw_only=True):
     """What to export."""
 
-    what: str | None = None
-    """modes, wave or motion; by default what the scene has and the file type holds."""
+    what: str | None = None  # modes, wave or motion; by default what the scene has and the file type holds
     model: str = "segment"
     count: int | None = None
     """Segments or elements; by default those of the scene's study of the same subject, else the fewest within 1 %."""
-    mode: int | None = None
-    """Number of modes of data, the mode of a picture."""
-    samples: int | None = None
-    """Steps of a period or of a motion."""
+    mode: int | None = None  # number of modes of data, the mode of a picture
+    samples: int | None = None  # steps of a period or of a motion
 
 
 @dataclass(frozen=True)
@@ -96,9 +95,6 @@ def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | 
 
 
 def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.quantities.waves import FieldOptions, driven_case
-    from verify.waves.driven_case import driven
-
     if scene.drive is None or not scene.forces:
         raise InputError("what = 'wave': the scene has no drive with forces, add [drive] or export modes")
     field_ = driven(driven_case(scene, FieldOptions(model=request.model, count=count)), cache)
@@ -115,9 +111,6 @@ def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | N
 
 
 def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
-    from verify.dynamics.simulate import simulate
-    from verify.quantities.slider import TimeOptions, motion_arguments
-
     if scene.motion is None:
         raise InputError("what = 'motion': the scene has no [motion], add it or --set motion.duration=1e-3")
     if scene.devices:

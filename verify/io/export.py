@@ -7,14 +7,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec.structs import replace
 
+from verify.analysis.solution_cache import SolutionCache
+from verify.arrays import Array
 from verify.errors import InputError, near_name, shown
 from verify.files import whole, writable_folder, write_whole
 from verify.io.data import Dataset, Request, dataset
+from verify.report.plotting import drawn, style
 from verify.report.result import to_json
+from verify.studies.convergence import Convergence
 
 if TYPE_CHECKING:
-    from verify.arrays import Array
     from verify.scene.model import Scene
 
 DATA, PICTURES = ("modes", "wave", "motion"), ("png", "gif", "webp")
@@ -25,8 +29,7 @@ TYPES = {
     **dict.fromkeys(("xdmf", "csv", "json", "npz", "gif", "webp"), DATA),
     "png": (*DATA, CHART),
     "svg": (CHART,),
-}
-"""What a file type holds."""
+}  # what a file type holds
 
 
 def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:
@@ -61,12 +64,6 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
 
 def _convergence(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None]) -> str:
     """The chart of the frequency errors over N, of the scene's [convergence] or its defaults, or of one mode."""
-    from msgspec.structs import replace
-
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.report.plotting import drawn, style
-    from verify.studies.convergence import Convergence
-
     if request.count is not None or request.samples is not None:
         raise InputError(f"what = {CHART!r}: count and samples do not apply, --set convergence.counts=20,40,80")
     study = scene.studies.get(CHART, Convergence())

@@ -14,8 +14,7 @@ from verify.problem.point_attachments import PointMass, PointSpring
 from verify.problem.supports import FIXED, check_free
 from verify.validation import Relative, check_number, check_position, unit, validate
 
-SHORTEST_SECTION = 1e-6
-"""Shortest section relative to the beam's length; a shorter one may be a rounding residue."""
+SHORTEST_SECTION = 1e-6  # shortest section relative to the beam's length; a shorter one may be a rounding residue
 
 
 class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):

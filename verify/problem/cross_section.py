@@ -60,24 +60,16 @@ class Section(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Piece(msgspec.Struct, frozen=True, kw_only=True):
     """A piece of constant section with all its properties. SI."""
 
-    length: float
-    """Metres."""
-    bending_stiffness: float
-    """EI, N m^2."""
-    mass_per_length: float
-    """Rho A, kg/m."""
+    length: float  # metres
+    bending_stiffness: float  # EI, N m^2
+    mass_per_length: float  # rho A, kg/m
     youngs_modulus: float | None = None
     """E, Pa. This, `second_moment` and `area` are None for a section defined by its stiffness."""
-    second_moment: float | None = None
-    """I, m^4."""
-    area: float | None = None
-    """A, m^2."""
-    extreme_fibre: float | None = None
-    """Distance of the surface from the neutral line, m."""
-    shear_stiffness: float | None = None
-    """kappa G A, N."""
-    rotary_inertia: float | None = None
-    """rho I, kg m."""
+    second_moment: float | None = None  # I, m^4
+    area: float | None = None  # A, m^2
+    extreme_fibre: float | None = None  # distance of the surface from the neutral line, m
+    shear_stiffness: float | None = None  # kappa G A, N
+    rotary_inertia: float | None = None  # rho I, kg m
 
     @property
     def axial_stiffness(self) -> float:

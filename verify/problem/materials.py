@@ -6,12 +6,9 @@ import msgspec
 class Material(msgspec.Struct, frozen=True):
     """Elastic constants and density, SI."""
 
-    youngs_modulus: float
-    """E, Pa."""
-    density: float
-    """rho, kg/m^3."""
-    poissons_ratio: float
-    """nu."""
+    youngs_modulus: float  # E, Pa
+    density: float  # rho, kg/m^3
+    poissons_ratio: float  # nu
     source: str
 
 

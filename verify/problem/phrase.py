@@ -10,8 +10,7 @@ from verify.problem.materials import MATERIALS, SPELLINGS
 from verify.units import NUMBER, in_si
 
 EXAMPLE = "1 m x 40 x 8 mm steel, clamped-free"
-PREFIX = "beam: "
-"""Begins a scene's name that is a beam in one line (see `scene.load.load_scene`)."""
+PREFIX = "beam: "  # begins a scene's name that is a beam in one line (see `scene.load.load_scene`)
 CONSTANTS = {"E": ("youngs_modulus", "Pa"), "rho": ("density", "kg/m^3"), "nu": ("poissons_ratio", "1")}
 
 

@@ -13,8 +13,7 @@ from verify.validation import check_number, check_position, unit, validate
 GRAVITY = 9.81
 STEEPNESS = 1e4
 """Default of K in Eq. (3), s/m."""
-OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}
-"""Fields of one friction law only."""
+OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}  # fields of one friction law only
 
 
 class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

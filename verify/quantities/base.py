@@ -32,17 +32,13 @@ else:
     Scene = Any
     """Stand-in for annotations, which `@quantity` evaluates; scenes import quantities."""
 
-Value: TypeAlias = float | complex | Bracket
-"""Type of an evaluated quantity."""
-MODEL_NAME = "model name"
-"""Annotation key of an argument that names a model (`options.model_name`)."""
+Value: TypeAlias = float | complex | Bracket  # type of an evaluated quantity
+MODEL_NAME = "model name"  # annotation key of an argument that names a model (`options.model_name`)
 PLACE = "place"
 Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True, "unit": "m"})]
 """A position on the beam: `evaluate` raises InputError for one off the beam."""
-TABLES = ("beam", "drive", "slider", "motion")
-"""Tables of a scene that a quantity may depend on."""
-ROUNDING = 1e-12
-"""Tolerance of a position at an end of the beam, relative to its length (as in `linear.positions`)."""
+TABLES = ("beam", "drive", "slider", "motion")  # tables of a scene that a quantity may depend on
+ROUNDING = 1e-12  # tolerance of a position at an end of the beam, relative to its length (as in `linear.positions`)
 
 
 class Quantity:
@@ -80,10 +76,6 @@ class Quantity:
         fields.sort(key=lambda field: {"model": 0, "count": 1}.get(field[0], 2))
         self.types = {field[0]: field[1] for field in fields}
         self.schema = msgspec.defstruct(name, fields, frozen=True, kw_only=True, forbid_unknown_fields=True)
-
-    def __call__(self, *values: Any, **arguments: Any) -> Value:
-        """Call the function, with option groups as values."""
-        return self.function(*values, **arguments)
 
     @property
     def arguments(self) -> list[dict[str, Any]]:

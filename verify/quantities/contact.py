@@ -23,8 +23,7 @@ SlowerThanWave = Annotated[float, Meta(ge=0, lt=1, description="slider speed ove
 Compliance = Annotated[float, Meta(ge=0, description="tangential compliance 2 mu kappa/(kappa_t k h); 0: rigid")]
 AccelerationRatio = Annotated[float, Meta(gt=1, description="surface acceleration A omega^2 over g + F/m")]
 DampingRatio = Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)) of mass, spring and dashpot")]
-MU = 0.2
-"""Friction coefficient of a foot on a wave; forces over mu N do not depend on it."""
+MU = 0.2  # friction coefficient of a foot on a wave; forces over mu N do not depend on it
 
 
 @quantity("friction.creep_speed", unit="m/s", reads=())

@@ -1,13 +1,14 @@
 """Annotated argument types and the option groups that several quantities share."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options
+from verify.analysis.solution_cache import Settings
 from verify.errors import InputError, near_name
 from verify.linear import registry
 from verify.linear.registry import MEAN, MODELS
@@ -15,19 +16,13 @@ from verify.problem.beam import PointForce, check_frequency
 from verify.quantities.base import MODEL_NAME, Place, Scene
 from verify.validation import Relative, unit
 
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import Settings
-
 
 class ModelName(msgspec.Struct, frozen=True):
     """The models that an argument accepts."""
 
-    verb: str
-    """Method of `BeamModel` that the models implement."""
-    sized: bool = False
-    """Whether only discrete models are accepted."""
-    mean: bool = False
-    """Whether "mean", the middle of the models below and above, is accepted."""
+    verb: str  # method of `BeamModel` that the models implement
+    sized: bool = False  # whether only discrete models are accepted
+    mean: bool = False  # whether "mean", the middle of the models below and above, is accepted
 
     def names(self) -> tuple[str, ...]:
         """Accepted names in alphabetical order."""
@@ -80,7 +75,7 @@ def check_count(model: str, count: int | None) -> None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {MEAN}")
 
 
-def check_settings(model: str, chosen: "Settings") -> "Settings":
+def check_settings(model: str, chosen: Settings) -> Settings:
     """The settings. Raises InputError for a setting that the model does not have."""
     for name, value in chosen:
         if name not in MODELS.named(model).settings():
@@ -99,7 +94,7 @@ class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
     attachment: Attachment = "reciprocal"
 
     @property
-    def settings(self) -> "Settings":
+    def settings(self) -> Settings:
         """Settings that differ from their defaults."""
         return not_default(self, without=("model", "mode", "count", "counts"))
 
@@ -173,7 +168,7 @@ def check_forces(scene: Scene, subject: str, theory: options.Theory = "euler-ber
         raise InputError(f"drive.kind = {scene.drive.kind!r}: {subject} takes imposed forces, give kind = 'force'")
 
 
-def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> "Settings":
+def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> Settings:
     """(name, value) of the fields of an option group that differ from their defaults, except those in `without`."""
     fields = [field for field in msgspec.structs.fields(type(group)) if field.name not in without]
     return tuple((f.name, getattr(group, f.name)) for f in fields if getattr(group, f.name) != f.default)

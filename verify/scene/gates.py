@@ -2,15 +2,14 @@
 
 from math import hypot, inf, isfinite
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
+from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.errors import InputError
+from verify.quantities.base import QUANTITIES, evaluate
 from verify.scene.model import Complex, Gate, Scene
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
 
 
 class GateResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -20,12 +19,10 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     value: Any = None
     """A float, a complex number or a `Bracket`; None where the gate was skipped or could not be evaluated."""
     unit: str = ""
-    passed: bool | None = None
-    """None where the gate was skipped."""
+    passed: bool | None = None  # None where the gate was skipped
     fraction: float | None = None
     """Fraction of the tolerance: 0 in the middle of the band, 1 at its edge; None where the band has no width."""
-    reason: str = ""
-    """Why it failed or was skipped."""
+    reason: str = ""  # why it failed or was skipped
     seconds: float = 0.0
 
     @property
@@ -36,8 +33,6 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
 
 def run_gate(gate: Gate, scene: Scene, cache: "SolutionCache") -> GateResult:
     """Evaluate one gate. Never raises: a gate that cannot be evaluated fails with the reason."""
-    from verify.quantities.base import QUANTITIES, evaluate
-
     start = perf_counter()
     unit, value, fraction = "", None, None
     try:
@@ -63,8 +58,6 @@ def band(gate: Gate) -> tuple[float, float]:
 
 def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
     """(reason for failing or '', fraction of the tolerance)."""
-    from verify.analysis.solution_cache import Bracket
-
     kinds = {Bracket: "a bracket needs expect alone", complex: "a complex value needs expect = { re, im } with within"}
     remedy = kinds.get(type(value), "a real value needs expect with within, or at_least, at_most")
     outside, fraction = f"{value!r}: {remedy}", None

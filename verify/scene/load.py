@@ -10,12 +10,15 @@ import msgspec
 from verify.convert import convert, entry_of, table_of, typed
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
+from verify.problem.phrase import PREFIX, beam_table
+from verify.problem.slider import OF_ONE_LAW
+from verify.quantities.base import QUANTITIES
 from verify.scene.model import Scene
+from verify.studies.base import STUDIES
 
 DATA = Path(__file__).parent / "data"
 STARTER = DATA / "starter.toml"
-MAX_SENTENCES = 30
-"""Errors of one scene that are listed."""
+MAX_SENTENCES = 30  # errors of one scene that are listed
 SCHEMA_LINE = "#:schema ./verify.schema.json"
 """Names the schema for TOML editors; `verify schema --json > verify.schema.json` writes the file."""
 _OWN = tuple(name for name in Scene.__struct_fields__ if name != "studies")
@@ -48,8 +51,6 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
 
 def scene_from(tables: dict[str, Any]) -> Scene:
     """A scene from plain tables as in a file. Raises InputError with one sentence for each error."""
-    from verify.studies.base import STUDIES
-
     errors: list[str] = []
     own: dict[str, Any] = {name: value for name, value in tables.items() if name in _OWN}
     studies: dict[str, Any] = {}
@@ -73,8 +74,6 @@ def scene_from(tables: dict[str, Any]) -> Scene:
 
 def _argument_errors(tables: dict[str, Any]) -> Iterator[str]:
     """A sentence for each gate and claim with an unknown quantity or wrong arguments."""
-    from verify.quantities.base import QUANTITIES
-
     for table in ("gate", "claim"):
         for one in tables[table] if isinstance(tables.get(table), list) else ():
             name, arguments = (one.get("quantity"), one.get("arguments", {})) if isinstance(one, dict) else (None, None)
@@ -88,8 +87,6 @@ def _argument_errors(tables: dict[str, Any]) -> Iterator[str]:
 
 def tables_of(name_or_path: str | Path, overrides: Sequence[str] = ()) -> dict[str, Any]:
     """The plain tables of a scene file with overrides, not yet checked. Raises InputError."""
-    from verify.problem.phrase import PREFIX, beam_table
-
     if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
         raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
     phrase = str(name_or_path).removeprefix(PREFIX)
@@ -152,8 +149,6 @@ def override(tables: dict[str, Any], assignment: str) -> None:
 
 def type_at(key: str) -> Any:
     """The type of the value at 'beam.length' or 'gate.ID.within'; None where there is no such key."""
-    from verify.studies.base import STUDIES
-
     first, *steps = key.split(".")
     kind: Any = Scene if first in _OWN else STUDIES.get(first)
     for step in [first, *steps] if kind is Scene else steps:
@@ -178,8 +173,6 @@ def _position(entries: list[Any], step: str, field: str) -> int:
 
 def _drop_obsolete(tables: dict[str, Any], keys: Iterable[str]) -> None:
     """Remove what an override made obsolete: the reference of a new expectation, the parameter of another law."""
-    from verify.problem.slider import OF_ONE_LAW
-
     for i, gate in enumerate(tables.get("gate", ()) if isinstance(tables.get("gate"), list) else ()):
         names = (i, gate.get("id")) if isinstance(gate, dict) else ()
         if any(f"gate.{name}.{limit}" in keys for name in names for limit in ("expect", "at_least", "at_most")):

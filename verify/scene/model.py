@@ -13,6 +13,7 @@ from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.device import Device
 from verify.problem.slider import Slider
 from verify.problem.supports import check_free
+from verify.studies.base import studies_of
 from verify.validation import check_number, unit
 
 
@@ -216,8 +217,6 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     def _errors(self) -> Iterator[str]:
         """A sentence for every inconsistency between parts that are right by themselves."""
-        from verify.studies.base import studies_of
-
         for table, entries in (("gate", self.gate), ("claim", self.claim)):
             ids = [one.id for one in entries]
             for one in dict.fromkeys(ids):

@@ -11,18 +11,17 @@ import msgspec
 
 from verify.convert import description_of, table_of
 from verify.errors import InputError, near_name
+from verify.quantities.base import QUANTITIES
 from verify.scene.model import Scene
+from verify.studies.base import STUDIES
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 """Read by TOML editors."""
-TOP = "scene"
-"""Name of the keys outside of any section."""
+TOP = "scene"  # name of the keys outside of any section
 
 
 def sections() -> dict[str, type[msgspec.Struct]]:
     """Every table of a scene by its dotted name: 'scene', 'beam', 'beam.section', ..., and those of studies."""
-    from verify.studies.base import STUDIES
-
     found: dict[str, type[msgspec.Struct]] = {TOP: Scene}
 
     def add(kind: type[msgspec.Struct], where: str) -> None:
@@ -41,9 +40,6 @@ def sections() -> dict[str, type[msgspec.Struct]]:
 
 def scene_schema(section: str = TOP) -> dict[str, Any]:
     """JSON Schema, draft 7, of a scene file or of one of its sections. Raises InputError for an unknown section."""
-    from verify.quantities.base import QUANTITIES
-    from verify.studies.base import STUDIES
-
     kinds = sections()
     if section not in kinds:
         raise InputError(f"section = {section!r} is not known: {near_name(section, tuple(kinds))}")

@@ -19,10 +19,8 @@ from verify.segments.chain import Chain
 _BEFORE, _AFTER = 2, 4
 """Numbers of joints before and after the start of an attachment's link whose weights are corrected."""
 _FEWEST = 6
-_WALL = 5
-"""Largest number of joints with a wall correction."""
-_SHORTEST = 8
-"""Smallest number of links with corrected weights."""
+_WALL = 5  # largest number of joints with a wall correction
+_SHORTEST = 8  # smallest number of links with corrected weights
 _UNEQUAL = 0.05
 """Relative difference of neighbouring links above which weights are not corrected: such chains are of order 2."""
 _PARABOLA = (0, 1, 2)
@@ -30,8 +28,7 @@ _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 """Powers of the distance from an end in the moments due to distant loads."""
 _FOUR_JOINTS = np.array([[-2, 6, -6, 2], [12, -30, 24, -6], [-23, 39, -21, 5], [14, -5, 4, -1]]) / 12.0
 """L_j + L_j''/12 of four joints (columns), L_j cubic Lagrange polynomials: coefficients of s^3, s^2, s, 1 (rows)."""
-_TIE = 1e-10
-"""Added to the target of the alignment; selects one of two equally near solutions."""
+_TIE = 1e-10  # added to the target of the alignment; selects one of two equally near solutions
 
 
 def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:

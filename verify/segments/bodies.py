@@ -8,16 +8,14 @@ import numpy as np
 
 from verify.arrays import Array, BoolArray
 from verify.problem.beam import Beam
-from verify.segments.attachments import attachment_weights
-from verify.segments.chain import Chain, Motions, selection
+from verify.segments.chain import Motions, selection
 
 
 class Body(NamedTuple):
     """Sum of the attachments at one position (m), dimensionless."""
 
     position: float
-    end: int | None = None
-    """The end, 0 or 1, behind whose joint the body is."""
+    end: int | None = None  # the end, 0 or 1, behind whose joint the body is
     mass: float = 0.0
     rotary_inertia: float = 0.0
     stiffness: float = 0.0
@@ -68,10 +66,6 @@ class Attached:
     def massive(self) -> BoolArray:
         """Whether each body has a mass, (bodies,)."""
         return np.array([body.mass > 0.0 for body in self.bodies], dtype=bool)
-
-    def weights(self, chain: Chain) -> tuple[Any, Any]:
-        """Weights of joint positions, sparse (bodies, N + 1), and link rotations, (bodies, N)."""
-        return attachment_weights(chain, [body.position for body in self.bodies], self.rule)
 
     def rotations(self, weights: Any, motions: Motions) -> Any:
         """Rotations of the bodies as rows over (link rotations, unknowns), sparse (bodies, N + n)."""

@@ -20,18 +20,12 @@ class Chain:
     """N rigid links and N + 1 joints; joints at pinned and free ends have no spring."""
 
     supports: tuple[str, str]
-    unit: float
-    """Unit of length, m."""
-    lengths: Array
-    """(N,), lengths of the links."""
-    compliances: Array
-    """(N + 1,), 1/k of joints 0..N; infinite without a spring."""
-    masses: Array
-    """(N,)."""
-    inertias: Array
-    """(N,), about the middle of each link."""
-    start: float = 0.0
-    """Position of joint 0: 1/2 with a half segment welded to the wall."""
+    unit: float  # unit of length, m
+    lengths: Array  # (N,), lengths of the links
+    compliances: Array  # (N + 1,), 1/k of joints 0..N; infinite without a spring
+    masses: Array  # (N,)
+    inertias: Array  # (N,), about the middle of each link
+    start: float = 0.0  # position of joint 0: 1/2 with a half segment welded to the wall
     elastic: tuple[bool, bool] = (False, False)
     """Whether each end has an elastic joint, with a spring or a body behind it."""
     reading_factors: Array | None = None
@@ -119,8 +113,7 @@ class Motions:
     """
 
     chain: Chain
-    rotating: Sequence[int] = ()
-    """Ends (0, 1) with a body behind their joint."""
+    rotating: Sequence[int] = ()  # ends (0, 1) with a body behind their joint
     slips: Array = field(default_factory=lambda: np.zeros(0))
     """(N + 1,), slip compliances of the joints, infinite without slip; empty in theories without shear."""
     body_compliances: Array = field(default_factory=lambda: np.zeros(0))

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from verify.problem.beam import Beam
 
-_WALL_ORDERS = {"half": 2, "full": 1, "welded": 2, "third-order": 3}
-"""Order of the wall rules, where it is less than 4."""
+_WALL_ORDERS = {"half": 2, "full": 1, "welded": 2, "third-order": 3}  # order of the wall rules, where it is less than 4
 
 
 def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: str, attachment: str) -> int | None:

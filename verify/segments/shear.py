@@ -15,8 +15,7 @@ from verify.segments.bodies import Body
 from verify.segments.chain import Chain, Motions, right_of
 from verify.segments.walls import tension_excess, wall_factors
 
-_LEAST = 1e-9
-"""Relative slip compliance of an attachment, so that no unknown is massless."""
+_LEAST = 1e-9  # relative slip compliance of an attachment, so that no unknown is massless
 
 
 def slip_compliances(

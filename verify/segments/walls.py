@@ -21,8 +21,7 @@ WALLS: dict[str, tuple[float, ...]] = {
     "third-order": (-7 / 12, 1 / 12),
     # weights 95/288, 317/240, 23/30, 793/720, 157/160: order 4, slightly better for low modes
     "five-joint": (95 / 288 - 1, 317 / 240 - 1, 23 / 30 - 1, 793 / 720 - 1, 157 / 160 - 1),
-}
-"""Corrections of the weights 1 from a clamped end on, in l/EI."""
+}  # corrections of the weights 1 from a clamped end on, in l/EI
 
 
 def wall_factors(

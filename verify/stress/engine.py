@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from verify.errors import InputError, near_name
+from verify.parallel import map_processes
 
 MODULES = ("modes", "waves", "motion")
 DIGITS = 60
@@ -26,17 +27,12 @@ class Outcome:
     """Measured values of one check."""
 
     id: str
-    worst: float
-    """Largest error over the guaranteed range."""
+    worst: float  # largest error over the guaranteed range
     passed: bool
-    points: Points
-    """(value, error)."""
-    breaks_at: float | None
-    """Value from which the tolerance is exceeded or the input refused; None if neither occurs."""
-    breaks_by: str
-    """'error', 'refused', or empty."""
-    baseline: Points
-    """(value, error) of the standard method; infinite if it fails."""
+    points: Points  # (value, error)
+    breaks_at: float | None  # value from which the tolerance is exceeded or the input refused; None if neither occurs
+    breaks_by: str  # 'error', 'refused', or empty
+    baseline: Points  # (value, error) of the standard method; infinite if it fails
     seconds: float
 
 
@@ -49,12 +45,10 @@ class Check:
     parameter: str
     values: Sequence[float]
     tolerance: float
-    error: Error
-    """Raises InputError where the value is refused."""
+    error: Error  # raises InputError where the value is refused
     beyond: Sequence[float] = ()
     """Values beyond the guaranteed range, to determine where the tolerance is exceeded or the value refused."""
-    refused: bool = False
-    """Whether the range has to end with an InputError and not with a large error."""
+    refused: bool = False  # whether the range has to end with an InputError and not with a large error
     baseline: tuple[Any, ...] = ()
     """(name, error, values if different) of the standard method, which may raise any error."""
     slow: bool = False
@@ -140,8 +134,6 @@ def run(
     checks: Sequence[Check], jobs: int | None = None, progress: Callable[[str], None] = lambda id: None
 ) -> list[Outcome]:
     """Outcomes in the order of the checks, with `jobs` processes; default: VERIFY_JOBS."""
-    from verify.parallel import map_processes
-
     ids = [one.id for one in checks]
     return map_processes(_run_by_id, ids, lambda i: progress(ids[i]), jobs)
 

@@ -9,8 +9,11 @@ from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
+from scipy.linalg import eigh
+from scipy.sparse.linalg import eigsh
 
 from verify.analytic_modes import ExactModel
+from verify.exact.error_laws import dispersion_frequency_hz
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
@@ -40,15 +43,11 @@ def own_error(model: str, beam: Beam, lengths: Sequence[D], mode: int, **setting
 
 def dispersion(model: str, n: float, modes: int) -> Any:
     """Frequencies of the first modes of the pinned strip in equal parts, Hz, in closed form."""
-    from verify.exact.error_laws import dispersion_frequency_hz
-
     return np.array([dispersion_frequency_hz(model, STRIP, mode, int(n)) for mode in range(1, modes + 1)])
 
 
 def eigsh_error(model: str, n: float) -> float:
     """Error of scipy's eigsh about 0 with assembled matrices of unit parts."""
-    from scipy.sparse.linalg import eigsh
-
     unit = Beam(length=n, bending_stiffness=1.0, mass_per_length=1.0)
     k, m = reference.sparse(*MATRICES[model](unit, [D(1)] * int(n)))
     start = np.random.default_rng(1).standard_normal(k.shape[0])
@@ -170,8 +169,6 @@ def matrix_check(
             return own_error(model, beam, lengths, mode, grading=grading)
 
         def lapack(model: str, value: float) -> float:
-            from scipy.linalg import eigh
-
             bands = MATRICES[model](*case(value)[:2])
             squares = eigh(*(one.toarray() for one in reference.sparse(*bands)), eigvals_only=True)
             return relative_error(*bands, mode, sqrt(abs(squares[mode - 1])))

@@ -6,6 +6,11 @@ from math import inf, tanh
 
 import numpy as np
 
+from verify.chain.benchmarks import rollup_gap
+from verify.chain.kinematics import at_rest
+from verify.chain.motion import simulate, step_limit
+from verify.chain.system import build_system
+from verify.dynamics.belt import creep_speed, free_decay
 from verify.problem.slider import GRAVITY
 from verify.stress.engine import check, worst
 from verify.stress.reference import STRIP, D
@@ -46,16 +51,12 @@ _RK4 = ("RK4 in 4096 steps", partial(decay_error, method=rk4_decay))
 @check("friction-slope", "slope, s/m", (1e-3, 1.0, 1e3, 1e6, 1e9), 1e-10, beyond=(1e12, 1e15), baseline=_RK4)
 def friction_slope(slope: float) -> float:
     """Speed after a free slide with tanh friction, viscous to step-like."""
-    from verify.dynamics.belt import free_decay
-
     return decay_error(slope, lambda slope, time: free_decay(MU, slope, SPEED, time))
 
 
 @check("friction-creep", "1 - F / (mu m g)", (0.9, 0.1, 1e-3, 1e-5, 2e-6), 1e-10, beyond=(1e-7, 1e-12), refused=True)
 def friction_creep(left: float) -> float:
     """Creep speed under a force close to mu m g against artanh, error times the distance from mu m g."""
-    from verify.dynamics.belt import creep_speed
-
     force = (1.0 - left) * MU * GRAVITY
     share = D(force) / D(MU * GRAVITY)
     exact = ((1 + share) / (1 - share)).ln() / 2 / D(SLOPE)
@@ -65,18 +66,12 @@ def friction_creep(left: float) -> float:
 @check("chain-roll-up", "turns", (1, 5, 20), 1e-12, beyond=(40,))
 def chain_roll_up(turns: float) -> float:
     """Gap of a cantilever of 100 links rolled into closed circles by an end moment, over its length."""
-    from verify.chain.benchmarks import rollup_gap
-
     return rollup_gap(100, "half", turns)
 
 
 @check("rk4-stability", "dt / limit", (0.1, 0.5, 0.9, 0.99), 1e-12, beyond=(1.01, 2.0), refused=True)
 def rk4_stability(part: float) -> float:
     """Energy gain of a chain of 12 links, from scattered angles, in 2000 RK4 steps."""
-    from verify.chain.kinematics import at_rest
-    from verify.chain.motion import simulate, step_limit
-    from verify.chain.system import build_system
-
     system = build_system(STRIP, 12)
     start = at_rest(system, 1e-7 * np.random.default_rng(3).standard_normal(12))
     step = part * step_limit(system)

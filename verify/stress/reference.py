@@ -9,13 +9,13 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from msgspec.structs import replace
+from scipy.sparse import diags_array
 
 from verify.problem.beam import Beam
 
 D = Decimal
 PI = D("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803")
-BLOCKED = D("1e99")
-"""Diagonal entry of K at an unknown that a support blocks."""
+BLOCKED = D("1e99")  # diagonal entry of K at an unknown that a support blocks
 Bands: TypeAlias = Any
 """Array of Decimal; row j holds the entries (j, j), (j, j + 1), ... up to the half bandwidth."""
 _BENDING = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], object)
@@ -140,8 +140,6 @@ def response(k: Bands, m: Bands, omega: D, at: int) -> list[D]:
 
 def sparse(k: Bands, m: Bands) -> list[Any]:
     """K and M of the free unknowns in double precision, scipy.sparse."""
-    from scipy.sparse import diags_array
-
     moves, matrices = k[:, 0] < BLOCKED, []
     for bands in (k, m):
         upper = [bands[: len(bands) - c, c].astype(float) for c in range(bands.shape[1])]

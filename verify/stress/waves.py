@@ -5,6 +5,8 @@ from math import atan, pi
 import numpy as np
 from msgspec.structs import replace
 
+from verify.dynamics.free_vibration import free_vibration
+from verify.exact.error_laws import dispersion_frequency_hz
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
@@ -12,8 +14,7 @@ from verify.stress.engine import check, worst
 from verify.stress.reference import ALL, CANTILEVER, PI, STRIP, D, cos, pinned_hertz, sin, sinh
 
 N, MODE = 40, 3
-AT, FROM = 11, 17
-"""Joints at which the field is evaluated and driven."""
+AT, FROM = 11, 17  # joints at which the field is evaluated and driven
 
 
 def deflection(model: str, beam: Beam, hertz: float, x: float, at: float, **more: str) -> complex:
@@ -34,8 +35,6 @@ def green(beam: Beam, hertz: float, x: float, source: float) -> D:
 @check("near-resonance", "f / fn - 1", (1e-6, 1e-7, 1e-8, 3e-9), 1e-13, beyond=(1e-9, 1e-10, 1e-12), refused=True)
 def near_resonance(distance: float) -> float:
     """Undamped field near a resonance, three models: equivalent frequency error."""
-    from verify.exact.error_laws import dispersion_frequency_hz
-
     errors = []
     for model in ALL:
         exact = model == "analytic"
@@ -103,8 +102,6 @@ _NEWMARK = ("average acceleration, 64 steps a period", newmark_error)
 @check("free-vibration", "periods", (1, 1e3, 1e5, 1e7, 1e9), 1e-15, baseline=_NEWMARK)
 def free_vibration_error(periods: float) -> float:
     """Mode 1 released, at a zero crossing: equivalent frequency error of its deflection."""
-    from verify.dynamics.free_vibration import free_vibration
-
     hertz = float(pinned_hertz(STRIP, 1))
     time = (periods + 0.25) / hertz
     run = free_vibration(STRIP, 1, time, amplitude=1e-3, model="analytic", modes=2, at=[0.5 * STRIP.length], samples=2)

@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from verify.report.result import Result
     from verify.scene.model import Scene
 
-Progress: TypeAlias = Callable[[str], None]
-"""Called with the name of each step before it starts."""
+Progress: TypeAlias = Callable[[str], None]  # called with the name of each step before it starts
 
 
 class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -24,12 +23,9 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     Other packages add one by an entry point of the group `verify.studies`, or by `STUDIES.register(Mine)`.
     """
 
-    name: ClassVar[str] = ""
-    """Name of its section in a scene and of its key in JSON."""
-    title: ClassVar[str] = ""
-    """Heading on the page."""
-    devices: ClassVar[bool] = False
-    """Whether it accepts a drive with devices on the beam."""
+    name: ClassVar[str] = ""  # name of its section in a scene and of its key in JSON
+    title: ClassVar[str] = ""  # heading on the page
+    devices: ClassVar[bool] = False  # whether it accepts a drive with devices on the beam
 
     @property
     def steps(self) -> int:
@@ -50,8 +46,7 @@ STUDIES: Registry[type[Study]] = Registry(
     "verify.studies",
     homes={name: f"verify.studies.{name}:{name.capitalize()}" for name in OWN},
     classes=True,
-)
-"""Study classes by the name of their section, in the order in which they run."""
+)  # study classes by the name of their section, in the order in which they run
 
 
 def studies_of(scene: "Scene") -> list[tuple[str, Study]]:

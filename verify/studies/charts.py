@@ -3,60 +3,48 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from verify.analysis.variants import Variant
+from verify.formatting import unit_over
+from verify.linear.registry import MODELS
+from verify.report.plotting import CYCLE, MODEL_COLORS
+from verify.report.result import Column, Movie, Table
+
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from verify.analysis.variants import Variant
-    from verify.report.result import Column, Movie, Table
-
-THIN, BROAD = 1.4, 4.0
-"""Widths of lines of discrete models, and of the exact beam below them."""
+THIN, BROAD = 1.4, 4.0  # widths of lines of discrete models, and of the exact beam below them
 MOST_POINTS = 2000
 
 
 def si(name: str, unit: str, form: str = ".4g") -> "Column":
     """A column of values that are shown with the SI prefix that suits the largest."""
-    from verify.report.result import Column
-
     return Column(name, unit, form, prefix=True)
 
 
 def percent(name: str, form: str = "+.4g") -> "Column":
     """A column of ratios that are shown in per cent."""
-    from verify.report.result import Column
-
     return Column(name, format=form, percent=True)
 
 
 def table(title: str, items: Iterable[Any], columns: "Mapping[Column, Callable[[Any], Any]]", *notes: str) -> "Table":
     """A row of each item; every column with the function that reads its value from an item."""
-    from verify.report.result import Table
-
     return Table(title, list(columns), [[read(item) for read in columns.values()] for item in items], notes)
 
 
 def sized_title(model: str, count: int | None) -> str:
     """'49 segments', 'exact beam'."""
-    from verify.linear.registry import MODELS
-
     return f"{count} {MODELS[model].title}" if count else MODELS[model].title
 
 
 def model_style(model: str) -> dict[str, Any]:
     """Colour and line width of a model in every chart."""
-    from verify.linear.registry import MODELS
-    from verify.report.plotting import MODEL_COLORS
-
     color = MODEL_COLORS.get(model, MODELS[model].colour)
     return {"color": color, "linewidth": THIN if MODELS[model].sized else BROAD}
 
 
 def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":
     """The colour of a model for its first variant, others from the colour cycle."""
-    from verify.report.plotting import CYCLE
-
     colors: dict[Variant, str] = {}
     for one in variants:
         first = all(other.model != one.model for other in colors)
@@ -68,8 +56,6 @@ def plot_lines(
     ax: "Axes", lines: Iterable[tuple[str, Any, Any, dict[str, Any]]], x: tuple[str, str], y: tuple[str, str]
 ) -> None:
     """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
-    from verify.formatting import unit_over
-
     drawn = [line for line in lines if len(line[1])]
     x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])
     y_unit = unit_over((float(abs(ys).max()) for _, _, ys, _ in drawn), y[1])
@@ -83,7 +69,6 @@ def plot_lines(
 
 def movie(key: str, title: str, caption: str, set_up: "Callable[[Axes], Any]") -> "Movie":
     """A movie. `set_up` draws on axes and returns (function of a frame that returns its artists, frames)."""
-    from verify.report.result import Movie
 
     def animate(figure: "Figure") -> "FuncAnimation":
         from matplotlib.animation import FuncAnimation

@@ -2,12 +2,13 @@
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
+from verify.quantities.base import QUANTITIES, evaluate
+from verify.report.result import Column, Result, Table
 from verify.studies.base import Progress, Study
 
 if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.report.result import Result
     from verify.scene.model import Claim, Scene
 
 READ = {"stated": "stated", "figure": "read off a figure", "follows": "implied"}
@@ -36,8 +37,6 @@ class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Evaluate every claim; one that cannot be evaluated is a row with the reason."""
-        from verify.report.result import Column, Result, Table
-
         rows: list[dict[str, Any]] = []
         warnings = []
         for claim in scene.claim:
@@ -73,16 +72,12 @@ def of_scene(claim: "Claim") -> bool:
 
 def unit_of(claim: "Claim") -> str:
     """Unit of its quantity, empty for a ratio. Raises InputError for an unknown quantity."""
-    from verify.quantities.base import QUANTITIES
-
     unit = QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity").unit
     return "" if unit == "1" else unit
 
 
 def computed(claim: "Claim", scene: "Scene", cache: "SolutionCache", **other: Any) -> float:
     """The value of its quantity, with `other` arguments. Raises InputError."""
-    from verify.quantities.base import evaluate
-
     own = {"model": "segment", "count": scene.motion.size(scene, cache)} if of_scene(claim) else claim.arguments
     arguments = {name: value for name, value in (own | other).items() if value is not None}
     value = evaluate(claim.quantity, arguments, scene, cache)

@@ -8,23 +8,26 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 from msgspec import Meta
 
+from verify.analysis.margins import beam_margins
+from verify.analysis.solution_cache import SolutionCache, comparable, theory_of, unproven
 from verify.analysis.variants import Rules, Variant
 from verify.errors import InputError, NoBracketError
+from verify.linear.registry import MEAN, MODELS
+from verify.problem.beam import Beam
+from verify.report.plotting import PAPER, slope_guide
+from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
 from verify.studies.charts import percent, si, variant_colors
+from verify.timing import interleaved_medians
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.problem.beam import Beam
-    from verify.report.result import Result
     from verify.scene.model import Scene
 
 Counts: TypeAlias = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(min_length=1)]
 Row: TypeAlias = dict[str, Any]
-STYLES = ("-o", "--s", ":^", "-.d", "-v")
-"""Line and marker of each mode."""
+STYLES = ("-o", "--s", ":^", "-.d", "-v")  # line and marker of each mode
 NOTES = [
     "Order: from the size before. GCI: grid convergence index of this size and the two before, the uncertainty that a "
     "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
@@ -49,10 +52,6 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Solve every variant at every size and time it. Raises InputError for a size that cannot be solved."""
-        from verify.analysis.margins import beam_margins
-        from verify.analysis.solution_cache import comparable
-        from verify.report.result import Column, Figure, Result, Table
-
         models, left_out = comparable(cache.beam, self.counts, max(self.modes))
         variants = self.variants(models)
         rows = self._rows(cache, variants, progress)
@@ -90,9 +89,6 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
     def _rows(self, cache: "SolutionCache", variants: tuple[Variant, ...], progress: Progress) -> list[Row]:
         """A row for each mode, variant and size, in this order."""
         from verify.analysis.comparison import ORDER_FLOOR, ORDER_SPREAD, grid_convergence, relative_error
-        from verify.analysis.solution_cache import theory_of
-        from verify.linear.registry import MODELS
-        from verify.timing import interleaved_medians
 
         seconds: dict[tuple[Variant, int], float] = {}
         for count in self.counts:
@@ -162,9 +158,6 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
-        from verify.analysis.solution_cache import unproven
-        from verify.linear.registry import MEAN
-
         rows: list[Row] = []
         reasons: dict[str, None] = {}
         settings = next((one for one in self.combinations if not unproven(cache.beam, one)), self.combinations[0])
@@ -203,7 +196,6 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         from matplotlib.ticker import NullLocator
 
         from verify.analysis.comparison import ORDER_SPREAD
-        from verify.report.plotting import PAPER, slope_guide
 
         mean, span = "#2a9d5c", log10(max(self.counts) / min(self.counts))
         colors = variant_colors(tuple(dict.fromkeys(row["variant"] for row in rows)))

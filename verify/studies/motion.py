@@ -6,8 +6,16 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from msgspec import Meta
 from msgspec.structs import replace
 
+from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins, sufficient_count
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import verdict_of
 from verify.errors import InputError
+from verify.formatting import unit_of, unit_over
+from verify.linear.registry import MODELS, bounding, discrete
 from verify.options import Start
+from verify.problem.slider import Contact
+from verify.quantities.slider import TimeOptions, motion_arguments
+from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title, table
 from verify.validation import Relative, check_number, unit
@@ -17,16 +25,13 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from verify.analysis.solution_cache import SolutionCache
     from verify.dynamics.result import Motion as Run
-    from verify.report.result import Result, Table
     from verify.scene.model import Scene
 
 STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
-LONG = 10
-"""Durations of a long run."""
+LONG = 10  # durations of a long run
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 
@@ -78,21 +83,14 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def size(self, scene: "Scene", cache: "SolutionCache") -> int:
         """Segments and elements: as given, or the fewest within 1 % at the drive. Raises InputError."""
-        from verify.analysis.margins import sufficient_count
-
         return self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Simulate the slider on every model. Raises InputError."""
         import numpy as np
 
-        from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins
-        from verify.analysis.verdict import verdict_of
         from verify.analytic_modes import check_in_time
         from verify.dynamics.simulate import simulate
-        from verify.linear.registry import MODELS, bounding, discrete
-        from verify.quantities.slider import TimeOptions, motion_arguments
-        from verify.report.result import Figure, Result
 
         scene = replace(scene, studies={**scene.studies, "motion": self})
         assert scene.slider is not None
@@ -152,12 +150,7 @@ def readings(scene: "Scene") -> "Table":
 
     A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
     """
-    from verify.analysis.margins import run_margins
-    from verify.analysis.verdict import verdict_of
     from verify.dynamics.simulate import simulate
-    from verify.problem.slider import Contact
-    from verify.quantities.slider import TimeOptions, motion_arguments
-    from verify.report.result import Column, Table
 
     own = scene.slider
     assert own is not None
@@ -190,8 +183,6 @@ def _title(run: "Run") -> str:
 
 
 def _tables(runs: "dict[str, Run]") -> "list[Table]":
-    from verify.report.result import Column
-
     exact, all_runs = runs["analytic"].displacement, runs.values()
 
     def imbalance(run: "Run") -> float | None:
@@ -214,8 +205,6 @@ def _tables(runs: "dict[str, Run]") -> "list[Table]":
 def _movie(run: "Run") -> "Callable[[Axes], Any]":
     def set_up(ax: "Axes") -> Any:
         import numpy as np
-
-        from verify.formatting import unit_of, unit_over
 
         kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
         along, up = unit_of(float(run.points[-1])), unit_over([float(abs(run.deflection).max())])

@@ -7,23 +7,26 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from msgspec import Meta
 
+from verify.analysis.margins import beam_margins, marked, sufficient_count
+from verify.analysis.solution_cache import SolutionCache, comparable, theory_of
 from verify.analysis.variants import Rules, Variant
 from verify.errors import InputError
+from verify.exact.plate import plate_error
+from verify.formatting import theory_name
+from verify.linear.registry import MODELS
+from verify.options import THEORIES
+from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, variant_colors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from verify.analysis.solution_cache import SolutionCache
     from verify.arrays import Array
-    from verify.report.result import Figure, Result
     from verify.scene.model import Scene
 
-MOST_COUNTED = 200
-"""Modes up to which frequencies by other theories are computed where they have no closed form."""
-MOST_PLATES = 60
-"""The same for plate theory, about 0.1 s a mode."""
+MOST_COUNTED = 200  # modes up to which frequencies by other theories are computed where they have no closed form
+MOST_PLATES = 60  # the same for plate theory, about 0.1 s a mode
 THEORY_COLORS = {"rayleigh": "#8f5bd1", "timoshenko": "#cc3f76", "plate": "#008f8f"}
 CAPTIONS = {
     "mode-errors": "Solid: against the exact beam of the same theory. Dashed: what Euler-Bernoulli theory neglects, "
@@ -44,11 +47,6 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
         """Errors against the exact beam of the same theory. Raises InputError for a size that cannot be solved."""
-        from verify.analysis.margins import beam_margins, marked, sufficient_count
-        from verify.analysis.solution_cache import comparable, theory_of
-        from verify.formatting import theory_name
-        from verify.report.result import Column, Figure, Result, Table
-
         count = self.count or sufficient_count(cache, modes=self.modes)
         progress(f"modes 1 to {self.modes}, N = {count}")
         models, left_out = comparable(cache.beam, (count,), self.modes)
@@ -85,9 +83,6 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def _theories(self, cache: "SolutionCache") -> dict[str, list[float]]:
         """Relative change of each frequency by each other theory; those without a value on this beam are left out."""
-        from verify.exact.plate import plate_error
-        from verify.options import THEORIES
-
         closed = cache.beam.supports == ("pinned", "pinned") and cache.beam.uniform
         if not closed and self.modes > MOST_COUNTED:
             return {}
@@ -103,10 +98,6 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     def _shapes(self, cache: "SolutionCache", variants: tuple[Variant, ...], count: int) -> "list[Figure]":
         """First, middle and last mode above one another; no figure where exact shapes are not available."""
         import numpy as np
-
-        from verify.analysis.solution_cache import theory_of
-        from verify.linear.registry import MODELS
-        from verify.report.result import Figure
 
         theory = theory_of(variants[0].settings)
         chosen = sorted({1, (self.modes + 1) // 2, self.modes})
@@ -142,7 +133,6 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 def draw_errors(errors: dict[Variant, list[float | None]], theories: dict[str, list[float]], ax: "Axes") -> None:
     """Sizes of the errors over mode number, beside what other theories change."""
-    from verify.formatting import theory_name
 
     def values(own: "list[float] | list[float | None]") -> list[float]:
         return [float("nan") if v is None else 100 * abs(v) for v in own]

@@ -10,21 +10,27 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import msgspec
 from msgspec import Meta
 
+from verify.analysis.margins import beam_margins, figure_margins, run_margins, sag_margins
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.variants import DEFAULTS
+from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name, shown
+from verify.linear.registry import EXACT, MODELS
+from verify.parallel import VARIABLE, map_processes
+from verify.quantities.base import QUANTITIES, as_text, evaluate
+from verify.report.result import Column, Figure, Result, Table
+from verify.scene.load import scene_from
 from verify.studies.base import Progress, Study
+from verify.studies.claims import computed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.analysis.verdict import Margin
-    from verify.report.result import Result
     from verify.scene.model import Scene
 
 MOST = 100_000
 AGREE = "claims that agree"
-WIDE = 30.0
-"""Ratio of largest to smallest value from which an axis is logarithmic."""
+WIDE = 30.0  # ratio of largest to smallest value from which an axis is logarithmic
 
 
 class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -67,9 +73,6 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         combination, and a chart of each quantity over one or two lists. Raises InputError for an unknown quantity, key
         or argument; a combination that raises it is a row with the reason.
         """
-        from verify.parallel import VARIABLE, map_processes
-        from verify.report.result import Column, Figure, Result, Table
-
         self.check(scene)
         tables = _tables(scene)
         combinations = _combinations(self.over)
@@ -104,11 +107,6 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
     """Values by quantity, claims that agree, reason for a missing value, worst margin, of one combination."""
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.quantities.base import evaluate
-    from verify.scene.load import scene_from
-    from verify.studies.claims import computed
-
     tables, study, combination = task
     row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": ()}
     try:
@@ -130,11 +128,6 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, A
 
 def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
     """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
-    from verify.analysis.margins import beam_margins, figure_margins, run_margins, sag_margins
-    from verify.analysis.variants import DEFAULTS
-    from verify.linear.registry import EXACT, MODELS
-    from verify.quantities.base import QUANTITIES
-
     quantity = QUANTITIES.named(name)
     known = {f.name: f.default for f in msgspec.structs.fields(quantity.schema) if not f.required} | dict(arguments)
     mode, hertz = known.get("mode"), known.get("frequency_hz")
@@ -156,8 +149,6 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
 
 
 def _quantities(names: Sequence[str]) -> list[Any]:
-    from verify.quantities.base import QUANTITIES
-
     return [QUANTITIES.named(name) for name in names]
 
 
@@ -199,8 +190,6 @@ def _put(node: Any, path: list[str], key: str, value: Any) -> Any:
 
 def _cell(value: Any) -> Any:
     """A value of a table: numbers, words; anything else as text."""
-    from verify.quantities.base import as_text
-
     if value is None or isinstance(value, bool | int | float | str):
         return value
     return str(value) if isinstance(value, list | tuple | dict) else as_text(value)

@@ -6,7 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 import msgspec
 from msgspec import Meta
 
+from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError, WindowError
+from verify.formatting import unit_of, unit_over
+from verify.linear.registry import EXACT, MODELS, discrete
+from verify.quantities.waves import FieldOptions, driven_case, measured
+from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, movie, plot_lines, si, sized_title
 from verify.studies.convergence import Counts
@@ -16,9 +22,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from verify.analysis.solution_cache import SolutionCache
     from verify.linear.field import HarmonicField
-    from verify.report.result import Result, Table
     from verify.scene.model import Scene
     from verify.travelling_wave import BestDrive, DrivenCase
 
@@ -47,7 +51,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
-        from verify.linear.registry import EXACT, MODELS, discrete
         from verify.waves.window import check_span, check_waves, middle_half
 
         if len(scene.forces) != 2 or scene.drive is None:
@@ -72,10 +75,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
         from msgspec.structs import replace
 
-        from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
-        from verify.linear.registry import EXACT, MODELS, discrete
-        from verify.quantities.waves import FieldOptions, driven_case, measured
-        from verify.report.result import Column, Figure, Result, Table
         from verify.travelling_wave import best_drive
         from verify.waves.driven_case import driven
 
@@ -153,8 +152,6 @@ def _waves(case: "DrivenCase", cache: "SolutionCache") -> Row:
 
 
 def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
-    from verify.quantities.waves import measured
-
     wave = measured(case, cache)
     return {
         "frequency_hz": case.frequency_hz,
@@ -170,7 +167,6 @@ def _cells(one: dict[str, float] | None) -> tuple[float | None, ...]:
 
 def _drives(best: "BestDrive", case: "DrivenCase", ratio: float) -> "Table":
     """The scene's drive, the best of equal amplitudes, and the best ratio, at the scene's frequency."""
-    from verify.report.result import Column, Table
     from verify.waves.operating_point import lead_deg
 
     first, second = (force.amplitude for force in case.forces)
@@ -206,9 +202,6 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
 def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
     def set_up(ax: "Axes") -> Any:
         import numpy as np
-
-        from verify.formatting import unit_of, unit_over
-        from verify.linear.registry import MODELS
 
         exact = fields["analytic"]
         x_surface, height, *_ = ellipses(exact)
