@@ -19,6 +19,7 @@ Unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses i
 
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, fields, replace
+from functools import cached_property
 from math import pi
 from typing import Any, ClassVar, Literal
 
@@ -27,16 +28,17 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
-from verify.linear.mesh import check_division
+from verify.linear.mesh import Parts, check_division, divide
 from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
 from verify.problem.beam import Beam
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights, joint_weights
-from verify.segments.chain import link_inertia, right_of
+from verify.segments.chain import Chain, link_inertia, right_of
 from verify.segments.dispersion import cut_off2, phase
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.structure import ChainStructure
+from verify.segments.walls import reading_factors, tension_excess, wall_factors
 from verify.validation import MOST_PARTS, check_choice, check_integer, check_number, python_scalar
 
 _WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
@@ -108,6 +110,76 @@ class SegmentModel(ChainStructure):
         """Mean length of a link, m; wall = "welded": half a link at each clamped end is not counted."""
         halves = self.beam.supports.count("clamped") if self.wall == "welded" else 0
         return self.beam.length / (self.n_segments + 0.5 * halves)
+
+    # --- Links, joints and walls ---------------------------------------------------------------------------------
+
+    @cached_property
+    def links(self) -> Parts:
+        """Lengths and properties of the links; steps of the beam are at joints."""
+        return divide(self.beam, self.n_segments, self.grading)
+
+    @cached_property
+    def chain(self) -> Chain:
+        """Links and joints without attachments. Raises InputError where the stiffness of a joint is not positive."""
+        lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
+        compliances = self._corrected_compliances.copy()
+        compliances[[0, -1]] += self.attached.end_springs
+        inertias = link_inertia(masses, lengths)
+        if self._thick:
+            inertias = inertias + self._rotary_inertias
+        return Chain(
+            supports=self.beam.supports,
+            unit=self.unit,
+            start=0.5 * (self.wall == "welded" and self.beam.supports[0] == "clamped"),
+            lengths=lengths,
+            compliances=compliances,
+            masses=masses,
+            inertias=inertias,
+            elastic=self.attached.elastic,
+            reading_factors=reading_factors(self.attached.elastic, self.n_segments, self.wall)
+            if any(self.attached.elastic)
+            else None,
+        )
+
+    def _joint_compliances(self, stiffnesses: Array) -> Array:
+        """1/k of joints 0..N by Eq. (1), (N + 1,), times the wall factors; `stiffnesses` (N,) are EI of the links."""
+        lengths = self.links.lengths
+        halves = 0.5 * lengths / stiffnesses
+        inner = halves[:-1] + halves[1:]
+        if self.joints == "printed":
+            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) is dimensionally right but pairs the wrong links:
+            # order 1 where both I and E / l differ; for EI without E, E is 1 and "printed" equals "series"
+            e, i = self.links.moduli, self.links.second_moments
+            inner = 0.5 * lengths[1:] / (e[1:] * i[:-1]) + 0.5 * lengths[:-1] / (e[:-1] * i[1:])
+        return np.concatenate([2.0 * halves[:1], inner, 2.0 * halves[-1:]]) * self._wall_factors
+
+    @cached_property
+    def _wall_factors(self) -> Array:
+        return wall_factors(self.beam.supports, self.n_segments, self.wall, self.attached.elastic)
+
+    @cached_property
+    def _beam_compliances(self) -> Array:
+        """1/k of the joints with the beam's bending stiffness, (N + 1,)."""
+        return self._joint_compliances(self.links.stiffnesses)
+
+    @cached_property
+    def _corrected_compliances(self) -> Array:
+        """1/k of tensioned joints, (N + 1,): EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
+        if self.joints != "tensioned" or not self.beam.tension:
+            return self._beam_compliances
+        lengths, stiffnesses = self.links.lengths, self.links.stiffnesses - self._tension * self.links.lengths**2 / 12.0
+        compliances = self._joint_compliances(stiffnesses)
+        for end, (support, turns) in enumerate(zip(self.beam.supports, self.attached.elastic, strict=True)):
+            if support == "clamped" or turns:
+                excess = self._tension * lengths[-end] * tension_excess(self.wall) / 12.0
+                compliances[-end] = 1.0 / (1.0 / compliances[-end] - excess / self._wall_factors[-end] ** 2)
+        if stiffnesses.min() <= 0.0 or compliances.min() <= 0.0:
+            raise InputError(
+                f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
+                f"{self.n_segments} segments (limit 12 EI/l^2, at a clamped wall two thirds of it): give more segments "
+                "or choose joints = 'series'"
+            )
+        return compliances
 
     # --- Loads and readings --------------------------------------------------------------------------------------
 
