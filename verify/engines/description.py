@@ -1,0 +1,349 @@
+"""A beam as a chain of rigid bodies in plain units, for engines of multibody dynamics.
+
+x is along the beam, z the deflection across its thickness, y across its width. N rigid links, N + 1 joints: joint 0
+between the wall and link 0, joint j between links j - 1 and j, joint N between the last link and what is behind the far
+end. In space every joint has hinges for both bending planes and for torsion. Angles are relative: a hinge turns all
+links beyond it. An end without deflection is held in z (and y) and free along x; a support holds the twist, a free end
+does not. Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint.
+
+The joints in bending are those of `SegmentModel`. In torsion a link is a disk with half a link of shaft on either side:
+stiffness GJ/l between links, 2GJ/l at a wall, of order 2 by reflection at both kinds of ends: the relative error is
+-(k l)^2/24 at the wavenumber k.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import pi
+from typing import Any, Literal, NamedTuple
+
+import msgspec
+import numpy as np
+
+from verify.arrays import Array
+from verify.exact.torsion import shafts, torsion_hz
+from verify.options import WALLS
+from verify.problem.beam import Beam
+from verify.problem.point_attachments import PointSpring
+from verify.problem.supports import FIXED
+from verify.validation import check_choice, check_integer, check_number, check_type
+
+Axis = Literal["bending", "width", "torsion"]
+AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
+"""Rotation about -y, z and x; deflections in z and y."""
+CHAIN_WALLS = (*(wall for wall in WALLS if wall != "welded"), "rigid")
+MOST_LINKS = 2000
+"""Largest N: the matrices are dense."""
+
+
+class Hinge(NamedTuple):
+    """A rotation about one axis with its spring and dashpot."""
+
+    axis: Axis
+    stiffness: float
+    """N m/rad; 0 is free."""
+    damping: float = 0.0
+    """N m s/rad."""
+
+
+class Joint(NamedTuple):
+    """A joint; without hinges it is rigid."""
+
+    position: float
+    """x, m."""
+    hinges: tuple[Hinge, ...]
+
+    def hinge(self, axis: Axis) -> Hinge | None:
+        """The hinge about an axis."""
+        return next((hinge for hinge in self.hinges if hinge.axis == axis), None)
+
+
+class Link(NamedTuple):
+    """A rigid link."""
+
+    start: float
+    """x of its near end, m."""
+    length: float
+    """m."""
+    mass: float
+    """kg."""
+    centre: float
+    """Centre of mass, m from the near end."""
+    inertia: tuple[float, float, float]
+    """About the centre and x, y, z, kg m^2."""
+
+
+class Body(NamedTuple):
+    """An attached mass."""
+
+    position: float
+    """x, m."""
+    link: int
+    """Its link, from 0."""
+    mass: float
+    """kg."""
+    inertia: float
+    """kg m^2, in space about all axes."""
+
+
+class Spring(NamedTuple):
+    """A spring from a link to the ground, against deflection in z and rotation about y."""
+
+    position: float
+    """x, m."""
+    link: int
+    """Its link, from 0."""
+    stiffness: float
+    """N/m."""
+    rotational: float
+    """N m/rad."""
+    damping: float = 0.0
+    """N s/m."""
+    rotational_damping: float = 0.0
+    """N m s/rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class RigidChain:
+    """Links, joints and attachments of a beam, and the frequencies of this chain."""
+
+    beam: Beam
+    """The beam, from joint 0 on."""
+    wall: str
+    """Joints at a clamped end."""
+    joints: tuple[Joint, ...]
+    """(N + 1,)."""
+    links: tuple[Link, ...]
+    """(N,)."""
+    bodies: tuple[Body, ...] = ()
+    springs: tuple[Spring, ...] = ()
+    damping: float = 0.0
+    """Damping ratio of the first mode about every axis; that of others is in proportion to their frequency."""
+    in_space: bool = False
+    mirrored: bool = False
+    """Whether joint 0 is at the right end of the beam of the scene."""
+
+    @property
+    def count(self) -> int:
+        """N."""
+        return len(self.links)
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Axes of the hinges."""
+        return AXES if self.in_space else AXES[:1]
+
+    @property
+    def theory(self) -> str:
+        """Theory of the exact beam: in space links have the rotary inertia of their sections."""
+        return "rayleigh" if self.in_space else "euler-bernoulli"
+
+    @property
+    def held(self) -> tuple[bool, bool]:
+        """Whether each end has no deflection."""
+        left, right = (FIXED[support].deflection for support in self.beam.supports)
+        return left, right
+
+    def hinges(self, axis: Axis) -> list[tuple[int, Hinge]]:
+        """(joint, hinge) of all hinges about an axis in front of a link."""
+        each = [(j, joint.hinge(axis)) for j, joint in enumerate(self.joints[:-1])]
+        return [(j, hinge) for j, hinge in each if hinge]
+
+    def slides(self, axis: Axis) -> bool:
+        """Whether the first unknown is the deflection of joint 0."""
+        return axis != "torsion" and not self.held[0]
+
+    def rows(self, axis: Axis, links: Any, x: Any) -> tuple[Array, Array]:
+        """(deflections, rotations) of points x (m) of links by the unknowns, (p, n) each.
+
+        Unknowns: the deflection of joint 0 where that is free, then the angles of `hinges`.
+        """
+        joints = np.array([j for j, _ in self.hinges(axis)], dtype=int)
+        places = np.array([self.joints[j].position for j in joints])
+        turned = (joints <= np.asarray(links)[:, None]).astype(float)
+        across = turned * (np.asarray(x)[:, None] - places)
+        first = np.full((len(turned), int(self.slides(axis))), 1.0)
+        return np.hstack([first, across]), np.hstack([0.0 * first, turned])
+
+    def constraints(self, axis: Axis) -> Array:
+        """Rows over the unknowns that the supports of the far end make zero, (0 to 2, n)."""
+        across, turned = self.rows(axis, [self.count - 1], [self.joints[-1].position])
+        kept = [across] if self.held[1] and axis != "torsion" else []
+        kept += [] if self.joints[-1].hinge(axis) else [turned]
+        return np.vstack([across[:0], *kept])
+
+    def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
+        """(mass, stiffness) over the unknowns of `rows`, or a basis of those that satisfy the constraints, (n, n)."""
+        from scipy.linalg import null_space
+
+        index = np.arange(self.count)
+        masses, starts, centres = np.array([(one.mass, one.start, one.centre) for one in self.links]).T
+        inertias = np.array([one.inertia for one in self.links])[:, {"bending": 1, "width": 2, "torsion": 0}[axis]]
+        across, turned = self.rows(axis, index, starts + centres)
+        mass = turned.T @ (inertias[:, None] * turned)
+        free = [0.0] * self.slides(axis)
+        stiffness = np.diag(free + [hinge.stiffness for _, hinge in self.hinges(axis)])
+        if far := self.joints[-1].hinge(axis):
+            stiffness += far.stiffness * turned[-1:].T @ turned[-1:]
+        at, turns = self.rows(axis, [one.link for one in self.bodies], [one.position for one in self.bodies])
+        mass += turns.T @ (np.array([[one.inertia] for one in self.bodies]).reshape(-1, 1) * turns)
+        if axis != "torsion":
+            mass += across.T @ (masses[:, None] * across)
+            mass += at.T @ (np.array([[one.mass] for one in self.bodies]).reshape(-1, 1) * at)
+        for one in self.springs if axis == "bending" else ():
+            across, turned = self.rows(axis, [one.link], [one.position])
+            stiffness += one.stiffness * across.T @ across + one.rotational * turned.T @ turned
+        if len(constraints := self.constraints(axis)):
+            basis = null_space(constraints)
+            mass, stiffness = basis.T @ mass @ basis, basis.T @ stiffness @ basis
+        return mass, stiffness
+
+    @cached_property
+    def _bent(self) -> dict[Axis, Beam]:
+        return {"bending": self.beam, **({"width": turned(self.beam)} if self.in_space else {})}
+
+    def rigid_motions(self, axis: Axis) -> int:
+        """Number of rigid-body motions."""
+        return int(set(self.beam.supports) == {"free"}) if axis == "torsion" else self._bent[axis].rigid_motions
+
+    def frequencies_hz(self, axis: Axis = "bending", n_modes: int | None = None) -> Array:
+        """Elastic frequencies of the chain, (n_modes,) or all, ascending, Hz.
+
+        The inverse problem, whose largest eigenvalues are the lowest modes without loss of digits, with a shift where
+        the chain has rigid-body motions.
+        """
+        from scipy.linalg import eigh
+
+        mass, stiffness = self.matrices(axis)
+        rigid = self.rigid_motions(axis)
+        shift = (2.0 * pi * float(self.exact_hz(axis, 1)[0])) ** 2 if rigid else 0.0
+        values = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1][rigid:]
+        return np.asarray(np.sqrt(1.0 / values - shift) / (2.0 * pi))[:n_modes]
+
+    def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
+        """Frequencies of the exact beam, (n_modes,), Hz."""
+        if axis == "torsion":
+            held = [support != "free" for support in self.beam.supports]
+            bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
+            return torsion_hz(shafts(self.beam), (held[0], held[1]), n_modes, bodies)
+        from verify.analytic_modes import ExactModel
+
+        exact = ExactModel(self._bent[axis], self.theory)
+        return np.array([exact.frequency_hz(mode) for mode in range(1, n_modes + 1)])
+
+    def errors(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
+        """Relative errors of the first frequencies against the exact beam, (n_modes,)."""
+        found = self.frequencies_hz(axis, n_modes)
+        return np.asarray(found / self.exact_hz(axis, len(found)) - 1.0)
+
+
+def describe(
+    beam: Beam, count: int, *, wall: str = "gregory", in_space: bool = False, damping: float = 0.0
+) -> RigidChain:
+    """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
+
+    `wall`: joints at a clamped end, one of `CHAIN_WALLS`; "rigid" fixes the first link to the wall. `damping`:
+    damping ratio of the first mode about every axis. The chain begins at the end that holds more.
+    """
+    from verify.segment_model import SegmentModel
+
+    check_type("beam", beam, Beam)
+    beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
+    check_choice("wall", wall, CHAIN_WALLS)
+    check_integer("count", count, 2, MOST_LINKS)
+    check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
+    first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)
+    if mirrored := first < last:
+        beam = beam.mirrored()
+    turning = [mass.position for mass in beam.mass if mass.rotary_inertia]
+    # a spring behind an end is in series with the joints of a wall, order 4; others act on their link
+    behind = [one for one in beam.spring if one.position in (0.0, beam.length) and one.position not in turning]
+    behind = [PointSpring(position=one.position, rotational=one.rotational) for one in behind if one.rotational]
+    planes: dict[Axis, Beam] = {"bending": msgspec.structs.replace(beam, mass=(), spring=tuple(behind))}
+    if in_space:
+        planes["width"] = msgspec.structs.replace(turned(beam), mass=())
+    rule: Any = "full" if wall == "rigid" else wall
+    models = {axis: SegmentModel(one, count, wall=rule) for axis, one in planes.items()}
+    chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
+    lengths = parts.lengths * unit
+    springs: dict[Axis, Array] = {
+        axis: one.beam.bending_stiffness / unit / one.chain.compliances for axis, one in models.items()
+    }
+    masses = parts.lengths * parts.masses_per_length * beam.mass_per_length * unit
+    inertias = np.stack([masses * lengths**2 / 12.0] * 3, axis=1)
+    if in_space:
+        shaft = np.repeat([(one.stiffness, one.inertia) for one in shafts(beam)], parts.shares, axis=0)
+        halves = 0.5 * lengths / shaft[:, 0]
+        ends = [halves[end] if beam.supports[end] != "free" else np.inf for end in (0, -1)]
+        springs["torsion"] = 1.0 / np.concatenate([ends[:1], halves[1:] + halves[:-1], ends[1:]])
+        sections = [shaft[:, 1], *(one.links.of("rotary_inertia") for one in models.values())]
+        inertias = inertias * [0.0, 1.0, 1.0] + np.stack(sections, axis=1) * lengths[:, None]
+    fixed = [end for end, support in zip((0, count), beam.supports, strict=True) if support == "clamped"]
+    links = zip(chain.nodes.tolist(), lengths.tolist(), masses.tolist(), inertias.tolist(), strict=False)
+    described = RigidChain(
+        beam=beam,
+        wall=wall,
+        joints=tuple(
+            Joint(x, () if wall == "rigid" and j in fixed else tuple(Hinge(a, float(k[j])) for a, k in springs.items()))
+            for j, x in enumerate(chain.nodes.tolist())
+        ),
+        links=tuple(Link(x, length, mass, 0.5 * length, tuple(inertia)) for x, length, mass, inertia in links),
+        bodies=tuple(
+            Body(m.position, link, share * m.mass, share * m.rotary_inertia)
+            for m in beam.mass
+            for link, share in _shares(chain, m.position, m.rotary_inertia)
+        ),
+        springs=tuple(
+            Spring(s.position, link, share * s.stiffness, share * turns)
+            for s in beam.spring
+            for turns in [0.0 if any(s.position == b.position for b in behind) else s.rotational]
+            for link, share in _shares(chain, s.position, turns)
+            if s.stiffness or turns
+        ),
+        in_space=in_space,
+        mirrored=mirrored,
+    )
+    return _damped(described, damping) if damping else described
+
+
+def _shares(chain: Any, position: float, turning: float) -> list[tuple[int, float]]:
+    """(link, share) of an attachment: half to both links at a joint where it turns."""
+    from verify.segments.attachments import link_at
+
+    links, along = link_at(chain, np.array([position]))
+    link = int(links[0])
+    return [(link - 1, 0.5), (link, 0.5)] if turning and along[0] == 0.0 and link else [(link, 1.0)]
+
+
+def _damped(chain: RigidChain, damping: float) -> RigidChain:
+    """The chain with dashpots in proportion to its springs."""
+    times = {axis: damping / (pi * float(chain.frequencies_hz(axis, 1)[0])) for axis in chain.axes}
+    across = times["bending"]
+    return replace(
+        chain,
+        damping=damping,
+        joints=tuple(
+            Joint(one.position, tuple(h._replace(damping=times[h.axis] * h.stiffness) for h in one.hinges))
+            for one in chain.joints
+        ),
+        springs=tuple(
+            one._replace(damping=across * one.stiffness, rotational_damping=across * one.rotational)
+            for one in chain.springs
+        ),
+    )
+
+
+def turned(beam: Beam) -> Beam:
+    """The beam turned by 90 degrees about its axis, without springs: it vibrates across its width."""
+
+    def swap(one: Any) -> Any:
+        return msgspec.structs.replace(
+            one,
+            width=msgspec.structs.asdict(one)["thickness"],
+            thickness=one.width,
+            extreme_fibre=None,
+            shear_stiffness=None,
+            shear_coefficient=None,
+        )
+
+    whole: Beam = swap(beam)
+    return msgspec.structs.replace(whole, section=tuple(map(swap, beam.section)), spring=())
