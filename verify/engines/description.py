@@ -14,7 +14,7 @@ stiffness GJ/l between links, 2GJ/l at a wall, of order 2 by reflection at both 
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -35,7 +35,7 @@ MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 
 
-class Hinge(NamedTuple):
+class Hinge(msgspec.Struct, frozen=True):
     """A rotation about one axis with its spring and dashpot."""
 
     axis: Axis
@@ -45,7 +45,7 @@ class Hinge(NamedTuple):
     """N m s/rad."""
 
 
-class Joint(NamedTuple):
+class Joint(msgspec.Struct, frozen=True):
     """A joint; without hinges it is rigid."""
 
     position: float
@@ -57,7 +57,7 @@ class Joint(NamedTuple):
         return next((hinge for hinge in self.hinges if hinge.axis == axis), None)
 
 
-class Link(NamedTuple):
+class Link(msgspec.Struct, frozen=True):
     """A rigid link."""
 
     start: float
@@ -72,7 +72,7 @@ class Link(NamedTuple):
     """About the centre and x, y, z, kg m^2."""
 
 
-class Body(NamedTuple):
+class Body(msgspec.Struct, frozen=True):
     """An attached mass."""
 
     position: float
@@ -85,7 +85,7 @@ class Body(NamedTuple):
     """kg m^2, in space about all axes."""
 
 
-class Spring(NamedTuple):
+class Spring(msgspec.Struct, frozen=True):
     """A spring from a link to the ground, against deflection in z and rotation about y."""
 
     position: float
@@ -322,11 +322,13 @@ def _damped(chain: RigidChain, damping: float) -> RigidChain:
         chain,
         damping=damping,
         joints=tuple(
-            Joint(one.position, tuple(h._replace(damping=times[h.axis] * h.stiffness) for h in one.hinges))
+            Joint(
+                one.position, tuple(msgspec.structs.replace(h, damping=times[h.axis] * h.stiffness) for h in one.hinges)
+            )
             for one in chain.joints
         ),
         springs=tuple(
-            one._replace(damping=across * one.stiffness, rotational_damping=across * one.rotational)
+            msgspec.structs.replace(one, damping=across * one.stiffness, rotational_damping=across * one.rotational)
             for one in chain.springs
         ),
     )
