@@ -7,6 +7,7 @@ from math import cos, pi, radians
 from typing import Protocol
 
 from verify.arrays import Array
+from verify.engines.description import RigidChain, describe
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.registry import Registry
@@ -20,22 +21,37 @@ SAMPLES = 200
 class Chain:
     """n equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest. SI units.
 
-    `link`, `mass`, `inertia`: length of a link, its mass, and its inertia about its middle. `spring`: rotational, at
-    each inner joint. `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0.
+    `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0.
     """
 
-    n: int
-    link: float
-    mass: float
-    inertia: float
-    spring: float
+    rigid: RigidChain
     frequency_hz: float
     forces: tuple[PointForce, ...]
 
     @property
+    def n(self) -> int:
+        """Number of links."""
+        return self.rigid.count
+
+    @property
+    def link(self) -> float:
+        """Length of a link, m."""
+        return self.rigid.links[0].length
+
+    @property
+    def mass(self) -> float:
+        """Mass of a link, kg."""
+        return self.rigid.links[0].mass
+
+    @property
+    def spring(self) -> float:
+        """Stiffness of an inner joint, N m/rad."""
+        return self.rigid.joints[1].hinges[0].stiffness
+
+    @property
     def length(self) -> float:
         """Length of the chain, m."""
-        return self.n * self.link
+        return self.rigid.beam.length
 
     def force_values(self, t: float) -> list[float]:
         """Values of all forces at t, s, in N."""
@@ -60,8 +76,7 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
     for i, force in enumerate(forces):
         if force.position > beam.length:
             raise InputError(f"force[{i}].position = {force.position!r}: give one between 0 and {beam.length!r} m")
-    link, mass = beam.length / n, beam.mass_per_length * beam.length / n
-    return Chain(n, link, mass, mass * link**2 / 12.0, beam.bending_stiffness / link, frequency_hz, tuple(forces))
+    return Chain(describe(beam, n), frequency_hz, tuple(forces))
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ stiffness GJ/l between links, 2GJ/l at a wall, of order 2 by reflection at both 
 -(k l)^2/24 at the wavenumber k.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -30,26 +31,24 @@ from verify.validation import check_choice, check_integer, check_number, check_t
 Axis = Literal["bending", "width", "torsion"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
+_ABOUT = {"bending": 1, "width": 2, "torsion": 0}
 CHAIN_WALLS = (*(wall for wall in WALLS if wall != "welded"), "rigid")
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 
 
 class Hinge(msgspec.Struct, frozen=True):
-    """A rotation about one axis with its spring and dashpot."""
+    """A rotation about one axis with its spring, N m/rad (0 is free), and its dashpot, N m s."""
 
     axis: Axis
     stiffness: float
-    """N m/rad; 0 is free."""
     damping: float = 0.0
-    """N m s/rad."""
 
 
 class Joint(msgspec.Struct, frozen=True):
-    """A joint; without hinges it is rigid."""
+    """A joint at x = `position`, m; without hinges it is rigid."""
 
     position: float
-    """x, m."""
     hinges: tuple[Hinge, ...]
 
     def hinge(self, axis: Axis) -> Hinge | None:
@@ -58,69 +57,52 @@ class Joint(msgspec.Struct, frozen=True):
 
 
 class Link(msgspec.Struct, frozen=True):
-    """A rigid link."""
+    """A rigid link from x = `start`, m: its centre of mass from there, inertia about it and x, y, z, kg m^2."""
 
     start: float
-    """x of its near end, m."""
     length: float
-    """m."""
     mass: float
-    """kg."""
     centre: float
-    """Centre of mass, m from the near end."""
     inertia: tuple[float, float, float]
-    """About the centre and x, y, z, kg m^2."""
 
 
 class Body(msgspec.Struct, frozen=True):
-    """An attached mass."""
+    """A mass, kg, at x = `position` on a link (from 0), with its inertia, kg m^2, in space about all axes."""
 
     position: float
-    """x, m."""
     link: int
-    """Its link, from 0."""
     mass: float
-    """kg."""
     inertia: float
-    """kg m^2, in space about all axes."""
 
 
 class Spring(msgspec.Struct, frozen=True):
-    """A spring from a link to the ground, against deflection in z and rotation about y."""
+    """A spring from a link to the ground, N/m along z and N m/rad about y, with dashpots, N s/m and N m s."""
 
     position: float
-    """x, m."""
     link: int
-    """Its link, from 0."""
     stiffness: float
-    """N/m."""
     rotational: float
-    """N m/rad."""
     damping: float = 0.0
-    """N s/m."""
     rotational_damping: float = 0.0
-    """N m s/rad."""
 
 
 @dataclass(frozen=True, eq=False)
 class RigidChain:
-    """Links, joints and attachments of a beam, and the frequencies of this chain."""
+    """N + 1 joints, N links, attachments, and the frequencies of exactly this chain.
+
+    `beam` runs from joint 0 on; `mirrored`: joint 0 is at the right end of the scene's beam. `wall`: rule of the joints
+    at a clamped end. `damping`: ratio of the first mode about every axis; that of others is in proportion to frequency.
+    """
 
     beam: Beam
-    """The beam, from joint 0 on."""
     wall: str
-    """Joints at a clamped end."""
     joints: tuple[Joint, ...]
-    """(N + 1,)."""
     links: tuple[Link, ...]
-    """(N,)."""
     bodies: tuple[Body, ...] = ()
     springs: tuple[Spring, ...] = ()
     damping: float = 0.0
-    """Damping ratio of the first mode about every axis; that of others is in proportion to their frequency."""
     in_space: bool = False
     mirrored: bool = False
-    """Whether joint 0 is at the right end of the beam of the scene."""
 
     @property
     def count(self) -> int:
@@ -175,27 +157,32 @@ class RigidChain:
         """(mass, stiffness) over the unknowns of `rows`, or a basis of those that satisfy the constraints, (n, n)."""
         from scipy.linalg import null_space
 
-        index = np.arange(self.count)
-        masses, starts, centres = np.array([(one.mass, one.start, one.centre) for one in self.links]).T
-        inertias = np.array([one.inertia for one in self.links])[:, {"bending": 1, "width": 2, "torsion": 0}[axis]]
-        across, turned = self.rows(axis, index, starts + centres)
-        mass = turned.T @ (inertias[:, None] * turned)
-        free = [0.0] * self.slides(axis)
-        stiffness = np.diag(free + [hinge.stiffness for _, hinge in self.hinges(axis)])
-        if far := self.joints[-1].hinge(axis):
-            stiffness += far.stiffness * turned[-1:].T @ turned[-1:]
-        at, turns = self.rows(axis, [one.link for one in self.bodies], [one.position for one in self.bodies])
-        mass += turns.T @ (np.array([[one.inertia] for one in self.bodies]).reshape(-1, 1) * turns)
+        links = [(i, one.start + one.centre, one.mass, one.inertia[_ABOUT[axis]]) for i, one in enumerate(self.links)]
+        bodies = [(one.link, one.position, one.mass, one.inertia) for one in self.bodies]
+        index, x, masses, inertias = np.array(links + bodies).T
+        across, turned = self.rows(axis, index, x)
+        mass = (turned.T * inertias) @ turned
         if axis != "torsion":
-            mass += across.T @ (masses[:, None] * across)
-            mass += at.T @ (np.array([[one.mass] for one in self.bodies]).reshape(-1, 1) * at)
-        for one in self.springs if axis == "bending" else ():
-            across, turned = self.rows(axis, [one.link], [one.position])
-            stiffness += one.stiffness * across.T @ across + one.rotational * turned.T @ turned
+            mass += (across.T * masses) @ across
+        stiffness = np.diag([0.0] * self.slides(axis) + [hinge.stiffness for _, hinge in self.hinges(axis)])
+        for _, row, spring, _ in self.grounded(axis):
+            stiffness += spring * np.outer(row, row)
         if len(constraints := self.constraints(axis)):
             basis = null_space(constraints)
             mass, stiffness = basis.T @ mass @ basis, basis.T @ stiffness @ basis
         return mass, stiffness
+
+    def grounded(self, axis: Axis) -> Iterator[tuple[str, Array, float, float]]:
+        """(name, row over the unknowns, stiffness, damping) of springs to the ground and of joint N."""
+        for i, one in enumerate(self.springs if axis == "bending" else ()):
+            across, turned = self.rows(axis, [one.link], [one.position])
+            if one.stiffness:
+                yield f"spring{i}", across[0], one.stiffness, one.damping
+            if one.rotational:
+                yield f"spring{i}_rotational", turned[0], one.rotational, one.rotational_damping
+        if (far := self.joints[-1].hinge(axis)) and far.stiffness:
+            row = self.rows(axis, [self.count - 1], [self.joints[-1].position])[1][0]
+            yield f"joint{self.count}_{axis}", row, far.stiffness, far.damping
 
     @cached_property
     def _bent(self) -> dict[Axis, Beam]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.description import Axis, Link, RigidChain
+from verify.engines.description import Axis, RigidChain
 from verify.errors import InputError, shown
 from verify.files import writable_folder, write_whole
 from verify.problem.cross_section import merged, set_fields
@@ -19,370 +19,226 @@ COLOURS = "0.18 0.50 0.93 1", "0.95 0.61 0.14 1"
 DEEPEST = 496
 """Largest number of nested bodies that MuJoCo's reader takes."""
 MASSLESS = 1e-10
-"""Mass and inertia of a body between two hinges at one place over those of a link, for formats that demand one."""
+"""Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
 MODES = 3
+SCRIPTS = ("exudyn", "pinocchio")
+_SDF = (
+    '<link name="{0.body}"><pose relative_to="{frame}">{0.offset!r} 0 0 0 0 0</pose><inertial>'
+    "<pose>{0.centre!r} 0 0 0 0 0</pose><mass>{0.mass!r}</mass><inertia><ixx>{0.inertia[0]!r}</ixx>"
+    "<iyy>{0.inertia[1]!r}</iyy><izz>{0.inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
+    '<visual name="{0.body}"><pose>{middle!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>'
+    "<material><diffuse>{colour}</diffuse></material></visual></link>\n"
+    '<joint name="{0.name}" type="{0.kind}"><parent>{0.parent}</parent><child>{0.body}</child><axis>'
+    "<xyz>{0.direction}</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit><dynamics>"
+    "<damping>{0.damping!r}</damping><spring_reference>0</spring_reference>"
+    "<spring_stiffness>{0.stiffness!r}</spring_stiffness></dynamics></axis></joint>\n"
+)
+_URDF = (
+    '<link name="{0.body}"><inertial><origin xyz="{0.centre!r} 0 0"/><mass value="{0.mass!r}"/>'
+    '<inertia ixx="{0.inertia[0]!r}" iyy="{0.inertia[1]!r}" izz="{0.inertia[2]!r}" ixy="0" ixz="0" iyz="0"/></inertial>'
+    '<visual><origin xyz="{middle!r} 0 0"/><geometry><box size="{size}"/></geometry>'
+    '<material name="{0.body}"><color rgba="{colour}"/></material></visual></link>\n'
+    '<joint name="{0.name}" type="{0.kind}"><parent link="{0.parent}"/><child link="{0.body}"/>'
+    '<origin xyz="{0.offset!r} 0 0"/><axis xyz="{0.direction}"/><dynamics damping="{0.damping!r}"/>'
+    '<limit lower="-3.14" upper="3.14" effort="1e9" velocity="1e9"/></joint>\n'
+)
 
 
 class Motion(NamedTuple):
-    """One degree of freedom of the tree: a body that moves against its parent."""
+    """One degree of freedom, revolute or prismatic, between a body and its parent. `offset`: x in the parent, m."""
 
     name: str
     kind: str
-    """revolute or prismatic."""
     direction: str
     body: str
     parent: str
     offset: float
-    """x in the parent, m."""
     stiffness: float
     damping: float
-    link: int | None
-    """The link that the body is; None between hinges at one place."""
+    link: int
+    mass: float
+    centre: float
+    inertia: tuple[float, ...]
 
 
 def tree(chain: RigidChain) -> Iterator[Motion]:
-    """The tree in motions of one degree of freedom, from joint 0 on."""
+    """The degrees of freedom from joint 0 on. The last at a joint moves the link with the bodies on it."""
     parent, offset = "world", chain.joints[0].position
-    for j, joint in enumerate(chain.joints[:-1]):
-        own = [(f"slide_{axis}", "prismatic", SLIDES[axis], 0.0, 0.0) for axis in SLIDES if axis in chain.axes]
-        moves = own if j == 0 and not chain.held[0] else []
+    for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
+        moves = [(f"slide_{axis}", "prismatic", SLIDES[axis], 0.0, 0.0) for axis in SLIDES if axis in chain.axes]
+        moves = moves if j == 0 and not chain.held[0] else []
         moves += [(f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping) for h in joint.hinges]
-        for i, (name, kind, direction, stiffness, damping) in enumerate(moves):
-            last = i == len(moves) - 1
-            body = f"link{j}" if last else f"link{j}_{name}"
-            yield Motion(name, kind, direction, body, parent, offset, stiffness, damping, j if last else None)
+        own = [(link.mass, link.centre, link.inertia)]
+        own += [(b.mass, b.position - link.start, (b.inertia,) * 3) for b in chain.bodies if b.link == j]
+        mass = sum(m for m, _, _ in own)
+        centre = sum(m * x for m, x, _ in own) / mass
+        spread = sum(m * (x - centre) ** 2 for m, x, _ in own)
+        inertia = tuple(sum(each[i] for _, _, each in own) + spread * (i > 0) for i in range(3))
+        for name, kind, direction, stiffness, damping in moves:
+            last = name == moves[-1][0]
+            body, share = (f"link{j}", 1.0) if last else (f"link{j}_{name}", MASSLESS)
+            weights = (share * mass, centre * last, tuple(share * one for one in inertia))
+            yield Motion(name, kind, direction, body, parent, offset, stiffness, damping, j, *weights)
             parent, offset = body, 0.0
-        offset = chain.links[j].length
+        offset = link.length
 
 
-def loaded(chain: RigidChain, index: int) -> Link:
-    """A link together with the bodies on it."""
-    link = chain.links[index]
-    own = [(link.mass, link.centre, link.inertia)]
-    own += [(b.mass, b.position - link.start, (b.inertia,) * 3) for b in chain.bodies if b.link == index]
-    mass = sum(m for m, _, _ in own)
-    centre = sum(m * x for m, x, _ in own) / mass
-    spread = sum(m * (x - centre) ** 2 for m, x, _ in own)
-    xx, yy, zz = (sum(inertia[i] for _, _, inertia in own) for i in range(3))
-    return Link(link.start, link.length, mass, centre, (xx, yy + spread, zz + spread))
-
-
-def notes(chain: RigidChain) -> list[str]:
-    """What the chain is, and what it is expected to show: a line each."""
-    beam = chain.beam
-    end = ", joint 0 at the right end of the beam" if chain.mirrored else ""
+def notes(chain: RigidChain) -> str:
+    """What the chain is and what it is expected to show, in lines."""
+    beam, mirrored = chain.beam, ", joint 0 at the right end of the beam" * chain.mirrored
     lines = [
-        f"beam {beam.supports[0]}-{beam.supports[1]}, length {beam.length!r} m, {chain.count} rigid links, SI units",
-        f"x along the beam, z the deflection, wall {chain.wall}{end}",
+        f"beam {beam.supports[0]}-{beam.supports[1]}, length {beam.length!r} m, N = {chain.count} rigid links, SI units",
+        f"x along the beam, z the deflection, joints at a wall by the rule {chain.wall}{mirrored}",
     ]
     for axis in chain.axes:
-        hertz = chain.frequencies_hz(axis, MODES)
-        modes = ", ".join(f"{f:.9g} ({e:+.2e})" for f, e in zip(hertz, chain.errors(axis, MODES), strict=True))
-        lines.append(f"expected frequencies in {axis}, Hz (relative error against the exact beam): {modes}")
+        modes = zip(chain.frequencies_hz(axis, MODES), chain.errors(axis, MODES), strict=True)
+        text = ", ".join(f"{hertz:.9g} ({error:+.2e})" for hertz, error in modes)
+        lines.append(f"frequencies in {axis}, Hz (relative errors against the exact beam): {text}")
     if chain.damping:
         lines.append(f"dashpots in proportion to the springs: damping ratio {chain.damping!r} in mode 1, more beyond")
-    if chain.held[1] or any(far.stiffness for far in chain.joints[-1].hinges) or chain.springs:
-        lines.append("small motion: supports of the far end and springs to the ground act along z (and y)")
-    return lines
+    if beam.supports[1] != "free" or chain.springs:
+        lines.append("supports of the far end and springs to the ground act along z (and y): for small motion")
+    return "\n".join(lines)
 
 
 def mjcf(chain: RigidChain, step: float | None = None) -> str:
-    """The chain for MuJoCo; `step`, s, by default one radian of its highest frequency.
+    """The chain for MuJoCo; `step`, s, is by default one radian of the highest frequency.
 
-    Springs to the ground and the supports of the far end are fixed tendons, linear in the angles; a support is an
-    equality, as stiff as the engine allows. Raises InputError for too many links.
+    Springs to the ground, joint N and the supports of the far end are fixed tendons, linear in the angles; a support is
+    an equality, as stiff as the engine allows. Raises InputError for too many links.
     """
     if chain.count > DEEPEST:
         raise InputError(f"count = {chain.count}: MuJoCo reads at most {DEEPEST} nested bodies, lower it")
-    if step is None:
-        step = float(f"{1.0 / (2.0 * np.pi * max(chain.frequencies_hz(axis)[-1] for axis in chain.axes)):.1e}")
-    moves, bodies = list(tree(chain)), ""
-    for j in range(chain.count):
-        link, own = (
-            loaded(chain, j),
-            [one for one in moves if one.body == f"link{j}" or one.body.startswith(f"link{j}_")],
-        )
-        joints = "".join(
+    step = step or float(f"{0.5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
+    bodies, joints = "", ""
+    for one in tree(chain):
+        if not joints:
+            bodies += f'<body name="link{one.link}" pos="{one.offset!r} 0 0">'
+        joints += (
             f'<joint name="{one.name}" type="{"slide" if one.kind == "prismatic" else "hinge"}" axis="{one.direction}" '
             f'stiffness="{one.stiffness!r}" damping="{one.damping!r}"/>'
-            for one in own
         )
-        bodies += (
-            f'<body name="link{j}" pos="{own[0].offset!r} 0 0">{joints}\n<inertial pos="{link.centre!r} 0 0" '
-            f'mass="{link.mass!r}" diaginertia="{_three(link.inertia)}"/>'
-            f'<geom type="box" pos="{0.5 * link.length!r} 0 0" size="{_three(_sizes(chain, j, 0.5))}" contype="0" '
-            f'conaffinity="0" rgba="{COLOURS[j % 2]}"/>\n'
-        )
-    bodies += f'<site name="tip" pos="{chain.links[-1].length!r} 0 0"/>' + "</body>" * chain.count
+        if one.body == f"link{one.link}":
+            bodies += (
+                f'{joints}\n<inertial pos="{one.centre!r} 0 0" mass="{one.mass!r}" '
+                f'diaginertia="{" ".join(map(repr, one.inertia))}"/><geom type="box" contype="0" conaffinity="0" '
+                f'pos="{0.5 * chain.links[one.link].length!r} 0 0" size="{_size(chain, one.link, 0.5)}" '
+                f'rgba="{COLOURS[one.link % 2]}"/>\n'
+            )
+            joints = ""
 
     def tendon(name: str, axis: Axis, row: Array, values: str = "") -> str:
         names = [f"slide_{axis}"] * chain.slides(axis) + [f"joint{j}_{axis}" for j, _ in chain.hinges(axis)]
         coefs = "".join(f'<joint joint="{n}" coef="{c!r}"/>' for n, c in zip(names, row.tolist(), strict=True) if c)
         return f'<fixed name="{name}"{values}>{coefs}</fixed>\n'
 
-    tendons, equalities = "", ""
-    for name, axis, row, stiffness, damping in grounded(chain):
-        tendons += tendon(name, axis, row, f' stiffness="{stiffness!r}" damping="{damping!r}" springlength="0"')
+    tendons, equalities, closed = "", "", ""
     for axis in chain.axes:
+        for name, row, stiffness, damping in chain.grounded(axis):
+            tendons += tendon(name, axis, row, f' stiffness="{stiffness!r}" damping="{damping!r}" springlength="0"')
         for row in chain.constraints(axis):
+            closed = ' solver="PGS" jacobian="dense" iterations="20" tolerance="1e-14"'
             tendons += tendon(f"support_{axis}", axis, row)
             equalities += (
-                f'<tendon name="support_{axis}" tendon1="support_{axis}" solref="{2 * step!r} 1" '
-                'solimp="0.9999 0.9999 0.001 0.5 2"/>'
+                f'<tendon tendon1="support_{axis}" solref="{2.0 * step!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"/>'
             )
     return (
-        f"<mujoco>\n<!--\n{_lines(chain)}\n-->\n"
+        f"<mujoco>\n<!--\n{notes(chain)}\n-->\n"
         '<compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>\n'
-        f'<option timestep="{step!r}" integrator="{"implicitfast" if chain.damping else "RK4"}" gravity="0 0 0" '
-        'solver="PGS" jacobian="dense" iterations="20" tolerance="1e-14"><flag contact="disable"/></option>\n'
-        f'<size memory="200M"/>\n<worldbody>\n{bodies}\n</worldbody>\n'
-        + (f"<tendon>{tendons}</tendon>\n" if tendons else "")
-        + (f"<equality>{equalities}</equality>\n" if equalities else "")
-        + "</mujoco>\n"
+        f'<option timestep="{step!r}" integrator="{"implicitfast" if chain.damping else "RK4"}" gravity="0 0 0"{closed}/>\n'
+        f'<size memory="200M"/>\n<worldbody>\n{bodies}<site name="tip" pos="{chain.links[-1].length!r} 0 0"/>'
+        f"{'</body>' * chain.count}\n</worldbody>\n<tendon>{tendons}</tendon>\n<equality>{equalities}</equality>\n</mujoco>\n"
     )
 
 
-def grounded(chain: RigidChain) -> Iterator[tuple[str, Axis, Array, float, float]]:
-    """(name, axis, row over the unknowns, stiffness, damping) of springs to the ground and joint N."""
-    for i, one in enumerate(chain.springs):
-        across, turned = chain.rows("bending", [one.link], [one.position])
-        if one.stiffness:
-            yield f"spring{i}", "bending", across[0], one.stiffness, one.damping
-        if one.rotational:
-            yield f"spring{i}_rotational", "bending", turned[0], one.rotational, one.rotational_damping
-    for hinge in chain.joints[-1].hinges:
-        if hinge.stiffness:
-            row = chain.rows(hinge.axis, [chain.count - 1], [chain.joints[-1].position])[1][0]
-            yield f"joint{chain.count}_{hinge.axis}", hinge.axis, row, hinge.stiffness, hinge.damping
+def _size(chain: RigidChain, index: int, scale: float = 1.0) -> str:
+    """Length, width and thickness of a link as drawn, m; a hundredth of the beam's length where unknown."""
+    link, beam = chain.links[index], chain.beam
+    steps = np.cumsum([section.length for section in beam.section[:-1]])
+    piece = int(np.searchsorted(steps, link.start + 0.5 * link.length))
+    fields = merged(beam.section[piece], beam) if beam.section else set_fields(beam)
+    sizes = [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
+    return " ".join(repr(scale * one) for one in (link.length, *sizes))
+
+
+def _bodies(chain: RigidChain, text: str) -> str:
+    """Bodies and joints of the tree in the format `text`."""
+    return "".join(
+        text.format(
+            one,
+            frame="__model__" if one.parent == "world" else one.parent,
+            middle=0.5 * chain.links[one.link].length,
+            size=_size(chain, one.link) if one.body == f"link{one.link}" else "1e-6 1e-6 1e-6",
+            colour=COLOURS[one.link % 2],
+        )
+        for one in tree(chain)
+    )
 
 
 def sdf(chain: RigidChain) -> str:
     """The chain for Gazebo and Drake: `spring_stiffness` on every joint."""
-    text = f'<?xml version="1.0"?>\n<!--\n{_lines(chain)}\n-->\n<sdf version="1.9"><model name="beam">\n'
-    for one in tree(chain):
-        frame = "__model__" if one.parent == "world" else one.parent
-        text += (
-            f'<link name="{one.body}"><pose relative_to="{frame}">{one.offset!r} 0 0 0 0 0</pose>'
-            f"{_inertial(chain, one, 'sdf')}</link>\n"
-            f'<joint name="{one.name}" type="{one.kind}"><parent>{one.parent}</parent><child>{one.body}</child><axis>'
-            f"<xyz>{one.direction}</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit><dynamics>"
-            f"<damping>{one.damping!r}</damping><spring_reference>0</spring_reference>"
-            f"<spring_stiffness>{one.stiffness!r}</spring_stiffness></dynamics></axis></joint>\n"
-        )
-    tip = f'<frame name="tip" attached_to="link{chain.count - 1}"><pose>{chain.links[-1].length!r} 0 0 0 0 0</pose>'
-    return f"{text}{tip}</frame>\n</model></sdf>\n"
+    return (
+        f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n<sdf version="1.9"><model name="beam">\n'
+        f'{_bodies(chain, _SDF)}<frame name="tip" attached_to="link{chain.count - 1}">'
+        f"<pose>{chain.links[-1].length!r} 0 0 0 0 0</pose></frame>\n</model></sdf>\n"
+    )
 
 
 def urdf(chain: RigidChain) -> str:
     """The chain for ROS and Pinocchio: the tree and its dashpots, without springs."""
-    text = f'<?xml version="1.0"?>\n<!--\n{_lines(chain)}\n-->\n<robot name="beam">\n<link name="world"/>\n'
-    for one in tree(chain):
-        text += (
-            f'<link name="{one.body}">{_inertial(chain, one, "urdf")}</link>\n'
-            f'<joint name="{one.name}" type="{one.kind}"><parent link="{one.parent}"/><child link="{one.body}"/>'
-            f'<origin xyz="{one.offset!r} 0 0"/><axis xyz="{one.direction}"/><dynamics damping="{one.damping!r}"/>'
-            '<limit lower="-3.14" upper="3.14" effort="1e9" velocity="1e9"/></joint>\n'
-        )
-    joint = f'<joint name="tip" type="fixed"><parent link="link{chain.count - 1}"/><child link="tip"/>'
-    return f'{text}<link name="tip"/>\n{joint}<origin xyz="{chain.links[-1].length!r} 0 0"/></joint>\n</robot>\n'
-
-
-def _inertial(chain: RigidChain, one: Motion, language: str) -> str:
-    """Inertia and shape of a body of the tree."""
-    whole = loaded(chain, int(one.body.partition("_")[0].removeprefix("link")))
-    scale = MASSLESS if one.link is None else 1.0
-    mass, inertia = scale * whole.mass, [scale * value for value in whole.inertia]
-    centre = 0.0 if one.link is None else whole.centre
-    names = [f"i{a}{b}" for a, b in ("xx", "yy", "zz", "xy", "xz", "yz")]
-    values = dict(zip(names, [*inertia, 0.0, 0.0, 0.0], strict=True))
-    size = _three(_sizes(chain, one.link or 0, 1.0))
-    if language == "urdf":
-        table = " ".join(f'{name}="{value!r}"' for name, value in values.items())
-        inertial = f'<origin xyz="{centre!r} 0 0"/><mass value="{mass!r}"/><inertia {table}/>'
-        look = f'<origin xyz="{0.5 * whole.length!r} 0 0"/><geometry><box size="{size}"/></geometry>'
-        look += (
-            f'<material name="colour{(one.link or 0) % 2}"><color rgba="{COLOURS[(one.link or 0) % 2]}"/></material>'
-        )
-    else:
-        table = "".join(f"<{name}>{value!r}</{name}>" for name, value in values.items())
-        inertial = f"<pose>{centre!r} 0 0 0 0 0</pose><mass>{mass!r}</mass><inertia>{table}</inertia>"
-        look = f"<pose>{0.5 * whole.length!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>"
-        look += f"<material><diffuse>{COLOURS[(one.link or 0) % 2]}</diffuse></material>"
-    visual = "" if one.link is None else f'<visual name="{one.body}">{look}</visual>'
-    return f"<inertial>{inertial}</inertial>{visual}"
-
-
-def _three(values: tuple[float, ...] | list[float]) -> str:
-    return " ".join(map(repr, values))
-
-
-def _lines(chain: RigidChain) -> str:
-    return "\n".join(notes(chain))
-
-
-def _sizes(chain: RigidChain, index: int, scale: float) -> list[float]:
-    """Length, width and thickness of a link to be drawn, m; a hundredth of its length where unknown."""
-    link, beam = chain.links[index], chain.beam
-    pieces = np.cumsum([section.length for section in beam.section])
-    piece = int(np.searchsorted(pieces, link.start + 0.5 * link.length))
-    fields = merged(beam.section[piece], beam) if beam.section else set_fields(beam)
-    width, thickness = (fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness"))
-    return [scale * link.length, scale * width, scale * thickness]
-
-
-_DATA = '''"""{notes}"""
-
-import numpy as np
-{imports}
-
-# joint, type, x in its parent, stiffness, dashpot; mass, centre and inertia of its body (xx, yy, zz about the centre)
-TREE = [
-{tree}]
-# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots
-SPRINGS = [
-{springs}]
-# whether the far end is held in y, z
-HELD = {held}
-TIP = {tip}
-'''
-_EXUDYN = '''
-
-def build():
-    """The system, assembled."""
-    system, n = exu.SystemContainer().AddSystem(), len(TREE)
-    _, kinds, offsets, stiffnesses, dashpots, masses, centres, inertias = map(list, zip(*TREE))
-    zeros, along = [0.0] * n, lambda xs: exu.Vector3DList([[x, 0.0, 0.0] for x in xs])
-    node = system.AddNode(items.NodeGenericODE2(
-        referenceCoordinates=zeros, initialCoordinates=zeros, initialCoordinates_t=zeros, numberOfODE2Coordinates=n))
-    tree = system.AddObject(items.ObjectKinematicTree(
-        nodeNumber=node, jointTypes=[getattr(exu.JointType, kind) for kind in kinds], linkParents=list(range(-1, n - 1)),
-        jointTransformations=exu.Matrix3DList([np.eye(3)] * n), jointOffsets=along(offsets),
-        linkInertiasCOM=exu.Matrix3DList([np.diag(one) for one in inertias]), linkCOMs=along(centres), linkMasses=masses,
-        jointPControlVector=stiffnesses, jointDControlVector=dashpots,
-        jointPositionOffsetVector=zeros, jointVelocityOffsetVector=zeros))
-    ground = system.AddObject(items.ObjectGround())
-
-    def markers(body, x, rest):
-        fixed = system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[rest, 0.0, 0.0]))
-        at = {{"objectNumber": tree, "linkNumber": body, "localPosition": [x, 0.0, 0.0]}}
-        return [fixed, system.AddMarker(items.MarkerKinematicTreeRigid(**at))]
-
-    for body, x, rest, stiffness, dashpot in SPRINGS:
-        system.AddObject(items.RigidBodySpringDamper(
-            markerNumbers=markers(body, x, rest), stiffness=np.diag(stiffness), damping=np.diag(dashpot)))
-    if any(HELD):
-        system.AddObject(items.GenericJoint(markerNumbers=markers(*TIP), constrainedAxes=[0, *HELD, 0, 0, 0]))
-    system.Assemble()
-    return system
-
-
-def frequencies_hz(system):
-    """Natural frequencies by the engine's eigenvalue solver."""
-    return np.sort(system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)[0])
-
-
-if __name__ == "__main__":
-    print(frequencies_hz(build())[:10])
-'''
-_PINOCCHIO = '''
-
-def build():
-    """The model, whose `springs` are not part of Pinocchio: see `stiffness`."""
-    model, parent = pin.Model(), 0
-    model.gravity = pin.Motion.Zero()
-    for name, kind, offset, _, dashpot, mass, centre, inertia in TREE:
-        place = pin.SE3(np.eye(3), np.array([offset, 0.0, 0.0]))
-        parent = model.addJoint(parent, getattr(pin, f"JointModel{{kind[0]}}{{kind[-1]}}")(), place, name)
-        body = pin.Inertia(mass, np.array([centre, 0.0, 0.0]), np.diag(inertia))
-        model.appendBodyToJoint(parent, body, pin.SE3.Identity())
-    model.damping = np.array([one[4] for one in TREE])
-    return model
-
-
-def jacobian(model, body, x):
-    """Jacobian of x of a body about the straight beam, (6, n)."""
-    data, q = model.createData(), pin.neutral(model)
-    pin.computeJointJacobians(model, data, q)
-    place = pin.SE3(np.eye(3), np.array([x, 0.0, 0.0]))
-    return pin.getFrameJacobian(model, data, body + 1, place, pin.LOCAL_WORLD_ALIGNED)
-
-
-def stiffness(model):
-    """Stiffness matrix of the joints and of the springs to the ground: torque = -stiffness @ q."""
-    matrix = np.diag([one[3] for one in TREE])
-    for body, x, _, values, _ in SPRINGS:
-        rows = jacobian(model, body, x)
-        matrix += rows.T @ np.diag(values) @ rows
-    return matrix
-
-
-def frequencies_hz(model):
-    """Natural frequencies of small motion, the supports of the far end as constraints."""
-    mass = pin.crba(model, model.createData(), pin.neutral(model))
-    mass = np.triu(mass) + np.triu(mass, 1).T
-    held = jacobian(model, *TIP[:2])[1:3][np.array(HELD, dtype=bool)]
-    basis = null_space(held) if len(held) else np.eye(model.nv)
-    values = eigh(basis.T @ stiffness(model) @ basis, basis.T @ mass @ basis, eigvals_only=True)
-    return np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi)
-
-
-if __name__ == "__main__":
-    print(frequencies_hz(build())[:10])
-'''
-SCRIPTS = {
-    "exudyn": (_EXUDYN, "import exudyn as exu\nfrom exudyn import utilities as items"),
-    "pinocchio": (_PINOCCHIO, "import pinocchio as pin\nfrom scipy.linalg import eigh, null_space"),
-}
+    return (
+        f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n<robot name="beam">\n<link name="world"/>\n'
+        f'{_bodies(chain, _URDF)}<link name="tip"/>\n<joint name="tip" type="fixed"><parent link="link{chain.count - 1}"/>'
+        f'<child link="tip"/><origin xyz="{chain.links[-1].length!r} 0 0"/></joint>\n</robot>\n'
+    )
 
 
 def script(chain: RigidChain, engine: str) -> str:
-    """A Python script with `build` and `frequencies_hz` of Exudyn or Pinocchio."""
+    """A Python script with `build` and `frequencies_hz` of Exudyn or Pinocchio: data, then a fixed text."""
     moves, rows, springs = list(tree(chain)), "", ""
     for one in moves:
         kind = one.kind.capitalize() + "XYZ"[[value != "0" for value in one.direction.split()].index(True)]
-        whole = loaded(chain, one.link or 0)
-        body = (0.0, 0.0, (0.0,) * 3) if one.link is None else (whole.mass, whole.centre, whole.inertia)
-        rows += f"    {(one.name, kind, one.offset, one.stiffness, one.damping, *body)!r},\n"
+        row = (one.name, kind, one.offset, one.stiffness, one.damping, one.mass, one.centre, one.inertia)
+        rows += f"    {row!r},\n"
     bodies = {one.link: i for i, one in enumerate(moves)}
-    far = {hinge.axis: hinge for hinge in chain.joints[-1].hinges}
-    each = [
-        (s.link, s.position, {2: s.stiffness, 4: s.rotational}, {2: s.damping, 4: s.rotational_damping})
-        for s in chain.springs
-    ]
-    if any(hinge.stiffness for hinge in far.values()):
-        at = {"torsion": 3, "bending": 4, "width": 5}
-        values = [{at[axis]: getattr(hinge, name) for axis, hinge in far.items()} for name in ("stiffness", "damping")]
-        each.append((chain.count - 1, chain.joints[-1].position, *values))
-    for link, x, *values in each:
-        six = [tuple(value.get(i, 0.0) for i in range(6)) for value in values]
-        springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
+    values = [(s.link, s.position, 2, s.stiffness, s.damping) for s in chain.springs]
+    values += [(s.link, s.position, 4, s.rotational, s.rotational_damping) for s in chain.springs]
+    end, about = chain.joints[-1], {"torsion": 3, "bending": 4, "width": 5}
+    values += [(chain.count - 1, end.position, about[h.axis], h.stiffness, h.damping) for h in end.hinges]
+    for link, x, i, *pair in values:
+        if pair[0]:
+            six = [tuple(value * (k == i) for k in range(6)) for value in pair]
+            springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
     held = (int(chain.held[1] and chain.in_space), int(chain.held[1]))
-    text, imports = SCRIPTS[engine]
-    tip = (len(moves) - 1, chain.links[-1].length, chain.joints[-1].position)
-    return (_DATA + text).format(notes=_lines(chain), imports=imports, tree=rows, springs=springs, held=held, tip=tip)
+    tip = (len(moves) - 1, chain.links[-1].length, end.position)
+    text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
+    return (
+        f'"""{notes(chain)}"""\n\nimport numpy as np\n\n# joint, type, x in its parent, stiffness, dashpot; mass, centre, '
+        f"inertia about it (xx, yy, zz) of its body\nTREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the "
+        f"ground in x, y, z and about them; dashpots\nSPRINGS = [\n{springs}]\n# whether the far end is held in y, z; "
+        f"its body, x in it, x at rest\nHELD = {held}\nTIP = {tip}\n\n{text}"
+    )
 
 
 def table(chain: RigidChain) -> Table:
-    """Joints 0..N with the link beyond each, SI."""
+    """Joints 0..N with the link beyond each, SI; in a plane a link has one inertia."""
+    names = ("stiffness", "N m/rad", ".6g"), ("dashpot", "N m s", ".4g")
+    words = {axis: f" {axis}" if chain.in_space else "" for axis in chain.axes}
     columns = [Column("joint"), Column("position", "m")]
-    for axis in chain.axes:
-        word = "" if chain.axes == ("bending",) else f" {axis}"
-        columns += [Column(f"stiffness{word}", "N m/rad", ".6g"), Column(f"dashpot{word}", "N m s", ".4g")]
-    names = (("length", "m"), ("mass", "kg"), ("centre", "m"), ("xx", "kg m2"), ("yy", "kg m2"), ("zz", "kg m2"))
-    columns += [Column(f"link {name}", unit) for name, unit in names]
+    columns += [
+        Column(name + words[axis], *unit) for axis in chain.axes for name, *unit in names[: 1 + bool(chain.damping)]
+    ]
+    columns += [Column("length", "m"), Column("mass", "kg"), Column("centre", "m")]
+    columns += [Column(f"inertia{one}", "kg m2") for one in ((" xx", " yy", " zz") if chain.in_space else ("",))]
     rows = []
     for j, joint in enumerate(chain.joints):
-        link = chain.links[j] if j < chain.count else None
-        beyond = (link.length, link.mass, link.centre, *link.inertia) if link else (None,) * 6
-        hinges = [joint.hinge(axis) for axis in chain.axes]
-        rows.append(
-            (
-                j,
-                joint.position,
-                *(v for h in hinges for v in ((h.stiffness, h.damping) if h else (None, None))),
-                *beyond,
-            )
-        )
+        row: list[float | None] = [j, joint.position]
+        for hinge in map(joint.hinge, chain.axes):
+            row += [hinge and hinge.stiffness, hinge and hinge.damping][: 1 + bool(chain.damping)]
+        if j < chain.count:
+            link = chain.links[j]
+            row += [link.length, link.mass, link.centre, *link.inertia]
+        rows.append([*row, *[None] * 6][: len(columns)])
     return Table("Joints, and the link beyond each", columns, rows)
 
 
@@ -393,7 +249,8 @@ def data(chain: RigidChain) -> dict[str, object]:
         axis: {"frequencies_hz": chain.frequencies_hz(axis, MODES), "error": chain.errors(axis, MODES)}
         for axis in chain.axes
     }
-    return {"supports": chain.beam.supports, **{name: getattr(chain, name) for name in names}, "expected": expected}
+    own = {name: getattr(chain, name) for name in names}
+    return {"supports": chain.beam.supports, "count": chain.count, **own, "expected": expected}
 
 
 _WRITERS: dict[str, Callable[[RigidChain], str]] = {
@@ -413,21 +270,17 @@ def write(chain: RigidChain, path: Path, engine: str | None = None) -> str:
     """
     kind = path.suffix.lower().removeprefix(".")
     if kind not in (*_WRITERS, "py"):
-        raise InputError(
-            f"to = {shown(str(path))}: the suffix is no file type, give one of .{', .'.join(_WRITERS)}, .py"
-        )
+        raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give .{', .'.join(_WRITERS)} or .py")
     if chain.wall == "rigid":
         raise InputError("wall = 'rigid': a first link fixed to the wall is for comparison, give another wall")
     if (kind == "py") != (engine is not None) or (engine and engine not in SCRIPTS):
         raise InputError(f"engine = {engine!r}: for a .py file give {' or '.join(SCRIPTS)}, for others none")
     writable_folder(path.parent, "to")
     write_whole(path, script(chain, engine) if engine else _WRITERS[kind](chain), "to")
-    missing = ["joint stiffnesses"] * (kind == "urdf")
-    missing += ["springs to the ground"] * bool(chain.springs) + ["the supports of the far end"] * (
-        chain.beam.supports[1] != "free"
-    )
+    missing = ["joint springs"] * (kind == "urdf") + ["springs to the ground"] * bool(chain.springs)
+    missing += ["support of the far end"] * (chain.beam.supports[1] != "free")
     if kind not in ("sdf", "urdf") or not missing:
         return f"wrote {path}"
     beside = path.with_name(path.name + ".json")
     write_whole(beside, to_json(data(chain)), "to")
-    return f"wrote {path}; {kind.upper()} has no {', '.join(missing)}: apply those of {beside}"
+    return f"wrote {path}: {kind.upper()} has no {', no '.join(missing)}, apply what is in {beside}"

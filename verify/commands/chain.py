@@ -1,0 +1,152 @@
+"""`verify chain`: the joints of a chain of rigid bodies in plain units, and its file for another engine."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
+from verify.errors import InputError, printable
+
+if TYPE_CHECKING:
+    from verify.engines.description import RigidChain
+    from verify.problem.beam import Beam
+    from verify.report.result import Result, Table
+
+FIRST = 4
+"""Joints that the terminal always shows."""
+RULES = {"gregory": "Gregory", "half": "2EI/l", "full": "EI/l", "rigid": "first link held"}
+"""Rules at a clamped end that are compared."""
+
+
+@click.command(cls=BeamCommand)
+@scene_argument
+@overrides_option
+@click.option("--count", type=int, metavar="N", help="Links. Default: the fewest within --error at --mode.")
+@click.option("--mode", type=click.IntRange(1, 100), default=3, show_default=True, metavar="N", help="Highest mode.")
+@click.option("--error", default="1%", show_default=True, metavar="E", help="Largest relative frequency error.")
+@click.option("--wall", default="gregory", show_default=True, metavar="RULE", help="Joints at a clamped end.")
+@click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
+@click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
+@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, .py, .json or .csv.")
+@click.option("--engine", metavar="NAME", help="exudyn or pinocchio, for a .py file.")
+@format_options
+def chain(
+    scene: str,
+    overrides: tuple[str, ...],
+    count: int | None,
+    mode: int,
+    error: str,
+    wall: str,
+    in_space: bool,
+    damping: str,
+    path: str | None,
+    engine: str | None,
+    **formats: bool,
+) -> None:
+    """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
+
+    Stiffnesses in N m/rad, dashpots, masses, inertias, and the frequency errors of exactly this chain.
+    Example: `verify chain --beam "1 m x 40 x 8 mm steel, clamped-free" --count 20 --to beam.xml`
+    """
+    from verify.commands.choose import relative_error
+    from verify.convert import typed
+    from verify.engines.description import describe
+    from verify.engines.writers import write
+    from verify.scene.load import load_scene
+    from verify.validation import Relative
+
+    if engine and not path:
+        raise InputError(f"engine = {engine!r} is for a file: give --to FILE.py")
+    ratio, beam = typed(damping, Relative, "damping"), load_scene(scene, overrides).beam
+    count = count or _fewest(beam, mode, relative_error(error), wall, in_space)
+    described = describe(beam, count, wall=wall, in_space=in_space, damping=ratio)
+    wrote = write(described, Path(path), engine) if path else ""
+    show(_result(described, mode, brief=not any(formats.values())), **formats)
+    if wrote:
+        click.echo(printable(wrote), err=any(formats.values()))
+
+
+def _fewest(beam: "Beam", mode: int, error: float, wall: str, in_space: bool) -> int:
+    """The smallest number of links that is within the error at a mode, and so is the next one tried."""
+    from verify.engines.description import MOST_LINKS, describe
+
+    count, first = max(len(beam.pieces), mode + 1, 2), 0
+    while count <= MOST_LINKS:
+        tried = describe(beam, count, wall=wall, in_space=in_space)
+        errors = [tried.errors(axis, mode) for axis in tried.axes]
+        within = all(len(one) >= mode and abs(one[-1]) <= error for one in errors)
+        if within and first:
+            return first
+        first, count = count if within else 0, count + max(count // 40, 1)
+    raise InputError(
+        f"error = {error!r}: {MOST_LINKS} links are not within it at mode {mode}, raise it or give --count"
+    )
+
+
+def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
+    from verify.analysis.margins import beam_margins
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin
+    from verify.engines.description import describe
+    from verify.engines.writers import data, table
+    from verify.report.result import Column, Result, Table
+
+    walls = RULES if "clamped" in chain.beam.supports else {}
+    others = {
+        title: describe(chain.beam, chain.count, wall=wall, in_space=chain.in_space)
+        for wall, title in walls.items()
+        if wall != chain.wall
+    }
+    columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
+    columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
+    rows: list[tuple[object, ...]] = []
+    for axis in chain.axes:
+        every = {"error": chain.errors(axis, mode)} | {t: one.errors(axis, mode) for t, one in others.items()}
+        values = [[*map(float, errors), *[None] * (mode - len(errors))] for errors in every.values()]
+        hertz = [chain.exact_hz(axis, mode), chain.frequencies_hz(axis, mode)]
+        rows += [(axis, i + 1, *(float(f[i]) for f in hertz), *(v[i] for v in values)) for i in range(len(hertz[1]))]
+    last = [row for row in rows if row[1] == mode]
+    margins = [
+        Margin(name=f"discretisation of {chain.count} links in {row[0]}", size=abs(float(str(row[4]))),
+               where=f"at mode {mode}", condition="the chain is fine enough", remedy="give more links")
+        for row in last
+    ]  # fmt: skip
+    margins += beam_margins(SolutionCache(chain.beam), (), mode=mode)
+    rules = f", {RULES.get(chain.wall, chain.wall)} joints at the wall" if walls else ""
+    attached: list[tuple[object, ...]] = [(b.position, b.link, b.mass, b.inertia, None, None) for b in chain.bodies]
+    attached += [(s.position, s.link, None, None, s.stiffness, s.rotational) for s in chain.springs]
+    names = (("position", "m"), ("link", ""), ("mass", "kg"), ("inertia", "kg m2"), ("stiffness", "N/m"))
+    bodies = Table("Attachments", [*(Column(*name) for name in names), Column("rotational", "N m/rad")], attached)
+    joints = table(chain)
+    warnings = ["joint 0 is at the right end of the beam, which holds more"] * chain.mirrored
+    if chain.in_space and attached:
+        warnings.append("attached bodies have their inertia about all axes; springs act in bending alone")
+    return Result(
+        f"N = {chain.count} rigid links{rules}.",
+        [_shortened(joints) if brief else joints, *[bodies] * bool(attached), Table("Frequencies", columns, rows)],
+        warnings=warnings,
+        margins=margins,
+        data=data(chain),
+    )
+
+
+def _shortened(table: "Table") -> "Table":
+    """The first rows, the last, and in between a row for each run of joints that differ in position alone."""
+    from dataclasses import replace
+
+    rows, start = list(map(tuple, table.rows)), FIRST
+    alike = [[f"{value:.9g}" if isinstance(value, float) else value for value in row[2:]] for row in rows]
+    runs = [(str(row[0]), *row[1:]) for row in rows[:FIRST]]
+    for j in range(FIRST + 1, len(rows) + 1):
+        if j >= len(rows) - 1 or alike[j] != alike[start]:
+            several = j > start + 1
+            runs.append(
+                (
+                    f"{start} to {j - 1}" if several else str(start),
+                    None if several else rows[start][1],
+                    *rows[start][2:],
+                )
+            )
+            start = j
+    return replace(table, rows=runs)
