@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FIRST = 4
 """Joints that the terminal always shows."""
-RULES = {"gregory": "Gregory", "half": "2EI/l", "full": "EI/l", "rigid": "first link held"}
+RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link held"}
 """Rules at a clamped end that are compared."""
 
 
@@ -85,6 +85,7 @@ def _fewest(beam: "Beam", mode: int, error: float, wall: str, in_space: bool) ->
 
 
 def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
+    """Verdict, joints and links, and frequencies next to those of the other rules at a clamped end."""
     from verify.analysis.margins import beam_margins
     from verify.analysis.solution_cache import SolutionCache
     from verify.analysis.verdict import Margin
@@ -92,43 +93,32 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
     from verify.engines.writers import data, table
     from verify.report.result import Column, Result, Table
 
-    walls = RULES if "clamped" in chain.beam.supports else {}
+    walls, n = (RULES if "clamped" in chain.beam.supports else {}), chain.count
     others = {
-        title: describe(chain.beam, chain.count, wall=wall, in_space=chain.in_space)
+        title: describe(chain.beam, n, wall=wall, in_space=chain.in_space)
         for wall, title in walls.items()
         if wall != chain.wall
     }
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
-    rows: list[tuple[object, ...]] = []
+    rows, margins = list[tuple[object, ...]](), beam_margins(SolutionCache(chain.beam), (), mode=mode)
     for axis in chain.axes:
-        every = {"error": chain.errors(axis, mode)} | {t: one.errors(axis, mode) for t, one in others.items()}
-        values = [[*map(float, errors), *[None] * (mode - len(errors))] for errors in every.values()]
-        hertz = [chain.exact_hz(axis, mode), chain.frequencies_hz(axis, mode)]
-        rows += [(axis, i + 1, *(float(f[i]) for f in hertz), *(v[i] for v in values)) for i in range(len(hertz[1]))]
-    last = [row for row in rows if row[1] == mode]
-    margins = [
-        Margin(name=f"discretisation of {chain.count} links in {row[0]}", size=abs(float(str(row[4]))),
-               where=f"at mode {mode}", condition="the chain is fine enough", remedy="give more links")
-        for row in last
-    ]  # fmt: skip
-    margins += beam_margins(SolutionCache(chain.beam), (), mode=mode)
-    rules = f", {RULES.get(chain.wall, chain.wall)} joints at the wall" if walls else ""
-    attached: list[tuple[object, ...]] = [(b.position, b.link, b.mass, b.inertia, None, None) for b in chain.bodies]
-    attached += [(s.position, s.link, None, None, s.stiffness, s.rotational) for s in chain.springs]
-    names = (("position", "m"), ("link", ""), ("mass", "kg"), ("inertia", "kg m2"), ("stiffness", "N/m"))
-    bodies = Table("Attachments", [*(Column(*name) for name in names), Column("rotational", "N m/rad")], attached)
-    joints = table(chain)
+        hertz, errors = chain.frequencies_hz(axis, mode).tolist(), chain.errors(axis, mode).tolist()
+        if len(hertz) < mode:
+            raise InputError(f"count = {n}: the chain has {len(hertz)} modes in {axis}, raise it or lower --mode")
+        every = [[*one.errors(axis, mode).tolist(), *[None] * mode][:mode] for one in others.values()]
+        rows += zip(
+            [axis] * mode, range(1, mode + 1), chain.exact_hz(axis, mode).tolist(), hertz, errors, *every, strict=True
+        )
+        name = f"discretisation of {n} links in {axis}"
+        margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
+                           condition=f"{n} links are enough in {axis}")]  # fmt: skip
+    rule = f", {RULES.get(chain.wall, chain.wall)} at the wall" if walls else ""
     warnings = ["joint 0 is at the right end of the beam, which holds more"] * chain.mirrored
-    if chain.in_space and attached:
-        warnings.append("attached bodies have their inertia about all axes; springs act in bending alone")
-    return Result(
-        f"N = {chain.count} rigid links{rules}.",
-        [_shortened(joints) if brief else joints, *[bodies] * bool(attached), Table("Frequencies", columns, rows)],
-        warnings=warnings,
-        margins=margins,
-        data=data(chain),
-    )
+    if chain.in_space and (chain.bodies or chain.springs):
+        warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
+    tables = [_shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]
+    return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))
 
 
 def _shortened(table: "Table") -> "Table":

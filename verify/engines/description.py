@@ -6,14 +6,14 @@ end. In space every joint has hinges for both bending planes and for torsion. An
 links beyond it. An end without deflection is held in z (and y) and free along x; a support holds the twist, a free end
 does not. Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint.
 
-The joints in bending are those of `SegmentModel`. In torsion a link is a disk with half a link of shaft on either side:
-stiffness GJ/l between links, 2GJ/l at a wall, of order 2 by reflection at both kinds of ends: the relative error is
--(k l)^2/24 at the wavenumber k.
+The joints in bending are those of `SegmentModel`. In torsion a link is a disk at the centre of its inertia, between
+springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the relative error is -(k l)^2/24 at the
+wavenumber k.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 from typing import Any, Literal
 
@@ -115,11 +115,6 @@ class RigidChain:
         return AXES if self.in_space else AXES[:1]
 
     @property
-    def theory(self) -> str:
-        """Theory of the exact beam: in space links have the rotary inertia of their sections."""
-        return "rayleigh" if self.in_space else "euler-bernoulli"
-
-    @property
     def held(self) -> tuple[bool, bool]:
         """Whether each end has no deflection."""
         left, right = (FIXED[support].deflection for support in self.beam.supports)
@@ -184,43 +179,40 @@ class RigidChain:
             row = self.rows(axis, [self.count - 1], [self.joints[-1].position])[1][0]
             yield f"joint{self.count}_{axis}", row, far.stiffness, far.damping
 
-    @cached_property
-    def _bent(self) -> dict[Axis, Beam]:
-        return {"bending": self.beam, **({"width": turned(self.beam)} if self.in_space else {})}
-
-    def rigid_motions(self, axis: Axis) -> int:
-        """Number of rigid-body motions."""
-        return int(set(self.beam.supports) == {"free"}) if axis == "torsion" else self._bent[axis].rigid_motions
-
     def frequencies_hz(self, axis: Axis = "bending", n_modes: int | None = None) -> Array:
-        """Elastic frequencies of the chain, (n_modes,) or all, ascending, Hz.
-
-        The inverse problem, whose largest eigenvalues are the lowest modes without loss of digits, with a shift where
-        the chain has rigid-body motions.
-        """
-        from scipy.linalg import eigh
-
-        mass, stiffness = self.matrices(axis)
-        rigid = self.rigid_motions(axis)
-        shift = (2.0 * pi * float(self.exact_hz(axis, 1)[0])) ** 2 if rigid else 0.0
-        values = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1][rigid:]
-        return np.asarray(np.sqrt(1.0 / values - shift) / (2.0 * pi))[:n_modes]
+        """Elastic frequencies of the chain, (n_modes,) or all, ascending, Hz."""
+        return _frequencies(self, axis)[:n_modes]
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
-        """Frequencies of the exact beam, (n_modes,), Hz."""
+        """Frequencies of the exact beam, (n_modes,), Hz; in space with the rotary inertia of its sections."""
         if axis == "torsion":
-            held = [support != "free" for support in self.beam.supports]
+            left, right = (support != "free" for support in self.beam.supports)
             bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
-            return torsion_hz(shafts(self.beam), (held[0], held[1]), n_modes, bodies)
+            return torsion_hz(shafts(self.beam), (left, right), n_modes, bodies)
         from verify.analytic_modes import ExactModel
 
-        exact = ExactModel(self._bent[axis], self.theory)
+        exact = ExactModel(in_plane(self.beam, axis), "rayleigh" if self.in_space else "euler-bernoulli")
         return np.array([exact.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
     def errors(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Relative errors of the first frequencies against the exact beam, (n_modes,)."""
         found = self.frequencies_hz(axis, n_modes)
         return np.asarray(found / self.exact_hz(axis, len(found)) - 1.0)
+
+
+@lru_cache(maxsize=16)
+def _frequencies(chain: RigidChain, axis: Axis) -> Array:
+    """The inverse problem, whose largest eigenvalues are the lowest modes without loss of digits.
+
+    A shift makes the stiffness of a chain with rigid-body motions positive definite.
+    """
+    from scipy.linalg import eigh
+
+    loose = int(set(chain.beam.supports) == {"free"}) if axis == "torsion" else in_plane(chain.beam, axis).rigid_motions
+    shift = (2.0 * pi * float(chain.exact_hz(axis, 1)[0])) ** 2 if loose else 0.0
+    mass, stiffness = chain.matrices(axis)
+    values = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1][loose:]
+    return np.asarray(np.sqrt(1.0 / values - shift) / (2.0 * pi))
 
 
 def describe(
@@ -245,11 +237,9 @@ def describe(
     # a spring behind an end is in series with the joints of a wall, order 4; others act on their link
     behind = [one for one in beam.spring if one.position in (0.0, beam.length) and one.position not in turning]
     behind = [PointSpring(position=one.position, rotational=one.rotational) for one in behind if one.rotational]
-    planes: dict[Axis, Beam] = {"bending": msgspec.structs.replace(beam, mass=(), spring=tuple(behind))}
-    if in_space:
-        planes["width"] = msgspec.structs.replace(turned(beam), mass=())
+    bare = msgspec.structs.replace(beam, mass=(), spring=tuple(behind))
     rule: Any = "full" if wall == "rigid" else wall
-    models = {axis: SegmentModel(one, count, wall=rule) for axis, one in planes.items()}
+    models = {a: SegmentModel(in_plane(bare, a), count, wall=rule) for a in (AXES[:2] if in_space else AXES[:1])}
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
     lengths = parts.lengths * unit
     springs: dict[Axis, Array] = {
@@ -257,39 +247,51 @@ def describe(
     }
     masses = parts.lengths * parts.masses_per_length * beam.mass_per_length * unit
     inertias = np.stack([masses * lengths**2 / 12.0] * 3, axis=1)
+    bodies = [
+        Body(m.position, link, share * m.mass, share * m.rotary_inertia)
+        for m in beam.mass
+        for link, share in _shares(chain, m.position, m.rotary_inertia)
+    ]
     if in_space:
         shaft = np.repeat([(one.stiffness, one.inertia) for one in shafts(beam)], parts.shares, axis=0)
-        halves = 0.5 * lengths / shaft[:, 0]
-        ends = [halves[end] if beam.supports[end] != "free" else np.inf for end in (0, -1)]
-        springs["torsion"] = 1.0 / np.concatenate([ends[:1], halves[1:] + halves[:-1], ends[1:]])
+        spin, moment = shaft[:, 1] * lengths, np.zeros(count)
+        for body in bodies:
+            spin[body.link] += body.inertia
+            moment[body.link] += body.inertia * (body.position - chain.nodes[body.link] - 0.5 * lengths[body.link])
+        # a disk is at the centre of its inertia: order 1 otherwise
+        before, after = (0.5 * lengths + moment / spin) / shaft[:, 0], (0.5 * lengths - moment / spin) / shaft[:, 0]
+        before[0] = before[0] if beam.supports[0] != "free" else np.inf
+        after[-1] = after[-1] if beam.supports[1] != "free" else np.inf
+        springs["torsion"] = 1.0 / (np.append(before, 0.0) + np.append(0.0, after))
         sections = [shaft[:, 1], *(one.links.of("rotary_inertia") for one in models.values())]
         inertias = inertias * [0.0, 1.0, 1.0] + np.stack(sections, axis=1) * lengths[:, None]
-    fixed = [end for end, support in zip((0, count), beam.supports, strict=True) if support == "clamped"]
-    links = zip(chain.nodes.tolist(), lengths.tolist(), masses.tolist(), inertias.tolist(), strict=False)
-    described = RigidChain(
+    times = dict.fromkeys(springs, 0.0)
+    if damping:
+        undamped = describe(beam, count, wall=wall, in_space=in_space)
+        times = {axis: damping / (pi * float(undamped.frequencies_hz(axis, 1)[0])) for axis in springs}
+    fixed = [end for end, s in zip((0, count), beam.supports, strict=True) if s == "clamped" and wall == "rigid"]
+    nodes, across = chain.nodes.tolist(), times["bending"]
+    links = zip(nodes, lengths.tolist(), masses.tolist(), inertias.tolist(), strict=False)
+    hinges = [
+        tuple(Hinge(a, float(k[j]), times[a] * float(k[j])) for a, k in springs.items()) for j in range(count + 1)
+    ]
+    return RigidChain(
         beam=beam,
         wall=wall,
-        joints=tuple(
-            Joint(x, () if wall == "rigid" and j in fixed else tuple(Hinge(a, float(k[j])) for a, k in springs.items()))
-            for j, x in enumerate(chain.nodes.tolist())
-        ),
+        joints=tuple(Joint(x, () if j in fixed else hinges[j]) for j, x in enumerate(nodes)),
         links=tuple(Link(x, length, mass, 0.5 * length, tuple(inertia)) for x, length, mass, inertia in links),
-        bodies=tuple(
-            Body(m.position, link, share * m.mass, share * m.rotary_inertia)
-            for m in beam.mass
-            for link, share in _shares(chain, m.position, m.rotary_inertia)
-        ),
+        bodies=tuple(bodies),
         springs=tuple(
-            Spring(s.position, link, share * s.stiffness, share * turns)
+            Spring(s.position, link, share * s.stiffness, share * k, across * share * s.stiffness, across * share * k)
             for s in beam.spring
-            for turns in [0.0 if any(s.position == b.position for b in behind) else s.rotational]
-            for link, share in _shares(chain, s.position, turns)
-            if s.stiffness or turns
+            for k in [0.0 if any(s.position == b.position for b in behind) else s.rotational]
+            for link, share in _shares(chain, s.position, k)
+            if s.stiffness or k
         ),
+        damping=damping,
         in_space=in_space,
         mirrored=mirrored,
     )
-    return _damped(described, damping) if damping else described
 
 
 def _shares(chain: Any, position: float, turning: float) -> list[tuple[int, float]]:
@@ -301,38 +303,13 @@ def _shares(chain: Any, position: float, turning: float) -> list[tuple[int, floa
     return [(link - 1, 0.5), (link, 0.5)] if turning and along[0] == 0.0 and link else [(link, 1.0)]
 
 
-def _damped(chain: RigidChain, damping: float) -> RigidChain:
-    """The chain with dashpots in proportion to its springs."""
-    times = {axis: damping / (pi * float(chain.frequencies_hz(axis, 1)[0])) for axis in chain.axes}
-    across = times["bending"]
-    return replace(
-        chain,
-        damping=damping,
-        joints=tuple(
-            Joint(
-                one.position, tuple(msgspec.structs.replace(h, damping=times[h.axis] * h.stiffness) for h in one.hinges)
-            )
-            for one in chain.joints
-        ),
-        springs=tuple(
-            msgspec.structs.replace(one, damping=across * one.stiffness, rotational_damping=across * one.rotational)
-            for one in chain.springs
-        ),
-    )
+def in_plane(beam: Beam, axis: Axis) -> Beam:
+    """The beam, for "width" turned by 90 degrees about its axis, without springs."""
 
+    def turned(one: Any) -> Any:
+        sizes = msgspec.structs.asdict(one)
+        return msgspec.structs.replace(one, width=sizes["thickness"], thickness=sizes["width"])
 
-def turned(beam: Beam) -> Beam:
-    """The beam turned by 90 degrees about its axis, without springs: it vibrates across its width."""
-
-    def swap(one: Any) -> Any:
-        return msgspec.structs.replace(
-            one,
-            width=msgspec.structs.asdict(one)["thickness"],
-            thickness=one.width,
-            extreme_fibre=None,
-            shear_stiffness=None,
-            shear_coefficient=None,
-        )
-
-    whole: Beam = swap(beam)
-    return msgspec.structs.replace(whole, section=tuple(map(swap, beam.section)), spring=())
+    if axis != "width":
+        return beam
+    return msgspec.structs.replace(turned(beam), section=tuple(map(turned, beam.section)), spring=())  # type: ignore[no-any-return]

@@ -1,8 +1,8 @@
 """A `RigidChain` as a file of an engine: MJCF, SDF, URDF, scripts for Exudyn and Pinocchio, JSON, CSV."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from verify.arrays import Array
 from verify.engines.description import Axis, RigidChain
 from verify.errors import InputError, shown
 from verify.files import writable_folder, write_whole
+from verify.problem.beam import Beam
 from verify.problem.cross_section import merged, set_fields
 from verify.report.result import Column, Table, to_json
 
@@ -22,63 +23,67 @@ MASSLESS = 1e-10
 """Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
 MODES = 3
 SCRIPTS = ("exudyn", "pinocchio")
+_MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
+_MJCF_BODY = (
+    '\n<inertial pos="{centre!r} 0 0" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
+    '<geom type="box" contype="0" conaffinity="0" pos="{middle!r} 0 0" size="{half}" rgba="{colour}"/>\n'
+)
 _SDF = (
-    '<link name="{0.body}"><pose relative_to="{frame}">{0.offset!r} 0 0 0 0 0</pose><inertial>'
-    "<pose>{0.centre!r} 0 0 0 0 0</pose><mass>{0.mass!r}</mass><inertia><ixx>{0.inertia[0]!r}</ixx>"
-    "<iyy>{0.inertia[1]!r}</iyy><izz>{0.inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
-    '<visual name="{0.body}"><pose>{middle!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>'
+    '<link name="{body}"><pose relative_to="{frame}">{offset!r} 0 0 0 0 0</pose><inertial>'
+    "<pose>{centre!r} 0 0 0 0 0</pose><mass>{mass!r}</mass><inertia><ixx>{inertia[0]!r}</ixx>"
+    "<iyy>{inertia[1]!r}</iyy><izz>{inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
+    '<visual name="{body}"><pose>{middle!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>'
     "<material><diffuse>{colour}</diffuse></material></visual></link>\n"
-    '<joint name="{0.name}" type="{0.kind}"><parent>{0.parent}</parent><child>{0.body}</child><axis>'
-    "<xyz>{0.direction}</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit><dynamics>"
-    "<damping>{0.damping!r}</damping><spring_reference>0</spring_reference>"
-    "<spring_stiffness>{0.stiffness!r}</spring_stiffness></dynamics></axis></joint>\n"
+    '<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{body}</child><axis>'
+    "<xyz>{direction}</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit><dynamics>"
+    "<damping>{damping!r}</damping><spring_reference>0</spring_reference>"
+    "<spring_stiffness>{stiffness!r}</spring_stiffness></dynamics></axis></joint>\n"
 )
 _URDF = (
-    '<link name="{0.body}"><inertial><origin xyz="{0.centre!r} 0 0"/><mass value="{0.mass!r}"/>'
-    '<inertia ixx="{0.inertia[0]!r}" iyy="{0.inertia[1]!r}" izz="{0.inertia[2]!r}" ixy="0" ixz="0" iyz="0"/></inertial>'
+    '<link name="{body}"><inertial><origin xyz="{centre!r} 0 0"/><mass value="{mass!r}"/>'
+    '<inertia ixx="{inertia[0]!r}" iyy="{inertia[1]!r}" izz="{inertia[2]!r}" ixy="0" ixz="0" iyz="0"/></inertial>'
     '<visual><origin xyz="{middle!r} 0 0"/><geometry><box size="{size}"/></geometry>'
-    '<material name="{0.body}"><color rgba="{colour}"/></material></visual></link>\n'
-    '<joint name="{0.name}" type="{0.kind}"><parent link="{0.parent}"/><child link="{0.body}"/>'
-    '<origin xyz="{0.offset!r} 0 0"/><axis xyz="{0.direction}"/><dynamics damping="{0.damping!r}"/>'
+    '<material name="{body}"><color rgba="{colour}"/></material></visual></link>\n'
+    '<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{body}"/>'
+    '<origin xyz="{offset!r} 0 0"/><axis xyz="{direction}"/><dynamics damping="{damping!r}"/>'
     '<limit lower="-3.14" upper="3.14" effort="1e9" velocity="1e9"/></joint>\n'
 )
 
 
-class Motion(NamedTuple):
-    """One degree of freedom, revolute or prismatic, between a body and its parent. `offset`: x in the parent, m."""
+def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
+    """One degree of freedom after the other from joint 0 on: a body, its parent, the joint between them.
 
-    name: str
-    kind: str
-    direction: str
-    body: str
-    parent: str
-    offset: float
-    stiffness: float
-    damping: float
-    link: int
-    mass: float
-    centre: float
-    inertia: tuple[float, ...]
-
-
-def tree(chain: RigidChain) -> Iterator[Motion]:
-    """The degrees of freedom from joint 0 on. The last at a joint moves the link with the bodies on it."""
+    The last at a joint moves the link with the bodies on it, those before it a body without mass. `offset`: x, m, of
+    the joint in the parent.
+    """
     parent, offset = "world", chain.joints[0].position
     for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
-        moves = [(f"slide_{axis}", "prismatic", SLIDES[axis], 0.0, 0.0) for axis in SLIDES if axis in chain.axes]
-        moves = moves if j == 0 and not chain.held[0] else []
-        moves += [(f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping) for h in joint.hinges]
+        moves = [(f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping) for h in joint.hinges]
+        if j == 0 and not chain.held[0]:
+            slides = [(axis, direction) for axis, direction in SLIDES.items() if axis in chain.axes]
+            moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0) for axis, direction in slides] + moves
         own = [(link.mass, link.centre, link.inertia)]
         own += [(b.mass, b.position - link.start, (b.inertia,) * 3) for b in chain.bodies if b.link == j]
         mass = sum(m for m, _, _ in own)
         centre = sum(m * x for m, x, _ in own) / mass
         spread = sum(m * (x - centre) ** 2 for m, x, _ in own)
-        inertia = tuple(sum(each[i] for _, _, each in own) + spread * (i > 0) for i in range(3))
+        inertia = [sum(each[i] for _, _, each in own) + spread * (i > 0) for i in range(3)]
+        sizes = (link.length, *_sizes(chain.beam, link.start + link.centre))
+        halves = [0.5 * one for one in sizes]
         for name, kind, direction, stiffness, damping in moves:
             last = name == moves[-1][0]
             body, share = (f"link{j}", 1.0) if last else (f"link{j}_{name}", MASSLESS)
-            weights = (share * mass, centre * last, tuple(share * one for one in inertia))
-            yield Motion(name, kind, direction, body, parent, offset, stiffness, damping, j, *weights)
+            yield {
+                **{"name": name, "kind": kind, "direction": direction, "body": body, "parent": parent, "link": j},
+                **{"offset": offset, "stiffness": stiffness, "damping": damping, "last": last},
+                **{"mass": share * mass, "centre": centre * last, "inertia": tuple(share * one for one in inertia)},
+                **{"length": link.length, "middle": 0.5 * link.length, "colour": COLOURS[j % 2]},
+                **{
+                    "frame": "__model__" if parent == "world" else parent,
+                    "size": _words(sizes),
+                    "half": _words(halves),
+                },
+            }
             parent, offset = body, 0.0
         offset = link.length
 
@@ -87,7 +92,7 @@ def notes(chain: RigidChain) -> str:
     """What the chain is and what it is expected to show, in lines."""
     beam, mirrored = chain.beam, ", joint 0 at the right end of the beam" * chain.mirrored
     lines = [
-        f"beam {beam.supports[0]}-{beam.supports[1]}, length {beam.length!r} m, N = {chain.count} rigid links, SI units",
+        f"beam {beam.supports[0]}-{beam.supports[1]}, length {beam.length!r} m, {chain.count} rigid links, SI units",
         f"x along the beam, z the deflection, joints at a wall by the rule {chain.wall}{mirrored}",
     ]
     for axis in chain.axes:
@@ -109,30 +114,20 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     """
     if chain.count > DEEPEST:
         raise InputError(f"count = {chain.count}: MuJoCo reads at most {DEEPEST} nested bodies, lower it")
-    step = step or float(f"{0.5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
-    bodies, joints = "", ""
+    step = step or float(f"{5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
+    bodies, begun = "", False
     for one in tree(chain):
-        if not joints:
-            bodies += f'<body name="link{one.link}" pos="{one.offset!r} 0 0">'
-        joints += (
-            f'<joint name="{one.name}" type="{"slide" if one.kind == "prismatic" else "hinge"}" axis="{one.direction}" '
-            f'stiffness="{one.stiffness!r}" damping="{one.damping!r}"/>'
-        )
-        if one.body == f"link{one.link}":
-            bodies += (
-                f'{joints}\n<inertial pos="{one.centre!r} 0 0" mass="{one.mass!r}" '
-                f'diaginertia="{" ".join(map(repr, one.inertia))}"/><geom type="box" contype="0" conaffinity="0" '
-                f'pos="{0.5 * chain.links[one.link].length!r} 0 0" size="{_size(chain, one.link, 0.5)}" '
-                f'rgba="{COLOURS[one.link % 2]}"/>\n'
-            )
-            joints = ""
+        bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]!r} 0 0">'
+        bodies += _MJCF_JOINT.format(**one | {"kind": {"revolute": "hinge"}.get(one["kind"], "slide")})
+        bodies += _MJCF_BODY.format(**one) if one["last"] else ""
+        begun = not one["last"]
 
     def tendon(name: str, axis: Axis, row: Array, values: str = "") -> str:
         names = [f"slide_{axis}"] * chain.slides(axis) + [f"joint{j}_{axis}" for j, _ in chain.hinges(axis)]
         coefs = "".join(f'<joint joint="{n}" coef="{c!r}"/>' for n, c in zip(names, row.tolist(), strict=True) if c)
         return f'<fixed name="{name}"{values}>{coefs}</fixed>\n'
 
-    tendons, equalities, closed = "", "", ""
+    tendons, equalities, closed, rule = "", "", "", "implicitfast" if chain.damping else "RK4"
     for axis in chain.axes:
         for name, row, stiffness, damping in chain.grounded(axis):
             tendons += tendon(name, axis, row, f' stiffness="{stiffness!r}" damping="{damping!r}" springlength="0"')
@@ -145,51 +140,41 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     return (
         f"<mujoco>\n<!--\n{notes(chain)}\n-->\n"
         '<compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>\n'
-        f'<option timestep="{step!r}" integrator="{"implicitfast" if chain.damping else "RK4"}" gravity="0 0 0"{closed}/>\n'
+        f'<option timestep="{step!r}" integrator="{rule}" gravity="0 0 0"{closed}/>\n'
         f'<size memory="200M"/>\n<worldbody>\n{bodies}<site name="tip" pos="{chain.links[-1].length!r} 0 0"/>'
-        f"{'</body>' * chain.count}\n</worldbody>\n<tendon>{tendons}</tendon>\n<equality>{equalities}</equality>\n</mujoco>\n"
+        f"{'</body>' * chain.count}\n</worldbody>\n<tendon>{tendons}</tendon>\n<equality>{equalities}</equality>\n"
+        "</mujoco>\n"
     )
 
 
-def _size(chain: RigidChain, index: int, scale: float = 1.0) -> str:
-    """Length, width and thickness of a link as drawn, m; a hundredth of the beam's length where unknown."""
-    link, beam = chain.links[index], chain.beam
+def _words(values: Iterable[float]) -> str:
+    return " ".join(map(repr, values))
+
+
+def _sizes(beam: Beam, x: float) -> list[float]:
+    """Width and thickness at x as drawn, m; a hundredth of the length where unknown."""
     steps = np.cumsum([section.length for section in beam.section[:-1]])
-    piece = int(np.searchsorted(steps, link.start + 0.5 * link.length))
-    fields = merged(beam.section[piece], beam) if beam.section else set_fields(beam)
-    sizes = [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
-    return " ".join(repr(scale * one) for one in (link.length, *sizes))
-
-
-def _bodies(chain: RigidChain, text: str) -> str:
-    """Bodies and joints of the tree in the format `text`."""
-    return "".join(
-        text.format(
-            one,
-            frame="__model__" if one.parent == "world" else one.parent,
-            middle=0.5 * chain.links[one.link].length,
-            size=_size(chain, one.link) if one.body == f"link{one.link}" else "1e-6 1e-6 1e-6",
-            colour=COLOURS[one.link % 2],
-        )
-        for one in tree(chain)
-    )
+    fields = merged(beam.section[int(np.searchsorted(steps, x))], beam) if beam.section else set_fields(beam)
+    return [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
 
 
 def sdf(chain: RigidChain) -> str:
     """The chain for Gazebo and Drake: `spring_stiffness` on every joint."""
+    bodies = "".join(_SDF.format(**one) for one in tree(chain))
     return (
         f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n<sdf version="1.9"><model name="beam">\n'
-        f'{_bodies(chain, _SDF)}<frame name="tip" attached_to="link{chain.count - 1}">'
+        f'{bodies}<frame name="tip" attached_to="link{chain.count - 1}">'
         f"<pose>{chain.links[-1].length!r} 0 0 0 0 0</pose></frame>\n</model></sdf>\n"
     )
 
 
 def urdf(chain: RigidChain) -> str:
     """The chain for ROS and Pinocchio: the tree and its dashpots, without springs."""
+    bodies = "".join(_URDF.format(**one) for one in tree(chain))
     return (
         f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n<robot name="beam">\n<link name="world"/>\n'
-        f'{_bodies(chain, _URDF)}<link name="tip"/>\n<joint name="tip" type="fixed"><parent link="link{chain.count - 1}"/>'
-        f'<child link="tip"/><origin xyz="{chain.links[-1].length!r} 0 0"/></joint>\n</robot>\n'
+        f'{bodies}<link name="tip"/>\n<joint name="tip" type="fixed"><parent link="link{chain.count - 1}"/><child '
+        f'link="tip"/><origin xyz="{chain.links[-1].length!r} 0 0"/></joint>\n</robot>\n'
     )
 
 
@@ -197,15 +182,15 @@ def script(chain: RigidChain, engine: str) -> str:
     """A Python script with `build` and `frequencies_hz` of Exudyn or Pinocchio: data, then a fixed text."""
     moves, rows, springs = list(tree(chain)), "", ""
     for one in moves:
-        kind = one.kind.capitalize() + "XYZ"[[value != "0" for value in one.direction.split()].index(True)]
-        row = (one.name, kind, one.offset, one.stiffness, one.damping, one.mass, one.centre, one.inertia)
-        rows += f"    {row!r},\n"
-    bodies = {one.link: i for i, one in enumerate(moves)}
-    values = [(s.link, s.position, 2, s.stiffness, s.damping) for s in chain.springs]
-    values += [(s.link, s.position, 4, s.rotational, s.rotational_damping) for s in chain.springs]
+        kind = one["kind"].capitalize() + "XYZ"[[value != "0" for value in one["direction"].split()].index(True)]
+        values = [one[key] for key in ("offset", "stiffness", "damping", "mass", "centre", "inertia")]
+        rows += f"    {(one['name'], kind, *values)!r},\n"
+    bodies = {one["link"]: i for i, one in enumerate(moves)}
+    each = [(s.link, s.position, 2, s.stiffness, s.damping) for s in chain.springs]
+    each += [(s.link, s.position, 4, s.rotational, s.rotational_damping) for s in chain.springs]
     end, about = chain.joints[-1], {"torsion": 3, "bending": 4, "width": 5}
-    values += [(chain.count - 1, end.position, about[h.axis], h.stiffness, h.damping) for h in end.hinges]
-    for link, x, i, *pair in values:
+    each += [(chain.count - 1, end.position, about[h.axis], h.stiffness, h.damping) for h in end.hinges]
+    for link, x, i, *pair in each:
         if pair[0]:
             six = [tuple(value * (k == i) for k in range(6)) for value in pair]
             springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
@@ -213,32 +198,31 @@ def script(chain: RigidChain, engine: str) -> str:
     tip = (len(moves) - 1, chain.links[-1].length, end.position)
     text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
     return (
-        f'"""{notes(chain)}"""\n\nimport numpy as np\n\n# joint, type, x in its parent, stiffness, dashpot; mass, centre, '
-        f"inertia about it (xx, yy, zz) of its body\nTREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the "
-        f"ground in x, y, z and about them; dashpots\nSPRINGS = [\n{springs}]\n# whether the far end is held in y, z; "
-        f"its body, x in it, x at rest\nHELD = {held}\nTIP = {tip}\n\n{text}"
+        f'"""{notes(chain)}"""\n\nimport numpy as np\n\n'
+        "# joint, type, x in its parent, stiffness, dashpot; mass, centre, inertia (xx, yy, zz about it) of its body\n"
+        f"TREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
+        f"SPRINGS = [\n{springs}]\n# whether the far end is held in y, z; its body, x in it, x at rest\n"
+        f"HELD = {held}\nTIP = {tip}\n\n{text}"
     )
 
 
 def table(chain: RigidChain) -> Table:
     """Joints 0..N with the link beyond each, SI; in a plane a link has one inertia."""
-    names = ("stiffness", "N m/rad", ".6g"), ("dashpot", "N m s", ".4g")
-    words = {axis: f" {axis}" if chain.in_space else "" for axis in chain.axes}
+    word, damped = (" {}" if chain.in_space else ""), bool(chain.damping)
     columns = [Column("joint"), Column("position", "m")]
-    columns += [
-        Column(name + words[axis], *unit) for axis in chain.axes for name, *unit in names[: 1 + bool(chain.damping)]
-    ]
+    for axis in chain.axes:
+        columns += [Column("stiffness" + word.format(axis), "N m/rad", ".6g")]
+        columns += [Column("dashpot" + word.format(axis), "N m s", ".4g")] * damped
     columns += [Column("length", "m"), Column("mass", "kg"), Column("centre", "m")]
-    columns += [Column(f"inertia{one}", "kg m2") for one in ((" xx", " yy", " zz") if chain.in_space else ("",))]
-    rows = []
+    columns += [Column("inertia" + word.format(one), "kg m2") for one in ("xx", "yy", "zz")[: 3 if word else 1]]
+    rows = list[list[Any]]()
     for j, joint in enumerate(chain.joints):
-        row: list[float | None] = [j, joint.position]
+        rows.append([j, joint.position])
         for hinge in map(joint.hinge, chain.axes):
-            row += [hinge and hinge.stiffness, hinge and hinge.damping][: 1 + bool(chain.damping)]
-        if j < chain.count:
-            link = chain.links[j]
-            row += [link.length, link.mass, link.centre, *link.inertia]
-        rows.append([*row, *[None] * 6][: len(columns)])
+            rows[j] += [hinge.stiffness, hinge.damping][: 1 + damped] if hinge else [None] * (1 + damped)
+        link = chain.links[j] if j < chain.count else None
+        rows[j] += [link.length, link.mass, link.centre, *link.inertia] if link else [None] * 6
+        del rows[j][len(columns) :]
     return Table("Joints, and the link beyond each", columns, rows)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.problem.beam import Beam
-from verify.problem.cross_section import merged, set_fields
+from verify.problem.cross_section import SIZES, merged, set_fields
 
 
 class Shaft(NamedTuple):
@@ -36,21 +36,21 @@ def torsion_constant(shape: str, width: float, thickness: float) -> float:
 
 
 def shafts(beam: Beam) -> list[Shaft]:
-    """The pieces of a beam in torsion. Raises InputError for a section without shape, sizes or material."""
-    shear, made = 2.0 * (1.0 + beam.poissons_ratio), []
+    """The pieces of a beam in torsion. Raises InputError for a section that is not defined by shape and material."""
+    made = []
     every = [merged(section, beam) for section in beam.section] or [set_fields(beam)]
     for fields, piece in zip(every, beam.pieces, strict=True):
-        shape, direct = fields.get("shape", "rectangle"), {"bending_stiffness", "mass_per_length", "rotary_inertia"}
-        if given := sorted(direct & set(fields)):
-            raise InputError(f"beam.{given[0]}: a chain in space needs shape, sizes, E and rho in its place, give them")
-        if shape == "rectangle":
-            one, other = fields["width"], fields["thickness"]
-            moments = one * other * (one**2 + other**2) / 12.0
-        else:
-            one, other = fields["diameter"], fields.get("wall_thickness", 0.5 * fields["diameter"])
-            moments = torsion_constant(shape, one, other)
-        stiffness = fields["youngs_modulus"] / shear * torsion_constant(shape, one, other)
-        made.append(Shaft(piece.length, stiffness, fields["density"] * moments))
+        if given := {"bending_stiffness", "mass_per_length", "rotary_inertia"} & set(fields):
+            raise InputError(
+                f"beam.{min(given)}: a chain in space needs shape, sizes, E and rho in its place, give them"
+            )
+        shape = fields.get("shape", "rectangle")
+        sizes = [fields[name] for name in SIZES[shape]]
+        one, other = (sizes[0], 0.5 * sizes[0]) if shape == "round" else sizes
+        constant = torsion_constant(shape, one, other)
+        polar = one * other * (one**2 + other**2) / 12.0 if shape == "rectangle" else constant
+        shear = fields["youngs_modulus"] / (2.0 * (1.0 + beam.poissons_ratio))
+        made.append(Shaft(piece.length, shear * constant, fields["density"] * polar))
     return made
 
 
@@ -59,39 +59,35 @@ def torsion_hz(
 ) -> Array:
     """The first elastic frequencies in torsion, (n_modes,), Hz; `held`: whether each end has no rotation.
 
-    `bodies` are (position, rotary inertia) pairs, m and kg m^2. The phase of (rotation, torque over Z omega), with
-    Z^2 = GJ rho I_p, grows along the shaft and with the frequency; a mode is a whole number of quarter turns.
+    `bodies` are (position, rotary inertia) pairs, m and kg m^2. The phase of (torque over Z omega, rotation), with
+    Z^2 = GJ rho I_p, grows along the shaft and with the frequency; at a mode it is a whole number of quarter turns.
     """
     from scipy.optimize import brentq
 
-    ends = np.cumsum([piece.length for piece in pieces])
-    cuts = [(float(end), 0.0) for end in ends[:-1]] + [body for body in bodies if body[1]]
-    stations = [*sorted(cuts), (float(ends[-1]), 0.0)]
-    start = 0.0 if held[0] else 0.5 * pi
+    ends, start = np.cumsum([piece.length for piece in pieces]), 0.0 if held[0] else 0.5 * pi
+    stations = sorted([(float(end), 0.0) for end in ends] + [body for body in bodies if body[1]])
 
     def phase(omega: float) -> float:
-        turned, at, before = start, 0.0, 0.0
+        angle, at, before = start, 0.0, 0.0
+
+        def jump(torque: float, rotation: float) -> float:
+            """Angle by which the state turns to (torque, rotation)."""
+            c, s = cos(angle), sin(angle)
+            return atan2(c * rotation - s * torque, c * torque + s * rotation)
+
         for place, inertia in stations:
             piece = pieces[min(int(np.searchsorted(ends, 0.5 * (at + place))), len(pieces) - 1)]
             impedance = sqrt(piece.stiffness * piece.inertia)
-            if before and before != impedance:  # the torque is continuous, its scale is not
-                turned += _turn(turned, cos(turned) * before, sin(turned) * impedance)
-            turned += omega * (place - at) * sqrt(piece.inertia / piece.stiffness)
-            turned += _turn(turned, cos(turned) - omega * inertia / impedance * sin(turned), sin(turned))
+            angle += jump(cos(angle) * (before or impedance), sin(angle) * impedance)  # the torque is continuous
+            angle += omega * (place - at) * sqrt(piece.inertia / piece.stiffness)
+            angle += jump(cos(angle) - omega * inertia / impedance * sin(angle), sin(angle))
             at, before = place, impedance
-        return turned
+        return angle
 
-    first = start + (0.5 * pi if held[0] != held[1] else pi)
     found = []
-    for goal in first + pi * np.arange(n_modes):
+    for goal in start + (0.5 * pi if held[0] != held[1] else pi) + pi * np.arange(n_modes):
         top = 1.0
         while phase(top) < goal:
             top *= 2.0
         found.append(brentq(lambda omega, goal=goal: phase(omega) - goal, 0.0, top, xtol=1e-300, rtol=1e-14))
     return np.array(found) / (2.0 * pi)
-
-
-def _turn(phase: float, torque: float, rotation: float) -> float:
-    """Angle from the direction of `phase` to (torque, rotation), between -pi and pi."""
-    c, s = cos(phase), sin(phase)
-    return atan2(c * rotation - s * torque, c * torque + s * rotation)
