@@ -114,7 +114,7 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     """
     if chain.count > DEEPEST:
         raise InputError(f"count = {chain.count}: MuJoCo reads at most {DEEPEST} nested bodies, lower it")
-    step = step or float(f"{5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
+    step = step or float(f"{0.5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
     bodies, begun = "", False
     for one in tree(chain):
         bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]!r} 0 0">'
