@@ -47,6 +47,8 @@ _URDF = (
     '<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{body}"/>'
     '<origin xyz="{offset!r} 0 0"/><axis xyz="{direction}"/><dynamics damping="{damping!r}"/>'
     '<limit lower="-3.14" upper="3.14" effort="1e9" velocity="1e9"/></joint>\n'
+    '<gazebo reference="{name}"><springStiffness>{stiffness!r}</springStiffness><springReference>0</springReference>'
+    "</gazebo>\n"
 )
 
 
@@ -169,7 +171,7 @@ def sdf(chain: RigidChain) -> str:
 
 
 def urdf(chain: RigidChain) -> str:
-    """The chain for ROS and Pinocchio: the tree and its dashpots, without springs."""
+    """The chain for ROS and Pinocchio: the tree and its dashpots; springs are an extension that Gazebo alone reads."""
     bodies = "".join(_URDF.format(**one) for one in tree(chain))
     return (
         f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n<robot name="beam">\n<link name="world"/>\n'
@@ -261,7 +263,7 @@ def write(chain: RigidChain, path: Path, engine: str | None = None) -> str:
         raise InputError(f"engine = {engine!r}: for a .py file give {' or '.join(SCRIPTS)}, for others none")
     writable_folder(path.parent, "to")
     write_whole(path, script(chain, engine) if engine else _WRITERS[kind](chain), "to")
-    missing = ["joint springs"] * (kind == "urdf") + ["springs to the ground"] * bool(chain.springs)
+    missing = ["joint springs but in Gazebo"] * (kind == "urdf") + ["springs to the ground"] * bool(chain.springs)
     missing += ["support of the far end"] * (chain.beam.supports[1] != "free")
     if kind not in ("sdf", "urdf") or not missing:
         return f"wrote {path}"
