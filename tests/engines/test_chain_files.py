@@ -14,7 +14,7 @@ from verify.cli import status_of
 from verify.convert import convert
 from verify.engines.description import AXES, describe, in_plane
 from verify.engines.writers import mjcf, write
-from verify.exact.torsion import Shaft, shafts, torsion_constant, torsion_hz
+from verify.exact.torsion import shafts, torsion_constant, torsion_hz
 from verify.problem.phrase import beam_table
 
 PHRASE = "1 m x 40 x 8 mm steel, clamped-free"
@@ -183,14 +183,14 @@ def test_torsion_constants_and_exact_frequencies():
     assert torsion_constant("rectangle", 1.0, 1.0) == pytest.approx(0.1405770, rel=1e-6)  # Timoshenko and Goodier
     assert torsion_constant("rectangle", 0.1, 1.0) == pytest.approx(0.3123e-3, rel=2e-4)
     assert torsion_constant("tube", 0.05, 0.004) == pytest.approx(np.pi / 32 * (0.05**4 - 0.042**4), rel=1e-14)
-    (shaft,) = shafts(STEEL)
-    speed = np.sqrt(shaft.stiffness / shaft.inertia)
-    assert torsion_hz([shaft], (True, False), 3) == pytest.approx(speed / 4 * np.array([1, 3, 5]), rel=1e-13)
-    k = 2 * np.pi * torsion_hz([shaft], (True, False), 2, [(1.0, 3e-4)]) / speed
-    assert k * np.tan(k) == pytest.approx([shaft.inertia / 3e-4] * 2, rel=1e-11)
-    step = [Shaft(0.3, 5.0, 2e-5), Shaft(0.7, 1.0, 7e-5)]
-    k = np.array([[2 * np.pi * f * np.sqrt(s.inertia / s.stiffness) * s.length for s in step]
-                  for f in torsion_hz(step, (True, False), 4)]).T  # fmt: skip
+    shaft = shafts(STEEL)
+    ((_, stiffness, inertia),) = shaft
+    speed = np.sqrt(stiffness / inertia)
+    assert torsion_hz(shaft, (True, False), 3) == pytest.approx(speed / 4 * np.array([1, 3, 5]), rel=1e-13)
+    k = 2 * np.pi * torsion_hz(shaft, (True, False), 2, [(1.0, 3e-4)]) / speed
+    assert k * np.tan(k) == pytest.approx([inertia / 3e-4] * 2, rel=1e-11)
+    step = np.array([[0.3, 5.0, 2e-5], [0.7, 1.0, 7e-5]])
+    k = 2 * np.pi * np.outer(step[:, 0] * np.sqrt(step[:, 2] / step[:, 1]), torsion_hz(step, (True, False), 4))
     assert np.tan(k[0]) * np.tan(k[1]) == pytest.approx([np.sqrt(5.0 * 2e-5 / (1.0 * 7e-5))] * 4, rel=1e-10)
 
 

@@ -253,7 +253,7 @@ def describe(
         for link, share in _shares(chain, m.position, m.rotary_inertia)
     ]
     if in_space:
-        shaft = np.repeat([(one.stiffness, one.inertia) for one in shafts(beam)], parts.shares, axis=0)
+        shaft = np.repeat(shafts(beam)[:, 1:], parts.shares, axis=0)
         spin, moment = shaft[:, 1] * lengths, np.zeros(count)
         for body in bodies:
             spin[body.link] += body.inertia
