@@ -214,6 +214,15 @@ def test_dashpots_give_the_damping_ratio():
     assert ratios == pytest.approx(0.013 * np.sqrt(values / values[0]), rel=1e-9)
 
 
+@pytest.mark.parametrize("kind", ["xml", "sdf", "urdf", "exudyn", "pinocchio", "json", "csv"])
+def test_every_file_has_the_dashpots(kind, tmp_path):
+    chain = describe(STEPPED, 12, in_space=True, damping=0.013)
+    engine, path = (kind, tmp_path / "beam.py") if kind in SCRIPTS else (None, tmp_path / f"beam.{kind}")
+    write(chain, path, engine)
+    text = path.read_text()
+    assert all(repr(hinge.damping) in text for joint in chain.joints[:-1] for hinge in joint.hinges)
+
+
 REFUSED = {
     "--count 497 --to b.xml": "count = 497", "--to b.py": "engine = None", "--to b.mjb": "to = 'b.mjb'",
     "--engine exudyn": "engine = 'exudyn'", "--count 4 --mode 6": "count = 4", "--damping 150%": "damping",
