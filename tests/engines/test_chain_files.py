@@ -177,6 +177,9 @@ def test_joints_of_a_steel_cantilever():
     beam = replace(STEEL, supports=("pinned", "free"), spring=(PointSpring(position=0.0, rotational=900.0),))
     coarse, fine = (abs(describe(beam, n).errors()[2]) for n in (10, 20))
     assert 3.8 < np.log2(coarse / fine) < 5.2
+    # an inertia at a joint is shared by both links
+    beam = replace(STEEL, mass=(PointMass(position=0.6, rotary_inertia=2e-3),))
+    assert describe(beam, 80).errors()[2] == pytest.approx(2.1e-4, rel=0.02)  # on one of them -2.5e-3
 
 
 def test_torsion_constants_and_exact_frequencies():
