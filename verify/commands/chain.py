@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FIRST = 4
 """Joints that the terminal always shows."""
-RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link held"}
+RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed"}
 """Rules at a clamped end that are compared."""
 
 
@@ -115,7 +115,7 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
         margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
                            condition=f"{n} links are enough in {axis}")]  # fmt: skip
     rule = f", {RULES.get(chain.wall, chain.wall)} at the wall" if walls else ""
-    warnings = ["joint 0 is at the right end of the beam, which holds more"] * chain.mirrored
+    warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.bodies or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
     tables = [_shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]

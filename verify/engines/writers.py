@@ -66,7 +66,7 @@ def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
     steps = np.cumsum([section.length for section in beam.section[:-1]])
     for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
         moves = [(f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping) for h in joint.hinges]
-        if j == 0 and not chain.held[0]:
+        if j == 0 and not chain.supported[0]:
             slides = [(axis, direction) for axis, direction in SLIDES.items() if axis in chain.axes]
             moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0) for axis, direction in slides] + moves
         own = [(link.mass, link.centre, link.inertia)]
@@ -177,15 +177,15 @@ def script(chain: RigidChain, engine: str) -> str:
         if pair[0]:
             six = [tuple(value * (k == i) for k in range(6)) for value in pair]
             springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
-    held = (int(chain.held[1] and chain.in_space), int(chain.held[1]))
+    fixed = (int(chain.supported[1] and chain.in_space), int(chain.supported[1]))
     tip = (len(moves) - 1, chain.links[-1].length, end.position)
     text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
     return (
         f'"""{notes(chain)}"""\n\nimport numpy as np\n\n'
         "# joint, type, x in its parent, stiffness, dashpot; mass, centre, inertia (xx, yy, zz about it) of its body\n"
         f"TREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
-        f"SPRINGS = [\n{springs}]\n# whether the far end is held in y, z; its body, x in it, x at rest\n"
-        f"HELD = {held}\nTIP = {tip}\n\n{text}"
+        f"SPRINGS = [\n{springs}]\n# whether the far end is fixed in y, z; its body, x in it, x at rest\n"
+        f"SUPPORTED = {fixed}\nTIP = {tip}\n\n{text}"
     )
 
 

@@ -47,16 +47,16 @@ def shafts(beam: Beam) -> Array:
 
 
 def torsion_hz(
-    pieces: Array, held: tuple[bool, bool], n_modes: int, bodies: Iterable[tuple[float, float]] = ()
+    pieces: Array, fixed: tuple[bool, bool], n_modes: int, bodies: Iterable[tuple[float, float]] = ()
 ) -> Array:
-    """The first elastic frequencies of `shafts` in torsion, (n_modes,), Hz; `held`: whether each end has no rotation.
+    """The first elastic frequencies of `shafts` in torsion, (n_modes,), Hz; `fixed`: whether each end has no rotation.
 
     `bodies` are (position, rotary inertia) pairs, m and kg m^2. The phase of (torque over Z omega, rotation), with
     Z^2 = GJ rho I_p, grows along the shaft and with the frequency; at a mode it is a whole number of quarter turns.
     """
     from scipy.optimize import brentq
 
-    ends, start = np.cumsum(pieces[:, 0]), 0.0 if held[0] else 0.5 * pi
+    ends, start = np.cumsum(pieces[:, 0]), 0.0 if fixed[0] else 0.5 * pi
     stations = sorted([(float(end), 0.0) for end in ends] + [body for body in bodies if body[1]])
 
     def phase(omega: float) -> float:
@@ -78,10 +78,10 @@ def torsion_hz(
             at, before = place, impedance
         return angle
 
-    found = []
-    for goal in start + (0.5 * pi if held[0] != held[1] else pi) + pi * np.arange(n_modes):
+    roots = []
+    for goal in start + (0.5 * pi if fixed[0] != fixed[1] else pi) + pi * np.arange(n_modes):
         top = 1.0
         while phase(top) < goal:
             top *= 2.0
-        found.append(brentq(lambda omega, goal=goal: phase(omega) - goal, 0.0, top, xtol=1e-300, rtol=1e-14))
-    return np.array(found) / (2.0 * pi)
+        roots.append(brentq(lambda omega, goal=goal: phase(omega) - goal, 0.0, top, xtol=1e-300, rtol=1e-14))
+    return np.array(roots) / (2.0 * pi)
