@@ -3,8 +3,8 @@
 x is along the beam, z the deflection across its thickness, y across its width. N rigid links, N + 1 joints: joint 0
 between the wall and link 0, joint j between links j - 1 and j, joint N between the last link and what is behind the far
 end. In space every joint has hinges for both bending planes and for torsion. Angles are relative: a hinge turns all
-links beyond it. A pinned or clamped end is fixed in z (and y) and free along x; every support prevents the twist, a
-free end does not. Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint.
+links beyond it. A pinned or clamped end is fixed in z (and y) and free along x; every support prevents the twist.
+Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint.
 
 The joints in bending are those of `SegmentModel`. In torsion a link is a disk at the centre of its inertia, between
 springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the relative error is -(k l)^2/24 at the
