@@ -17,6 +17,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from verify import Beam, SegmentModel
+from verify.engines.writers import write
 
 beam = Beam(length=0.31, width=0.025, thickness=0.003, youngs_modulus=205e9, density=7850, supports=("clamped", "free"))
 n, folder = 24, Path(tempfile.mkdtemp())
@@ -24,22 +25,19 @@ model = SegmentModel(beam, n)
 modes = model.modes(5)
 
 # %%
-# Links are equal. Gregory's weights at the wall make the first three joints softer or stiffer than EI/l.
-link = beam.length / n
-mass = beam.mass_per_length * link
-factors = np.ones(n)
-factors[:3] = 3 / 8, 7 / 6, 23 / 24
-springs = beam.bending_stiffness / link / factors
-chain = {"length": link, "mass": mass, "inertia": mass * link**2 / 12, "springs": springs.tolist()}
-(folder / "chain.json").write_text(json.dumps(chain))
+# Gregory's weights at the wall make the first three joints stiffer or softer than EI/l. Other suffixes are other
+# engines: .xml is MuJoCo.
+write(model.rigid_chain(), folder / "chain.json")
 
 # %%
 # The other program: angles of the links as unknowns, joints between neighbours.
 read = json.loads((folder / "chain.json").read_text())
-lever = read["length"] * (np.tril(np.ones((n, n)), -1) + 0.5 * np.eye(n))
+springs = [joint["hinges"][0]["stiffness"] for joint in read["joints"][:-1]]
+lengths, masses, spins = np.array([(one["length"], one["mass"], one["inertia"][1]) for one in read["links"]]).T
+lever = (np.tril(np.ones((n, n)), -1) + 0.5 * np.eye(n)) * lengths
 turn = np.eye(n) - np.eye(n, k=-1)
-stiffness = turn.T @ np.diag(read["springs"]) @ turn
-inertia = read["mass"] * lever.T @ lever + read["inertia"] * np.eye(n)
+stiffness = turn.T @ np.diag(springs) @ turn
+inertia = lever.T @ np.diag(masses) @ lever + np.diag(spins)
 frequencies = np.sqrt(eigh(stiffness, inertia, eigvals_only=True)[:5]) / (2 * np.pi)
 difference = float(abs(frequencies / modes.frequencies_hz - 1.0).max())
 

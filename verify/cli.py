@@ -14,7 +14,7 @@ from verify.errors import InputError, printable
 
 BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
 COMMANDS = (
-    *("run", "plan", "scenes", "quantities", "measure", "table", "choose", "sweep"),
+    *("run", "plan", "scenes", "quantities", "measure", "table", "choose", "chain", "sweep"),
     *("compare", "bench", "stress", "export", "diff", "schema"),
 )  # names of the commands and of their modules in `verify.commands`
 

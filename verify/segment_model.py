@@ -21,7 +21,7 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from math import pi
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import msgspec
 import numpy as np
@@ -40,6 +40,9 @@ from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.structure import ChainStructure
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
 from verify.validation import MOST_PARTS, check_choice, check_integer, check_number, python_scalar
+
+if TYPE_CHECKING:
+    from verify.engines.description import RigidChain
 
 _WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
 _FEWEST_CORRECTED = 6
@@ -180,6 +183,18 @@ class SegmentModel(ChainStructure):
                 "or choose joints = 'series'"
             )
         return compliances
+
+    def rigid_chain(self, *, in_space: bool = False, damping: float = 0.0) -> "RigidChain":
+        """Joints in N m/rad, links with mass and inertia, in plain units, for other engines (`engines.writers`).
+
+        `damping`: damping ratio of mode 1. Raises InputError for settings other than `wall`, and as `describe` does.
+        """
+        from verify.engines.description import describe
+
+        plain = SegmentModel(self.beam, self.n_segments, wall=self.wall, attachment=self.attachment)
+        if replace(self, load=plain.load, reading=plain.reading) != plain:
+            raise InputError("joints, grading, theory, joint_dashpot: a rigid chain has their defaults, leave them out")
+        return describe(self.beam, self.n_segments, wall=self.wall, in_space=in_space, damping=damping)
 
     # --- Loads and readings --------------------------------------------------------------------------------------
 

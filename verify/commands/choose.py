@@ -34,7 +34,7 @@ def choose(
         if not equals:
             raise InputError(f"rule = {key!r}: write it as RULE=VALUE, wall=half")
     chosen = convert({key: literal(text, key) for key, _, text in pairs}, Rules)
-    modes, largest = _modes(mode), _error(error)
+    modes, largest = _modes(mode), relative_error(error)
     cache = SolutionCache(load_scene(scene, overrides).beam)
     choices, skipped = choose_sizes(cache, modes, largest, chosen)
     first = choices[0].variant.settings
@@ -69,7 +69,7 @@ def _modes(text: str) -> int | range:
     return modes[0] if len(modes) == 1 else range(modes[0], modes[-1] + 1)
 
 
-def _error(text: str) -> float:
+def relative_error(text: str) -> float:
     """A relative error. A plain number of 0.1 or more is refused: most who write it mean per cent."""
     from verify.convert import typed
     from verify.validation import Relative

@@ -7,6 +7,7 @@ from math import cos, pi, radians
 from typing import Protocol
 
 from verify.arrays import Array
+from verify.engines.description import RigidChain, describe
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.registry import Registry
@@ -21,7 +22,8 @@ class Chain:
     """n equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest. SI units.
 
     `link`, `mass`, `inertia`: length of a link, its mass, and its inertia about its middle. `spring`: rotational, at
-    each inner joint. `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0.
+    each inner joint. `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0. `rigid`: the
+    same chain joint by joint.
     """
 
     n: int
@@ -31,6 +33,7 @@ class Chain:
     spring: float
     frequency_hz: float
     forces: tuple[PointForce, ...]
+    rigid: RigidChain
 
     @property
     def length(self) -> float:
@@ -60,8 +63,9 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
     for i, force in enumerate(forces):
         if force.position > beam.length:
             raise InputError(f"force[{i}].position = {force.position!r}: give one between 0 and {beam.length!r} m")
-    link, mass = beam.length / n, beam.mass_per_length * beam.length / n
-    return Chain(n, link, mass, mass * link**2 / 12.0, beam.bending_stiffness / link, frequency_hz, tuple(forces))
+    rigid = describe(beam, n)
+    link, spring = rigid.links[0], rigid.joints[1].hinges[0].stiffness
+    return Chain(n, link.length, link.mass, link.inertia[1], spring, frequency_hz, tuple(forces), rigid)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.base import SAMPLES, Chain, Run
+from verify.engines.writers import mjcf
 from verify.errors import one_line
 
 
@@ -21,7 +22,7 @@ class Mujoco:
         """Natural frequencies from the engine's mass matrix, closure and joint stiffnesses."""
         import mujoco
 
-        model = mujoco.MjModel.from_xml_string(model_text(chain, 1e-6))
+        model = mujoco.MjModel.from_xml_string(mjcf(chain.rigid, 1e-6))
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
         mass = np.zeros((model.nv, model.nv))
@@ -46,7 +47,7 @@ class Mujoco:
             return Run(times, heights, k, failure)
 
         try:
-            model = mujoco.MjModel.from_xml_string(model_text(chain, h))
+            model = mujoco.MjModel.from_xml_string(mjcf(chain.rigid, h))
         except ValueError as error:
             return run_up_to(0, f"before its first step it rejected the model: {one_line(str(error))}")
         data = mujoco.MjData(model)
@@ -78,26 +79,6 @@ def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
     root = 1.0 / np.sqrt(stiffness[1:])
     values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
     return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
-
-
-def model_text(chain: Chain, step: float) -> str:
-    """The chain in the engine's XML."""
-    link, spin = chain.link, chain.inertia
-    bodies = "".join(
-        f'<body name="link{i}" pos="{0.0 if i == 0 else link!r} 0 0">'
-        f'<joint name="hinge{i}" type="hinge" axis="0 -1 0" stiffness="{0.0 if i == 0 else chain.spring!r}"/>'
-        f'<inertial pos="{link / 2!r} 0 0" mass="{chain.mass!r}" diaginertia="{spin!r} {spin!r} {spin!r}"/>'
-        for i in range(chain.n)
-    )
-    levers = "".join(f'<joint joint="hinge{i}" coef="{link * (chain.n - i)!r}"/>' for i in range(chain.n))
-    return (
-        '<mujoco><compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>'
-        f'<option timestep="{step!r}" integrator="RK4" gravity="0 0 0" solver="PGS" jacobian="dense" iterations="20" '
-        'tolerance="1e-14"><flag contact="disable"/></option>'
-        f'<size memory="200M"/><worldbody>{bodies}{"</body>" * chain.n}</worldbody>'
-        f'<tendon><fixed name="closure">{levers}</fixed></tendon><equality><tendon tendon1="closure" '
-        f'solref="{2 * step!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"/></equality></mujoco>'
-    )
 
 
 def _loads(chain: Chain) -> Any:

@@ -1,0 +1,137 @@
+"""`verify chain`: the joints of a chain of rigid bodies in plain units, and its file for another engine."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
+from verify.errors import InputError, printable
+
+if TYPE_CHECKING:
+    from verify.engines.description import RigidChain
+    from verify.problem.beam import Beam
+    from verify.report.result import Result, Table
+
+FIRST = 4
+"""Joints that the terminal always shows."""
+RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed"}
+"""Rules at a clamped end that are compared."""
+
+
+@click.command(cls=BeamCommand)
+@scene_argument
+@overrides_option
+@click.option("--count", type=int, metavar="N", help="Links. Default: the fewest within --error at --mode.")
+@click.option("--mode", type=click.IntRange(1, 100), default=3, show_default=True, metavar="N", help="Highest mode.")
+@click.option("--error", default="1%", show_default=True, metavar="E", help="Largest relative frequency error.")
+@click.option("--wall", default="gregory", show_default=True, metavar="RULE", help="Joints at a clamped end.")
+@click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
+@click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
+@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, .py, .json or .csv.")
+@click.option("--engine", metavar="NAME", help="exudyn or pinocchio, for a .py file.")
+@format_options
+def chain(
+    scene: str,
+    overrides: tuple[str, ...],
+    count: int | None,
+    mode: int,
+    error: str,
+    wall: str,
+    in_space: bool,
+    damping: str,
+    path: str | None,
+    engine: str | None,
+    **formats: bool,
+) -> None:
+    """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
+
+    Stiffnesses in N m/rad, dashpots, masses, inertias, and the frequency errors of exactly this chain.
+    Example: `verify chain --beam "1 m x 40 x 8 mm steel, clamped-free" --count 20 --to beam.xml`
+    """
+    from verify.commands.choose import relative_error
+    from verify.convert import typed
+    from verify.engines.description import describe
+    from verify.engines.writers import write
+    from verify.scene.load import load_scene
+    from verify.validation import Relative
+
+    if engine and not path:
+        raise InputError(f"engine = {engine!r} is for a file: give --to FILE.py")
+    ratio, beam = typed(damping, Relative, "damping"), load_scene(scene, overrides).beam
+    if count is None:
+        count = _fewest(beam, mode, relative_error(error), wall, in_space)
+    described, brief = describe(beam, count, wall=wall, in_space=in_space, damping=ratio), not any(formats.values())
+    result = _result(described, mode, brief=brief)
+    wrote = write(described, Path(path), engine) if path else ""
+    show(result, **formats)
+    if wrote:
+        click.echo(printable(wrote), err=not brief)
+
+
+def _fewest(beam: "Beam", mode: int, error: float, wall: str, in_space: bool) -> int:
+    """The smallest number of links that is within the error at a mode, and so is the next one tried."""
+    from verify.engines.description import MOST_LINKS, describe
+
+    count, first = max(len(beam.pieces), mode + 1, 2), 0
+    while count <= MOST_LINKS:
+        tried = describe(beam, count, wall=wall, in_space=in_space)
+        errors = [tried.errors(axis, mode) for axis in tried.axes]
+        worst = max(abs(one[-1]) if len(one) >= mode else 1.0 for one in errors)
+        if worst <= error and first:
+            return first
+        first = count if worst <= error else 0
+        count += max(int(count * (min(worst / error, 2.4) ** 0.25 - 1.0)), 1)  # no chain is of a higher order than 4
+    text = f"{MOST_LINKS} links are not within it at mode {mode}, raise it or give --count"
+    raise InputError(f"error = {error!r}: {text}")
+
+
+def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
+    """Verdict, joints and links, and frequencies next to those of the other rules at a clamped end."""
+    from verify.analysis.margins import beam_margins
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.analysis.verdict import Margin
+    from verify.engines.description import describe
+    from verify.engines.writers import data, table
+    from verify.report.result import Column, Result, Table
+
+    walls, n = (RULES if "clamped" in chain.beam.supports else {}), chain.count
+    others = {
+        title: describe(chain.beam, n, wall=wall, in_space=chain.in_space)
+        for wall, title in walls.items()
+        if wall != chain.wall
+    }
+    columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
+    columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
+    rows, margins = list[tuple[object, ...]](), beam_margins(SolutionCache(chain.beam), (), mode=mode)
+    for axis in chain.axes:
+        hertz, errors = chain.frequencies_hz(axis, mode).tolist(), chain.errors(axis, mode).tolist()
+        if len(hertz) < mode:
+            raise InputError(f"count = {n}: the chain has {len(hertz)} modes in {axis}, raise it or lower --mode")
+        every = [[*one.errors(axis, mode).tolist(), *[None] * mode][:mode] for one in others.values()]
+        exact = chain.exact_hz(axis, mode).tolist()
+        rows += zip([axis] * mode, range(1, mode + 1), exact, hertz, errors, *every, strict=True)
+        name = f"discretisation of {n} links in {axis}"
+        margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
+                           condition=f"{n} links are enough in {axis}")]  # fmt: skip
+    rule = f", {RULES.get(chain.wall, chain.wall)} at the wall" if walls else ""
+    warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
+    if chain.in_space and (chain.bodies or chain.springs):
+        warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
+    tables = [_shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]
+    return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))
+
+
+def _shortened(table: "Table") -> "Table":
+    """The first rows, the last, and in between a row for each run of joints that differ in position alone."""
+    from dataclasses import replace
+
+    rows, start = list(map(tuple, table.rows)), FIRST
+    alike = [[f"{value:.9g}" if isinstance(value, float) else value for value in row[2:]] for row in rows]
+    runs = [(str(row[0]), *row[1:]) for row in rows[:FIRST]]
+    for j in range(FIRST + 1, len(rows) + 1):
+        if j >= len(rows) - 1 or alike[j] != alike[start]:
+            first = (str(start), rows[start][1]) if j == start + 1 else (f"{start} to {j - 1}", None)
+            runs.append((*first, *rows[start][2:]))
+            start = j
+    return replace(table, rows=runs)

@@ -1,0 +1,253 @@
+"""A `RigidChain` as a file of an engine: MJCF, SDF, URDF, scripts for Exudyn and Pinocchio, JSON, CSV."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.engines.description import Axis, RigidChain
+from verify.errors import InputError, shown
+from verify.files import writable_folder, write_whole
+from verify.problem.cross_section import merged, set_fields
+from verify.report.result import Column, Table, to_json
+
+DIRECTIONS: dict[Axis, str] = {"bending": "0 -1 0", "width": "0 0 1", "torsion": "1 0 0"}
+SLIDES: dict[Axis, str] = {"bending": "0 0 1", "width": "0 1 0"}
+COLOURS = "0.18 0.50 0.93 1", "0.95 0.61 0.14 1"
+DEEPEST = 496
+"""Largest number of nested bodies that MuJoCo's reader takes."""
+MASSLESS = 1e-10
+"""Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
+MODES = 3
+SCRIPTS = ("exudyn", "pinocchio")
+_MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
+_MJCF_BODY = (
+    '\n<inertial pos="{centre!r} 0 0" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
+    '<geom type="box" contype="0" conaffinity="0" pos="{middle!r} 0 0" size="{half}" rgba="{colour}"/>\n'
+)
+_SDF = (
+    '<sdf version="1.9"><model name="beam">\n',
+    '<link name="{body}"><pose relative_to="{frame}">{offset!r} 0 0 0 0 0</pose><inertial>'
+    "<pose>{centre!r} 0 0 0 0 0</pose><mass>{mass!r}</mass><inertia><ixx>{inertia[0]!r}</ixx>"
+    "<iyy>{inertia[1]!r}</iyy><izz>{inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
+    '<visual name="{body}"><pose>{middle!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>'
+    "<material><diffuse>{colour}</diffuse></material></visual></link>\n"
+    '<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{body}</child><axis>'
+    "<xyz>{direction}</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit><dynamics>"
+    "<damping>{damping!r}</damping><spring_reference>0</spring_reference>"
+    "<spring_stiffness>{stiffness!r}</spring_stiffness></dynamics></axis></joint>\n",
+    '<frame name="tip" attached_to="{body}"><pose>{length!r} 0 0 0 0 0</pose></frame>\n</model></sdf>\n',
+)
+_URDF = (
+    '<robot name="beam">\n<link name="world"/>\n',
+    '<link name="{body}"><inertial><origin xyz="{centre!r} 0 0"/><mass value="{mass!r}"/>'
+    '<inertia ixx="{inertia[0]!r}" iyy="{inertia[1]!r}" izz="{inertia[2]!r}" ixy="0" ixz="0" iyz="0"/></inertial>'
+    '<visual><origin xyz="{middle!r} 0 0"/><geometry><box size="{size}"/></geometry>'
+    '<material name="{body}"><color rgba="{colour}"/></material></visual></link>\n'
+    '<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{body}"/>'
+    '<origin xyz="{offset!r} 0 0"/><axis xyz="{direction}"/><dynamics damping="{damping!r}"/>'
+    '<limit lower="-3.14" upper="3.14" effort="1e9" velocity="1e9"/></joint>\n'
+    '<gazebo reference="{name}"><springStiffness>{stiffness!r}</springStiffness><springReference>0</springReference>'
+    "</gazebo>\n",
+    '<link name="tip"/>\n<joint name="tip" type="fixed"><parent link="{body}"/><child link="tip"/>'
+    '<origin xyz="{length!r} 0 0"/></joint>\n</robot>\n',
+)
+
+
+def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
+    """One degree of freedom after the other from joint 0 on: a body, its parent, the joint between them.
+
+    The last at a joint moves the link with the bodies on it, those before it a body without mass. `offset`: x, m, of
+    the joint in the parent.
+    """
+    beam, parent, offset = chain.beam, "world", chain.joints[0].position
+    steps = np.cumsum([section.length for section in beam.section[:-1]])
+    for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
+        moves = [(f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping) for h in joint.hinges]
+        if j == 0 and not chain.supported[0]:
+            slides = [(axis, direction) for axis, direction in SLIDES.items() if axis in chain.axes]
+            moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0) for axis, direction in slides] + moves
+        own = [(link.mass, link.centre, link.inertia)]
+        own += [(b.mass, b.position - link.start, (b.inertia,) * 3) for b in chain.bodies if b.link == j]
+        mass = sum(m for m, _, _ in own)
+        centre = sum(m * x for m, x, _ in own) / mass
+        spread = sum(m * (x - centre) ** 2 for m, x, _ in own)
+        inertia = [sum(each[i] for _, _, each in own) + spread * (i > 0) for i in range(3)]
+        section = beam.section[int(np.searchsorted(steps, link.start + link.centre))] if beam.section else None
+        fields = merged(section, beam) if section else set_fields(beam)
+        # a hundredth of the length where unknown
+        across = [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
+        size, half = (" ".join(repr(scale * one) for one in (link.length, *across)) for scale in (1.0, 0.5))
+        for name, kind, direction, stiffness, damping in moves:
+            last = name == moves[-1][0]
+            body, share = (f"link{j}", 1.0) if last else (f"link{j}_{name}", MASSLESS)
+            yield {
+                **{"name": name, "kind": kind, "direction": direction, "body": body, "parent": parent, "link": j},
+                **{"offset": offset, "stiffness": stiffness, "damping": damping, "last": last},
+                **{"mass": share * mass, "centre": centre * last, "inertia": tuple(share * one for one in inertia)},
+                **{"length": link.length, "middle": 0.5 * link.length, "size": size, "half": half},
+                **{"colour": COLOURS[j % 2], "frame": "__model__" if parent == "world" else parent},
+            }
+            parent, offset = body, 0.0
+        offset = link.length
+
+
+def notes(chain: RigidChain) -> str:
+    """What the chain is and what it is expected to show, in lines."""
+    beam, mirrored = chain.beam, ", joint 0 at the right end of the beam" * chain.mirrored
+    lines = [
+        f"beam {beam.supports[0]}-{beam.supports[1]}, length {beam.length!r} m, {chain.count} rigid links, SI units",
+        f"x along the beam, z the deflection, joints at a wall by the rule {chain.wall}{mirrored}",
+    ]
+    for axis in chain.axes:
+        modes = zip(chain.frequencies_hz(axis, MODES), chain.errors(axis, MODES), strict=True)
+        text = ", ".join(f"{hertz:.9g} ({error:+.2e})" for hertz, error in modes)
+        lines.append(f"frequencies in {axis}, Hz (relative errors against the exact beam): {text}")
+    if chain.damping:
+        lines.append(f"dashpots in proportion to the springs: damping ratio {chain.damping!r} in mode 1, more beyond")
+    if beam.supports[1] != "free" or chain.springs:
+        lines.append("supports of the far end and springs to the ground act along z (and y): for small motion")
+    return "\n".join(lines)
+
+
+def mjcf(chain: RigidChain, step: float | None = None) -> str:
+    """The chain for MuJoCo; `step`, s, is by default one radian of the highest frequency.
+
+    Springs to the ground, joint N and the supports of the far end are fixed tendons, linear in the angles; a support is
+    an equality, as stiff as the engine allows. Raises InputError for too many links.
+    """
+    if chain.count > DEEPEST:
+        raise InputError(f"count = {chain.count}: MuJoCo reads at most {DEEPEST} nested bodies, lower it")
+    step = step or float(f"{0.5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
+    bodies, begun = "", False
+    for one in tree(chain):
+        bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]!r} 0 0">'
+        bodies += _MJCF_JOINT.format(**one | {"kind": {"revolute": "hinge"}.get(one["kind"], "slide")})
+        bodies += _MJCF_BODY.format(**one) if one["last"] else ""
+        begun = not one["last"]
+
+    def tendon(name: str, axis: Axis, row: Array, values: str = "") -> str:
+        names = [f"slide_{axis}"] * chain.slides(axis) + [f"joint{j}_{axis}" for j, _ in chain.hinges(axis)]
+        coefs = "".join(f'<joint joint="{n}" coef="{c!r}"/>' for n, c in zip(names, row.tolist(), strict=True) if c)
+        return f'<fixed name="{name}"{values}>{coefs}</fixed>\n'
+
+    tendons, equalities, closed, rule = "", "", "", "implicitfast" if chain.damping else "RK4"
+    for axis in chain.axes:
+        for name, row, stiffness, damping in chain.grounded(axis):
+            tendons += tendon(name, axis, row, f' stiffness="{stiffness!r}" damping="{damping!r}" springlength="0"')
+        for row in chain.constraints(axis):
+            closed = ' solver="PGS" jacobian="dense" iterations="20" tolerance="1e-14"'
+            tendons += tendon(f"support_{axis}", axis, row)
+            equalities += (
+                f'<tendon tendon1="support_{axis}" solref="{2.0 * step!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"/>'
+            )
+    return (
+        f"<mujoco>\n<!--\n{notes(chain)}\n-->\n"
+        '<compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>\n'
+        f'<option timestep="{step!r}" integrator="{rule}" gravity="0 0 0"{closed}/>\n'
+        f'<size memory="200M"/>\n<worldbody>\n{bodies}<site name="tip" pos="{chain.links[-1].length!r} 0 0"/>'
+        f"{'</body>' * chain.count}\n</worldbody>\n<tendon>{tendons}</tendon>\n<equality>{equalities}</equality>\n"
+        "</mujoco>\n"
+    )
+
+
+def robot(chain: RigidChain, text: tuple[str, str, str]) -> str:
+    """The chain in SDF, for Gazebo and Drake, or in URDF, whose springs are an extension of Gazebo, by its texts."""
+    head, body, tail = text
+    moves = list(tree(chain))
+    bodies = "".join(body.format(**one) for one in moves)
+    return f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n{head}{bodies}{tail.format(**moves[-1])}'
+
+
+def script(chain: RigidChain, engine: str) -> str:
+    """A Python script with `build` and `frequencies_hz` of Exudyn or Pinocchio: data, then a fixed text."""
+    moves, rows, springs = list(tree(chain)), "", ""
+    for one in moves:
+        kind = one["kind"].capitalize() + "XYZ"[[value != "0" for value in one["direction"].split()].index(True)]
+        values = [one[key] for key in ("offset", "stiffness", "damping", "mass", "centre", "inertia")]
+        rows += f"    {(one['name'], kind, *values)!r},\n"
+    bodies = {one["link"]: i for i, one in enumerate(moves)}
+    each = [(s.link, s.position, 2, s.stiffness, s.damping) for s in chain.springs]
+    each += [(s.link, s.position, 4, s.rotational, s.rotational_damping) for s in chain.springs]
+    end, about = chain.joints[-1], {"torsion": 3, "bending": 4, "width": 5}
+    each += [(chain.count - 1, end.position, about[h.axis], h.stiffness, h.damping) for h in end.hinges]
+    for link, x, i, *pair in each:
+        if pair[0]:
+            six = [tuple(value * (k == i) for k in range(6)) for value in pair]
+            springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
+    fixed = (int(chain.supported[1] and chain.in_space), int(chain.supported[1]))
+    tip = (len(moves) - 1, chain.links[-1].length, end.position)
+    text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
+    return (
+        f'"""{notes(chain)}"""\n\nimport numpy as np\n\n'
+        "# joint, type, x in its parent, stiffness, dashpot; mass, centre, inertia (xx, yy, zz about it) of its body\n"
+        f"TREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
+        f"SPRINGS = [\n{springs}]\n# whether the far end is fixed in y, z; its body, x in it, x at rest\n"
+        f"SUPPORTED = {fixed}\nTIP = {tip}\n\n{text}"
+    )
+
+
+def table(chain: RigidChain) -> Table:
+    """Joints 0..N with the link beyond each, SI; in a plane a link has one inertia."""
+    word, damped = (" {}" if chain.in_space else ""), bool(chain.damping)
+    columns = [Column("joint"), Column("position", "m")]
+    for axis in chain.axes:
+        columns += [Column("stiffness" + word.format(axis), "N m/rad", ".6g")]
+        columns += [Column("dashpot" + word.format(axis), "N m s", ".4g")] * damped
+    columns += [Column("length", "m"), Column("mass", "kg"), Column("centre", "m")]
+    columns += [Column("inertia" + word.format(one), "kg m2") for one in ("xx", "yy", "zz")[: 3 if word else 1]]
+    rows = list[list[Any]]()
+    for j, joint in enumerate(chain.joints):
+        rows.append([j, joint.position])
+        for hinge in map(joint.hinge, chain.axes):
+            rows[j] += [hinge.stiffness, hinge.damping][: 1 + damped] if hinge else [None] * (1 + damped)
+        link = chain.links[j] if j < chain.count else None
+        rows[j] += [link.length, link.mass, link.centre, *link.inertia] if link else [None] * 6
+        del rows[j][len(columns) :]
+    return Table("Joints, and the link beyond each", columns, rows)
+
+
+def data(chain: RigidChain) -> dict[str, object]:
+    """The chain as data, SI, with its expected frequencies."""
+    names = ("wall", "mirrored", "damping", "joints", "links", "bodies", "springs")
+    expected = {
+        axis: {"frequencies_hz": chain.frequencies_hz(axis, MODES), "error": chain.errors(axis, MODES)}
+        for axis in chain.axes
+    }
+    own = {name: getattr(chain, name) for name in names}
+    return {"supports": chain.beam.supports, "count": chain.count, **own, "expected": expected}
+
+
+_WRITERS: dict[str, Callable[[RigidChain], str]] = {
+    "xml": mjcf,
+    "sdf": lambda chain: robot(chain, _SDF),
+    "urdf": lambda chain: robot(chain, _URDF),
+    "json": lambda chain: to_json(data(chain)),
+    "csv": lambda chain: table(chain).csv(),
+}
+
+
+def write(chain: RigidChain, path: Path, engine: str | None = None) -> str:
+    """Write a chain to a file by its suffix, whole or not at all; returns a sentence on what was written.
+
+    .xml MJCF, .sdf, .urdf, .json, .csv, .py for `engine` exudyn or pinocchio. What SDF and URDF do not express is in a
+    JSON file next to them. Raises InputError.
+    """
+    kind = path.suffix.lower().removeprefix(".")
+    if kind not in (*_WRITERS, "py"):
+        raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give .{', .'.join(_WRITERS)} or .py")
+    if chain.wall == "rigid":
+        raise InputError("wall = 'rigid': a first link fixed to the wall is for comparison, give another wall")
+    if (kind == "py") != (engine is not None) or (engine and engine not in SCRIPTS):
+        raise InputError(f"engine = {engine!r}: for a .py file give {' or '.join(SCRIPTS)}, for others none")
+    writable_folder(path.parent, "to")
+    write_whole(path, script(chain, engine) if engine else _WRITERS[kind](chain), "to")
+    missing = ["joint springs but in Gazebo"] * (kind == "urdf") + ["springs to the ground"] * bool(chain.springs)
+    missing += ["support of the far end"] * (chain.beam.supports[1] != "free")
+    if kind not in ("sdf", "urdf") or not missing:
+        return f"wrote {path}"
+    beside = path.with_name(path.name + ".json")
+    write_whole(beside, to_json(data(chain)), "to")
+    return f"wrote {path}: {kind.upper()} has no {', no '.join(missing)}, apply what is in {beside}"
