@@ -5,10 +5,10 @@ one-way coupling, lift-off, convergence and linearity; `verdict` derives the lev
 """
 
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from math import asinh, inf, pi, sinh
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
@@ -26,14 +26,11 @@ if TYPE_CHECKING:
     from verify.dynamics.result import Motion
     from verify.linear.field import HarmonicField
     from verify.problem.slider import Slider
-    from verify.scene.model import Scene
 
 MOST_PLATES = 60
 """Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
 SLOPE = 0.1, 0.3
 """Slopes up to which linear theory is trusted, and trusted under a condition: their squares are relative lengths."""
-UNEVEN = 2.0, 25.0
-"""Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
 OFF = 0.05
 """Discretisation error from which a chart is marked."""
 STILL = 1e-4
@@ -237,28 +234,6 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
         found.append(Margin(name="sag under a foot relative to the wave's amplitude", size=float(bent) / amplitude,
                             remedy="use coupling = 'two-way', or shorter feet"))  # fmt: skip
     return found
-
-
-def figure_margins(
-    name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache, settings: Settings = ()
-) -> list[Margin]:
-    """Condition of `wave.crest_speed`, inverse to |w| at the crests, and of `mode.order`, near the order in theory."""
-    from verify.analysis.comparison import ORDER_SPREAD
-    from verify.quantities.base import evaluate
-
-    if name == "wave.crest_speed":
-        ratio: Any = evaluate("wave.standing_wave_ratio", arguments, scene, cache)
-        fast = f"the fastest over the slowest crests along the beam are the standing-wave ratio, {ratio:.3g}"
-        return [Margin(name="variation of the crest speed along the beam", size=ratio, fine=UNEVEN[0], limit=UNEVEN[1],
-                       condition=f"the crest speed of the rms amplitude is meant ({fast})", is_error=False,
-                       failure=f"a nearly standing wave has no crest speed: {fast}")]  # fmt: skip
-    known = name == "mode.order" and arguments["model"] in MODELS
-    if (order := Variant(arguments["model"], settings).expected_order(cache.beam) if known else None) is None:
-        return []
-    observed: Any = evaluate(name, arguments, scene, cache)
-    condition = f"the sizes count as asymptotic: the observed order is {observed:.2f}, in theory {order}"
-    return [Margin(name="observed order", size=abs(observed - order), fine=0.2 * ORDER_SPREAD, limit=ORDER_SPREAD,
-                   condition=condition, is_error=False)]  # fmt: skip
 
 
 def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import msgspec
 from msgspec import Meta
 
-from verify.analysis.margins import beam_margins, figure_margins, run_margins, sag_margins
-from verify.analysis.solution_cache import SolutionCache
-from verify.analysis.variants import DEFAULTS
+from verify.analysis.margins import beam_margins, run_margins, sag_margins
+from verify.analysis.solution_cache import Settings, SolutionCache
+from verify.analysis.variants import DEFAULTS, Variant
 from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name, shown
 from verify.linear.registry import EXACT, MODELS
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 MOST = 100_000
 AGREE = "claims that agree"
+UNEVEN = 2.0, 25.0
+"""Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
 WIDE = 30.0  # ratio of largest to smallest value from which an axis is logarithmic
 
 
@@ -146,6 +148,27 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
         found += [one for run in sliding for one in run_margins(run, scene.slider, MODELS[run.model].title)]
         found += sag_margins(cache, scene.slider)
     return found
+
+
+def figure_margins(
+    name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache, settings: Settings = ()
+) -> list[Margin]:
+    """Condition of `wave.crest_speed`, inverse to |w| at the crests, and of `mode.order`, near the order in theory."""
+    from verify.analysis.comparison import ORDER_SPREAD
+
+    if name == "wave.crest_speed":
+        ratio: Any = evaluate("wave.standing_wave_ratio", arguments, scene, cache)
+        fast = f"the fastest over the slowest crests along the beam are the standing-wave ratio, {ratio:.3g}"
+        return [Margin(name="variation of the crest speed along the beam", size=ratio, fine=UNEVEN[0], limit=UNEVEN[1],
+                       condition=f"the crest speed of the rms amplitude is meant ({fast})", is_error=False,
+                       failure=f"a nearly standing wave has no crest speed: {fast}")]  # fmt: skip
+    known = name == "mode.order" and arguments["model"] in MODELS
+    if (order := Variant(arguments["model"], settings).expected_order(cache.beam) if known else None) is None:
+        return []
+    observed: Any = evaluate(name, arguments, scene, cache)
+    condition = f"the sizes count as asymptotic: the observed order is {observed:.2f}, in theory {order}"
+    return [Margin(name="observed order", size=abs(observed - order), fine=0.2 * ORDER_SPREAD, limit=ORDER_SPREAD,
+                   condition=condition, is_error=False)]  # fmt: skip
 
 
 def _quantities(names: Sequence[str]) -> list[Any]:
