@@ -1,6 +1,7 @@
 """The elastic modes of a beam model."""
 
 from collections.abc import Callable
+from typing import Any
 
 import msgspec
 
@@ -39,6 +40,25 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg)); from the right at a step."""
     method: str = "closed form"
     """Method of the eigenvalues."""
+
+    @classmethod
+    def of_shapes(cls, nodes: Array, shapes: Callable[[Array, int], Array], **fields: Any) -> "Modes":
+        """Modes from continuous shapes with two or more derivatives: (x, derivative) -> (n, len(x)).
+
+        `nodes` (n_nodes,) are the evenly spaced ends of the parts, including both ends of the beam; `fields` are model,
+        count, frequencies_hz and optionally method.
+        """
+        return cls(
+            length=float(nodes[-1]),
+            shapes=shapes,
+            nodes=nodes,
+            readings={"shapes": lambda: shapes(nodes, 0)},
+            points=nodes,
+            sampled=lambda: shapes(nodes, 0),
+            curvature_points=nodes,
+            curvatures=lambda: shapes(nodes, 2),
+            **fields,
+        )
 
     @property
     def n_modes(self) -> int:
