@@ -65,7 +65,7 @@ class Fault(msgspec.Struct, frozen=True, eq=False):
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A candidate and a fault fitted to a list.
+    """A candidate and a fault fitted to a list; `digits`: relative last digit of its entries.
 
     `parameter`: the factor of frequencies or kappa G, or the clamp's k_r L/EI. `differences` (k,): relative differences of the corrected list
     from the candidate. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
@@ -80,6 +80,7 @@ class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     effect: float
     rms: float
     largest: float
+    digits: float
 
 
 class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -119,13 +120,16 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def accepts(self, fit: Fit) -> bool:
         """Whether a fit is evidence: it agrees, with more entries than parameters, and its fault has an effect.
 
-        The last digit may be off by one. A factor with an interval that contains 1 has no effect.
+        A factor with an interval that contains 1 has no effect.
         """
         sharp = self.floor <= 1e-8 and fit.rms <= FLOOR
         enough = len(fit.differences) - self.fitted(fit) >= (1 if sharp else 2)
         explains = fit.rms <= EFFECT * fit.effect and fit.effect > 2.0 * self.rounding[fit.fault.entries].max()
-        agrees = fit.largest <= AGREED + 0.5 * self.floor
-        return agrees and enough and (explains or fit.fault.kind not in ("factor", "clamp"))
+        return self.agrees(fit) and enough and (explains or fit.fault.kind not in ("factor", "clamp"))
+
+    def agrees(self, fit: Fit) -> bool:
+        """Whether all differences are within the digits; the last digit may be off by one."""
+        return fit.largest <= AGREED + 0.5 * self.floor
 
     def near(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit is within the factor of ambiguity of the best."""
@@ -169,18 +173,19 @@ def identify(data: Data) -> Identification:
         raise InputError(f"count = {data.count}: no model has {data.n_modes - 1} modes, raise count")
     best = ranking[0]
     every = [*ranking, *(one for kind, fits in tested.items() if kind != best.fault.kind for one in fits)]
-    close = [one for one in every if data.near(one, best) and data.accepts(one)]
-    exact = [one for one in close if not one.candidate.sized and one.fault.kind in EXACTS]
-    if exact and data.accepts(best):
+    near = [one for one in every if data.near(one, best) and data.agrees(one)]
+    exact = [one for one in near if not one.candidate.sized and one.fault.kind in EXACTS]
+    if exact:
         best = min(exact, key=lambda one: (data.fitted(one), data.score(one)))
         ranking = [best, *(one for one in ranking if one is not best)]
     equal = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
     most = data.fitted(best) + 1
-    close = [one for one in close if one is not best and one not in equal and data.fitted(one) <= most]
+    close = [one for one in near if one is not best and one not in equal and data.fitted(one) <= most]
+    # half a link welded to the wall and a common factor are EI/l at the wall of a beam of another length
+    close = [one for one in close if data.accepts(one) and (one.fault.kind, one.candidate.wall) != ("factor", "welded")]
     close.sort(key=data.score)
     if not data.accepts(best):
-        off = best.largest > AGREED + 0.5 * data.floor
-        status = "unknown" if off else "few"
+        status = "few" if data.agrees(best) else "unknown"
     elif exact:
         status = "exact"
     else:
@@ -257,7 +262,11 @@ def _by_hand(data: Data, fault: Fault) -> Array:
     unit, changes = 10.0**fault.decimals, [2.0 * np.log(np.round(4.0 * betas / pi) * pi / 4.0 / betas)]
     for power in (1, 2):
         values, digits = betas**power, unit / 10.0 ** np.floor(np.log10(betas**power))
-        for near in (np.round(values * unit) / unit, np.floor(values * unit) / unit, np.round(values * digits) / digits):
+        for near in (
+            np.round(values * unit) / unit,
+            np.floor(values * unit) / unit,
+            np.round(values * digits) / digits,
+        ):
             changes.append(2.0 / power * np.log(near / values))
     table = np.array(changes)
     return np.asarray(table[np.argmin(abs(raw - table), axis=0), np.arange(len(raw))])
@@ -305,6 +314,7 @@ def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: flo
     beyond = np.maximum(abs(left) - data.rounding[fault.entries], 0.0)
     effect, rms = (float(np.sqrt(np.mean(values**2))) for values in (removed, beyond))
     sizes = {"effect": effect, "rms": rms, "largest": float(beyond.max())}
+    sizes["digits"] = float(np.median(data.rounding[fault.entries]))
     return Fit(candidate=one, count=n, fault=fault, parameter=parameter, differences=np.expm1(left), **sizes)
 
 

@@ -107,7 +107,9 @@ def read_words(words: Sequence[str], unit: str | None = None) -> FrequencyList |
     units = {one[2] for one in found if one and one[2]}
     known = next((name for name in UNITS if {u.lower() for u in units} == {name.lower()}), None)
     if units and known is None:
-        raise InputError(f"frequencies = {shown(' '.join(words))}: units {', '.join(sorted(units))}, give one of --unit")
+        raise InputError(
+            f"frequencies = {shown(' '.join(words))}: units {', '.join(sorted(units))}, give one of --unit"
+        )
     numbers = [one[1] for one in found if one]
     chosen = unit or known
     values = [float(re.sub("[dD]", "e", number)) for number in numbers]
