@@ -19,6 +19,8 @@ from verify.problem.beam import Beam
 FLOOR, AGREED, AMBIGUOUS = 1e-9, 3e-6, 2.0
 """Relative error of solvers; difference beyond the digits up to which a candidate agrees with a list; factor of the rms
 within which candidates are alternatives."""
+PROMISING = 5e-3
+"""Largest rms by interpolated N and effects of a fit that is solved."""
 EFFECT = 0.02
 """Largest rms over the effect of an accepted fault."""
 SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
@@ -236,6 +238,7 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
     if faults and faults[0].ends:  # the scan uses the effect on the exact beam, which differs from the candidate's
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER][:REFINED]
+    near = [one for one in near if one.rms < PROMISING or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
     if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
         refined = rank(_refined(data, one, SEARCHED) for one in near)
@@ -324,9 +327,11 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
     `around`: least search distance.
     """
     best = _solved(data, fit, fit.count)
+    wide = is_uneven(data.beam) and not fit.fault.ends
     if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
         return best
-    wide = is_uneven(data.beam) and not fit.fault.ends
+    if best.rms > PROMISING and not wide:
+        return best
     around = max(around, 2 + best.count * (0.3 if wide else 0.03))
     sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)
     for size in sorted(sizes, key=lambda size: abs(size - (fit.count or 0))):
@@ -340,7 +345,7 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
 def _solved(data: Data, fit: Fit, count: int | None) -> Fit | None:
     """A fit with the computed frequencies of a candidate at N; None if the model does not exist."""
     fault, candidate = fit.fault, fit.candidate
-    if not fault.ends and fault.kind != "shear":
+    if (not fault.ends and fault.kind != "shear") or fit.rms > PROMISING:
         return fit if data.count is not None else _scanned(data, candidate, fault, (count,))
     try:
         logs = data.logs[fault.entries]
