@@ -54,7 +54,7 @@ class TestRecordedLists:
         assert result.data["status"] == "identified"
         assert best(result, "mass", "theory", "order", "count") == ("rod", "timoshenko", 2, 49)
         assert table(result, "Modes")[21]["error"] == pytest.approx(-0.157552, abs=2e-6)
-        assert [one["N for 0.1 %"] for one in table(result, "Required N")] == [630, 68]
+        assert [one["N for 0.1 %"] for one in table(result, "Required N")] [:2] == [630, 68]
 
 
 MEMBERS = {
@@ -76,7 +76,7 @@ MEMBERS = {
 @pytest.mark.parametrize("name", MEMBERS)
 def test_member_is_identified(name):
     beam, hertz, count, expected = MEMBERS[name]
-    result = compared(beam, hertz, count=count)
+    result = compared(beam, hertz, count=count, within=1.0)
     assert best(result, "mass", "wall", "order") == expected
     assert best(result, "rms")[0] < 1e-9
     assert result.data["best"]["fault"]["kind"] == "none"
@@ -109,8 +109,11 @@ class TestFaults:
     @pytest.mark.parametrize(("factor", "label"), [(2 * np.pi, "rad/s"), (1e-3, "kHz"), (60.0, "1/min")])
     def test_wrong_unit(self, factor, label):
         result = compared(PAPER, factor * np.array(LUMPED), count=49)
-        assert result.data["best"]["fault"] == {"kind": "unit", "label": label, "parameter": pytest.approx(factor)}
+        assert (result.data["unit"], result.data["status"]) == (label, "identified")
         assert best(result, "mass") == ("joints",)
+        declared = listed("list", (factor * np.array(LUMPED)).tolist(), declared=True)
+        result = compare(type("Scene", (), {"name": "beam", "beam": PAPER}), declared, None, Options(count=49, within=1.0))
+        assert f"The values are in {label}, not in Hz." in result.warnings
         assert not result.data["passed"]
 
     @pytest.mark.parametrize("mode", [1, 3, 21])
@@ -159,7 +162,7 @@ class TestFaults:
         assert best(result, "wall") == ("half",)
         assert [row["entry"] for row in table(result, "Modes")] == list(range(3, 11))
         assert not result.data["passed"]
-        free = compared(FREE, [3e-5, 7e-5, *lumped_rod(FREE, 40)[2:10]], count=40)
+        free = compared(FREE, [3e-5, 7e-5, *lumped_rod(FREE, 40)[2:10]], count=40, within=0.1)
         assert free.data["passed"]
 
     def test_other_supports(self):
@@ -183,11 +186,10 @@ class TestCertainty:
         assert best(result, "wall") == ("half",)
         assert 3e-5 < best(result, "rms")[0] < 2e-4
 
-    def test_noise_as_large_as_the_rotary_inertia_is_ambiguous(self):
+    def test_digits_as_coarse_as_the_rotary_inertia_are_ambiguous(self):
         links = rigid_links(PAPER, 20)[:10]
-        noisy = links * (1.0 + 2e-4 * np.random.default_rng(5).standard_normal(10))
-        assert compared(PAPER, links, count=20).data["status"] == "identified"
-        result = compared(PAPER, noisy, count=20)
+        assert compared(PAPER, links, count=20).data["identified"]
+        result = compared(PAPER, links, digits=3, count=20)
         assert result.data["status"] == "ambiguous"
         theories = {one["theory"] for one in (result.data["best"], *result.data["alternatives"])}
         assert theories >= {"euler-bernoulli", "rayleigh"}

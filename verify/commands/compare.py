@@ -48,8 +48,8 @@ def compare(
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
 
-    FILE is a list of frequencies or output of a solver (.csv, .txt, .tsv, .dat, .f06, or - for standard input), measured
-    modes (.uff, .unv), or a mesh with mode shapes. Exit status 1 where the list has a fault or an error exceeds --within.
+    FILE is a list of frequencies or a solver's output (.csv, .txt, .tsv, .dat, .f06, or - for standard input), measured
+    modes (.uff, .unv), or a mesh with mode shapes. Exit status 1 where the list has a fault or an error is too large.
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
@@ -85,6 +85,8 @@ def compare(
 
         result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
     shared.show(result, **formats)
+    for text in result.verdict.others if result.verdict and not any(formats.values()) else ():
+        click.echo(f"also: {text}")
     shared.save_charts(result, charts)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)

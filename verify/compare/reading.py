@@ -86,7 +86,10 @@ def listed(source: str, values: Sequence[float], cells: Sequence[str] = (), **mo
     for i, value in enumerate(array.tolist(), start=1):
         if not isfinite(value) or value < 0.0 or (value == 0.0 and more.get("unit") in ("s", "ms")):
             raise InputError(f"{source}, entry {i} is {value!r}: give frequencies as finite numbers from 0")
-    digits = [_last_digit(cell, value) for cell, value in zip(cells or map(repr, values), values, strict=True)]
+    cells = cells or [*map(repr, values)]
+    significant = [len(re.sub(r"[eEdD].*|\D", "", cell).lstrip("0")) for cell in cells]
+    most = max((n for n, cell in zip(significant, cells, strict=True) if "." in cell), default=max(significant))
+    digits = [_last_digit(cell, value, most) for cell, value in zip(cells, values, strict=True)]
     return FrequencyList(source=source, values=array, digits=np.array(digits), **more)
 
 
@@ -273,8 +276,10 @@ def _float(cell: str, source: str, row: int) -> float:
         raise InputError(f"{source}, row {row}: {shown(cell)} is not a number: correct it or leave it out") from None
 
 
-def _last_digit(cell: str, value: float) -> float:
-    """A unit of the last digit, relative; of text with all digits of a double that of the double."""
+def _last_digit(cell: str, value: float, most: int) -> float:
+    """A unit of the last digit, relative; zeros that end an integer count up to the `most` digits of other cells."""
     mantissa, _, exponent = re.sub("[dDE]", "e", cell).partition("e")
     digits = len(mantissa.partition(".")[2])
+    if "." not in mantissa:
+        digits = -min(len(mantissa) - len(mantissa.rstrip("0")), max(len(mantissa) - most, 0))
     return max(10.0 ** (int(exponent or 0) - digits) / abs(value), 1e-16) if value else 0.0
