@@ -54,7 +54,7 @@ class TestRecordedLists:
         assert result.data["status"] == "identified"
         assert best(result, "mass", "theory", "order", "count") == ("rod", "timoshenko", 2, 49)
         assert table(result, "Modes")[21]["error"] == pytest.approx(-0.157552, abs=2e-6)
-        assert [one["N for 0.1 %"] for one in table(result, "Required N")] [:2] == [630, 68]
+        assert [one["N for 0.1 %"] for one in table(result, "Required N")][:2] == [630, 68]
 
 
 MEMBERS = {
@@ -112,7 +112,9 @@ class TestFaults:
         assert (result.data["unit"], result.data["status"]) == (label, "identified")
         assert best(result, "mass") == ("joints",)
         declared = listed("list", (factor * np.array(LUMPED)).tolist(), declared=True)
-        result = compare(type("Scene", (), {"name": "beam", "beam": PAPER}), declared, None, Options(count=49, within=1.0))
+        result = compare(
+            type("Scene", (), {"name": "beam", "beam": PAPER}), declared, None, Options(count=49, within=1.0)
+        )
         assert f"The values are in {label}, not in Hz." in result.warnings
         assert not result.data["passed"]
 

@@ -238,7 +238,8 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
     if faults and faults[0].ends:  # the scan uses the effect on the exact beam, which differs from the candidate's
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER][:REFINED]
-    near = [one for one in near if one.rms < PROMISING or is_uneven(data.beam)] or near[:1]
+    parts = 0.1 if faults and faults[0].kind in ("factor", "clamp") else np.inf
+    near = [one for one in near if one.rms < min(PROMISING, parts * one.effect) or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
     if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
         refined = rank(_refined(data, one, SEARCHED) for one in near)
@@ -330,7 +331,8 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
     wide = is_uneven(data.beam) and not fit.fault.ends
     if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
         return best
-    if best.rms > PROMISING and not wide:
+    off = float(abs(best.differences - fit.differences).max())  # by interpolation: at the right N it is all there is
+    if fit.rms > min(PROMISING, 10.0 * off + AGREED) and not wide:
         return best
     around = max(around, 2 + best.count * (0.3 if wide else 0.03))
     sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)

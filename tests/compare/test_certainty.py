@@ -1,0 +1,159 @@
+"""Lists that show no known discretisation, lists of models in space, and causes with a name.
+
+References: frequency equations solved here, Timoshenko's closed form, dense elements with a taper or a crack.
+"""
+
+from functools import cache
+from itertools import product
+from math import cosh, floor, log10, pi, sqrt, tanh
+
+import numpy as np
+import pytest
+from reference.discrete_beams import rigid_links, varying_beam
+from scipy.optimize import brentq
+from shared_lists import compared, table
+
+from verify.problem.beam import Beam
+from verify.problem.point_attachments import PointMass
+
+STEEL = {"youngs_modulus": 206e9, "density": 7850.0}
+CLAMPED = Beam(length=0.45, width=0.03, thickness=0.004, supports=("clamped", "free"), **STEEL)
+THICK = Beam(length=0.6, width=0.045, thickness=0.03, **STEEL)
+BAR = Beam(length=1.0, width=0.15, thickness=0.1, youngs_modulus=68e9, density=2700.0, supports=("clamped", "free"))
+EI, MASS = CLAMPED.bending_stiffness, CLAMPED.mass_per_length
+BETAS = [
+    brentq(lambda x: np.cos(x) + 1 / cosh(x), (i - 0.5) * pi - 0.4, (i - 0.5) * pi + 0.4, xtol=1e-15)
+    for i in range(1, 7)
+]
+
+
+def written(value, digits, how="rounded", i=0):
+    """A value with so many digits: rounded, cut, or with the last off by one."""
+    unit = 10.0 ** (floor(log10(value)) - digits + 1)
+    whole = floor(value / unit) if how == "cut" else round(value / unit) + (how == "off") * (-1) ** i
+    return float(f"{whole * unit:.{digits - 1}e}")
+
+
+def euler(beam, betas=BETAS):
+    return np.array(betas) ** 2 * beam.wave_constant / beam.length**2 / (2 * pi)
+
+
+@pytest.mark.parametrize(("nu", "kappa", "digits"), [*product((0.2, 0.3, 0.45), (5 / 6, pi**2 / 12, 0.9), (5, 7))])
+def test_shear_of_another_nu_or_kappa_is_no_discretisation(nu, kappa, digits):
+    k = np.arange(1, 9) * pi / THICK.length
+    a = (k * THICK.thickness) ** 2 / 12
+    s = a * 2 * (1 + nu) / kappa
+    hertz = k**2 * THICK.wave_constant / (2 * pi) * np.sqrt(2 / (1 + a + s + np.sqrt((1 + a + s) ** 2 - 4 * a * s)))
+    data = compared(THICK, hertz, digits=digits).data
+    assert (data["status"], data["best"]["model"], data["identified"]) == ("exact", "analytic", False)
+
+
+@pytest.mark.parametrize(("digits", "how"), [*product((3, 4, 5, 6), ("rounded", "cut", "off"))])
+def test_digits_of_an_exact_list_are_no_discretisation_and_no_factor(digits, how):
+    cells = [written(f, digits, how, i) for i, f in enumerate(euler(CLAMPED))]
+    data = compared(CLAMPED, cells, digits=digits).data
+    assert (data["status"], data["best"]["model"]) == ("exact", "analytic")
+    assert data["best"]["fault"]["kind"] in ("none", "constants")
+    assert data["passed"]
+
+
+@pytest.mark.parametrize("decimals", [2, 3, 4])
+def test_constants_by_hand_are_constants(decimals):
+    data = compared(CLAMPED, euler(CLAMPED, np.round(BETAS, decimals))).data
+    assert (data["status"], data["best"]["fault"]["label"]) == ("exact", f"{decimals} decimals")
+
+
+@cache
+def dense(cause, size):
+    if cause == "crack":
+        at, softness = size
+        crack = (at, EI / (softness * CLAMPED.length))
+        return varying_beam(CLAMPED.length, lambda x: EI, lambda x: MASS, *CLAMPED.supports, crack)
+    slope = size / CLAMPED.length
+    return varying_beam(
+        CLAMPED.length, lambda x: EI * (1 - slope * x) ** 3, lambda x: MASS * (1 - slope * x), "clamped", "free"
+    )
+
+
+@pytest.mark.parametrize(
+    ("cause", "size"), [*product(["crack"], product((1, 4, 30), (0.01, 0.2))), *product(["taper"], (0.02, 0.3))]
+)
+def test_cracked_and_tapered_beams_are_of_no_known_family(cause, size):
+    """Cracks at 1/120, 1/30 and 1/4 of the length, of 1 % and 20 % of the beam's own softness."""
+    result = compared(CLAMPED, dense(cause, size)[:6], digits=7)
+    assert (result.data["status"], result.data["identified"]) == ("unknown", False)
+    assert result.data["best"]["fault"]["kind"] == "none"
+    assert "None of the known family" in result.summary
+
+
+def space(beam, ends=0.5):
+    """(Hz, motions) of bending in both planes, torsion and extension of a rectangle, ascending."""
+    b, h, c = beam.width, beam.thickness, sqrt(beam.youngs_modulus / beam.density)
+    j = b * h**3 / 3 * (1 - 192 / pi**5 * h / b * sum(tanh(n * pi * b / 2 / h) / n**5 for n in (1, 3, 5, 7)))
+    twist = c * sqrt(12 * j / (b * h * (b * b + h * h)) / 2 / (1 + beam.poissons_ratio))
+    rows = [(f, "bending") for f in euler(beam)] + [(f * b / h, "bending, width") for f in euler(beam)]
+    rows += [
+        ((i - ends) * v / 2 / beam.length, name)
+        for i in (1, 2, 3)
+        for v, name in ((c, "extension"), (twist, "torsion"))
+    ]
+    return zip(*sorted(rows)[:9], strict=True)
+
+
+def test_motions_of_a_bar_in_space_are_sorted_in_rad_per_second():
+    few = compared(BAR, [509.0, 763.0], digits=3)
+    assert (few.data["unit"], few.data["passed"]) == ("rad/s", True)
+    assert [row["motion"] for row in table(few, "Other motions")] == ["bending, width"]
+    hertz, motions = space(BAR)
+    result = compared(BAR, 2 * pi * np.array(hertz), digits=6)
+    assert result.data["unit"] == "rad/s"
+    assert [row["entry"] for row in table(result, "Modes")] == [
+        i for i, name in enumerate(motions, 1) if name == "bending"
+    ]
+    assert [row["motion"] for row in table(result, "Other motions")] == [name for name in motions if name != "bending"]
+
+
+def test_pairs_of_a_round_bar_and_six_rigid_motions():
+    rod = Beam(length=1.0, shape="round", diameter=0.02, supports=("free", "free"), **STEEL)
+    hertz = [0.0] * 6 + list(np.repeat(np.array([4.730040745, 7.853204624]) ** 2 * rod.wave_constant / (2 * pi), 2))
+    result = compared(rod, hertz, digits=7)
+    assert result.data["passed"]
+    assert [row["mode"] for row in table(result, "Other motions")] == [1, 2]
+
+
+@pytest.mark.parametrize(("unit", "values"), [("rad2/s2", lambda f: (2 * pi * f) ** 2), ("s", lambda f: 1 / f)])
+def test_squares_and_periods_are_recognised(unit, values):
+    data = compared(CLAMPED, values(euler(CLAMPED)), digits=7).data
+    assert (data["unit"], data["passed"]) == (unit, True)
+
+
+FACTORS = {"sqrt(g)": sqrt(9.80665), "plane strain": 1 / sqrt(1 - 0.33**2), "inches": 0.0254, "exchanged": 0.03 / 0.004}
+
+
+@pytest.mark.parametrize("name", FACTORS)
+def test_factor_has_its_name(name):
+    result = compared(CLAMPED, FACTORS[name] * rigid_links(CLAMPED, 20)[:6], digits=8, count=20)
+    assert result.data["best"]["fault"]["kind"] == "factor"
+    assert name in result.summary
+
+
+def test_mass_that_the_list_has_not_is_named():
+    loaded = Beam(
+        length=0.45,
+        width=0.03,
+        thickness=0.004,
+        supports=("clamped", "free"),
+        mass=(PointMass(position=0.45, mass=0.1),),
+        **STEEL,
+    )
+    result = compared(loaded, rigid_links(CLAMPED, 20)[:6], digits=8, count=20)
+    assert result.data["best"]["fault"] == {"kind": "scene", "label": "beam.mass", "parameter": 1.0}
+
+
+@pytest.mark.parametrize(("factor", "wall", "count"), [*product((0.95, 1.02), ("half", "full"), (20, None))])
+def test_wrong_modulus_names_no_wrong_wall(factor, wall, count):
+    hertz = factor * rigid_links(CLAMPED, 20, {"half": 2.0, "full": 1.0}[wall])[:6]
+    data = compared(CLAMPED, hertz, digits=6, count=count).data
+    walls = {one["wall"] for one in (data["best"], *data["alternatives"])}
+    assert wall in walls
+    assert not data["identified"] or walls == {wall}
