@@ -238,7 +238,7 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
     if faults and faults[0].ends:  # the scan uses the effect on the exact beam, which differs from the candidate's
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER][:REFINED]
-    parts = 0.1 if faults and faults[0].kind in ("factor", "clamp") else np.inf
+    parts = {"factor": 0.03, "clamp": 0.1}.get(faults[0].kind if faults else "", np.inf)
     near = [one for one in near if one.rms < min(PROMISING, parts * one.effect) or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
     if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
