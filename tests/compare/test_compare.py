@@ -7,8 +7,8 @@ from shared_lists import CANTILEVER, FREE, HELD, PROPPED, STEPPED, STRIP, compar
 
 from tests.beams import PAPER
 from verify.compare.candidates import EXACT, Candidate, candidates, frequencies_hz
-from verify.compare.effects import varied
 from verify.compare.compare import Options, compare
+from verify.compare.effects import varied
 from verify.compare.reading import ModeShapes, listed
 from verify.errors import InputError
 from verify.fem_beam import HermiteModel

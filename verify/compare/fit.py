@@ -60,17 +60,16 @@ class Fault(msgspec.Struct, frozen=True, eq=False):
 
     def applies(self, candidate: Candidate) -> bool:
         """Whether it is tested with a candidate."""
-        exact = {"shear": "timoshenko", "constants": EULER}.get(self.kind)
-        return (candidate.springs or not self.ends) and (
-            exact is None or (not candidate.sized and candidate.theory == exact)
-        )
+        if theory := {"shear": "timoshenko", "constants": EULER}.get(self.kind):
+            return not candidate.sized and candidate.theory == theory
+        return candidate.springs or not self.ends
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A candidate and a fault fitted to a list; `digits`: relative last digit of its entries.
 
-    `parameter`: the factor of frequencies or kappa G, or the clamp's k_r L/EI. `differences` (k,): relative differences of the corrected list
-    from the candidate. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
+    `parameter`: the factor of frequencies or kappa G, or the clamp's k_r L/EI. `differences` (k,): relative ones of the
+    corrected list. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
     the rounding of the list.
     """
 
@@ -138,7 +137,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return hypot(fit.rms, self.floor) <= AMBIGUOUS * hypot(best.rms, self.floor)
 
 
-class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class Identification(msgspec.Struct, frozen=True, eq=False):
     """Result of an identification; `status`: identified, ambiguous, exact (no discretisation), few or unknown.
 
     `ranking`: candidates with the likeliest fault, best first. `equivalent` fits have the frequencies of the best,
@@ -192,13 +191,8 @@ def identify(data: Data) -> Identification:
         status = "exact"
     else:
         status = "ambiguous" if close else "identified"
-    return Identification(
-        status=status,
-        ranking=tuple(ranking),
-        equivalent=tuple(equal),
-        alternatives=tuple(close),
-        tested=tuple(sorted(firsts, key=data.score)),
-    )
+    tested_first = tuple(sorted(firsts, key=data.score))
+    return Identification(status, tuple(ranking), tuple(equal), tuple(close), tested_first)
 
 
 def _faults(data: Data) -> Iterator[Fault]:
@@ -265,13 +259,10 @@ def _by_hand(data: Data, fault: Fault) -> Array:
     raw = data.logs[fault.entries] - _logs(data.beam, Candidate(model=EXACT), None, data.n_modes)[fault.modes]
     unit, changes = 10.0**fault.decimals, [2.0 * np.log(np.round(4.0 * betas / pi) * pi / 4.0 / betas)]
     for power in (1, 2):
-        values, digits = betas**power, unit / 10.0 ** np.floor(np.log10(betas**power))
-        for near in (
-            np.round(values * unit) / unit,
-            np.floor(values * unit) / unit,
-            np.round(values * digits) / digits,
-        ):
-            changes.append(2.0 / power * np.log(near / values))
+        values = betas**power
+        digits = unit / 10.0 ** np.floor(np.log10(values))
+        near = np.round(values * unit) / unit, np.floor(values * unit) / unit, np.round(values * digits) / digits
+        changes += [2.0 / power * np.log(one / values) for one in near]
     table = np.array(changes)
     return np.asarray(table[np.argmin(abs(raw - table), axis=0), np.arange(len(raw))])
 

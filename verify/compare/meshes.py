@@ -1,4 +1,4 @@
-"""Mode shapes of a beam on a mesh (any format of meshio), or measured (universal files), averaged over cross-sections."""
+"""Mode shapes of a beam on a mesh of any format of meshio, or measured, averaged over the cross-sections."""
 
 import io
 import re
@@ -13,6 +13,7 @@ from verify.arrays import Array
 from verify.compare.reading import FrequencyList, ModeShapes, checked_shapes, listed
 from verify.errors import InputError, one_line
 from verify.files import exists
+from verify.io.universal import read_universal
 
 UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}
 """Number of length units per metre."""
@@ -44,7 +45,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     if not exists(path, "file"):
         raise InputError(f"{source} does not exist: give a mesh, for instance a .vtu")
     measured = path.suffix.lower() in (".uff", ".unv")
-    points, arrays, field = _universal(path, source) if measured else _series(path) or _mesh(path, source)
+    points, arrays, field = read_universal(path, source) if measured else _series(path) or _mesh(path, source)
     if len(points) < 3 or not np.isfinite(points).all():
         raise InputError(f"{source} has {len(points)} points, or infinite ones: give three or more finite points")
     real = {name: v.astype(float) for name, v in arrays.items() if v.dtype.kind == "f" and len(v) == len(points)}
@@ -53,9 +54,8 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     if not vectors or not all(np.isfinite(v).all() for v in vectors.values()):
         raise InputError(f"{source} has no finite vectors or numbers at its points: write the modes as point data")
     sizes = np.ptp(points, axis=0)
-    along = int(np.argmax(sizes))
+    along, first = int(np.argmax(sizes)), next(iter(vectors.values()))
     others = sorted((axis for axis in range(len(sizes)) if axis != along), key=lambda axis: sizes[axis])
-    first = next(iter(vectors.values()))
     if len(others) == 2 and sizes[others[1]] <= 1.01 * sizes[others[0]] and first.shape[1] == 3:  # the one with motion
         moved = sum((v**2).sum(axis=0) / (v**2).sum() for v in vectors.values() if v.any())
         others.sort(key=lambda axis: -float(np.asarray(moved)[axis]))
@@ -63,18 +63,17 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     if max(sizes[across], sizes[wide]) > SLENDER * sizes[along]:
         raise InputError(f"{source} is {sizes[along]:.4g} long and {sizes[wide]:.4g} wide: give the mesh of a beam")
     unit = next((u for u, factor in UNITS.items() if abs(sizes[along] / (factor * length) - 1.0) < LENGTH), None)
-    start, end = points[:, along].min(), length
+    start, last = points[:, along].min(), 1.0
     if unit is None and measured and start >= 0.0:  # sensors need not be at the ends
-        last = points[:, along].max() / length
+        start, last = 0.0, points[:, along].max() / length
         unit = next((u for u, factor in UNITS.items() if 0.5 < last / factor < 1.0 + LENGTH), None)
-        start, end = 0.0, length * last / UNITS.get(unit or "", 1.0)
+        last /= UNITS[unit or "m"]
     if unit is None:
         lengths = f"{sizes[along]:.6g} long, the beam {length!r} m"
         raise InputError(f"{source} is {lengths}: set beam.length to that of the mesh")
     x = points[:, along] - start
     order = np.argsort(x, kind="stable")
-    station = np.empty(len(x), dtype=int)
-    station[order] = np.append(0, np.cumsum(np.diff(x[order]) > SAME * x.max()))
+    station = np.append(0, np.cumsum(np.diff(x[order]) > SAME * x.max()))[np.argsort(order)]
     counts = np.bincount(station)
     places = np.bincount(station, weights=x) / counts
     places[[0, -1]] = x.min(), x.max()
@@ -90,9 +89,8 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
             notes.append(f"{name} does not bend the beam across its thickness: ignored.")
     if not bent:
         raise InputError(f"{source} has no shape that bends the beam across its thickness: write bending modes")
-    shapes = ModeShapes(x=places * (end / places[-1]), values=np.array(list(bent.values())))
-    chosen = [list(vectors).index(name) for name in bent]
-    frequencies = _frequencies(field, len(vectors), chosen, source)
+    shapes = ModeShapes(x=places * (last * length / places[-1]), values=np.array(list(bent.values())))
+    frequencies = _frequencies(field, len(vectors), [list(vectors).index(name) for name in bent], source)
     return MeshShapes(source, checked_shapes(shapes, length, source), tuple(bent), frequencies, tuple(notes))
 
 
@@ -109,47 +107,6 @@ def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, A
         raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
     arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
     return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
-
-
-def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
-    """`_mesh` of a universal file: points of sets 15 or 2411; modes of sets 55, else peaks of the responses of sets 58.
-
-    At a peak of the sum of squared responses their imaginary part is the shape. Raises InputError.
-    """
-    try:
-        import pyuff
-    except ImportError:
-        raise InputError(f"{source} needs pyuff: pip install fem-segment-verify[measured]") from None
-    try:
-        sets = [pyuff.UFF(str(path)).read_sets(i) for i in range(pyuff.UFF(str(path)).get_n_sets())]
-    except Exception as error:  # its reader raises plain ones
-        raise InputError(f"{source} cannot be read by pyuff ({one_line(str(error))[:200]}): write sets 15, 55") from None
-    of = {kind: [one for one in sets if one["type"] == kind] for kind in (15, 2411, 55, 58)}
-    node = {int(n): xyz for one in of[15] + of[2411] for n, *xyz in zip(*map(one.get, ("node_nums", *"xyz")), strict=True)}
-    modes: list[tuple[float, dict[int, Array]]] = []
-    for one in of[55]:
-        vectors = np.array([one["r1"], one["r2"], one["r3"]]).T
-        vectors = (vectors * np.exp(-0.5j * np.angle((vectors**2 + 0j).sum()))).real
-        hertz = one["freq"] if "freq" in one else abs(one["eig"]) / (2.0 * np.pi)
-        modes.append((float(hertz), dict(zip(map(int, one["node_nums"]), vectors, strict=True))))
-    if not modes and of[58]:
-        from scipy.signal import find_peaks
-
-        moving = "rsp" if len({one["rsp_node"] for one in of[58]}) > 1 else "ref"  # or a roving hammer
-        power = np.log(sum(abs(one["data"]) ** 2 for one in of[58]))
-        for i in find_peaks(power, prominence=np.log(10.0))[0]:
-            a, b, c = power[i - 1 : i + 2]
-            hertz = float(of[58][0]["x"][i] + 0.5 * (a - c) / (a - 2.0 * b + c) * np.diff(of[58][0]["x"][i : i + 2])[0])
-            shape = {int(one[f"{moving}_node"]): np.zeros(3) for one in of[58]}
-            for one in of[58]:
-                axis = int(one[f"{moving}_dir"])
-                shape[int(one[f"{moving}_node"])][abs(axis) - 1] += np.sign(axis) * one["data"][i].imag
-            modes.append((hertz, shape))
-    shared = sorted(set(node).intersection(*(shape for _, shape in modes)))
-    if not modes or len(shared) < 3:
-        raise InputError(f"{source} has {len(modes)} modes at {len(shared)} points: write sets 15 and 55, or 15 and 58")
-    arrays = {f"mode_{i}": np.array([shape[n] for n in shared]) for i, (_, shape) in enumerate(modes, start=1)}
-    return np.array([node[n] for n in shared], dtype=float), arrays, {"hz": np.array([hertz for hertz, _ in modes])}
 
 
 def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:

@@ -143,7 +143,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     numbered = next((k for k, name in enumerate(head) if _MODE.fullmatch(name)), None)
     if not head and table.shape[1] == 2 and not (table[:, 0] % 1.0).any() and (np.diff(table[:, 0]) > 0.0).all():
         numbered = 0
-    units = {k: next((u for u, pattern in _HEADS.items() if re.search(pattern, name, re.IGNORECASE * (u != "mHz"))), None)
+    units = {k: next((u for u, pattern in _HEADS.items() if re.search(pattern, name, 0 if u == "mHz" else re.I)), None)
              for k, name in enumerate(head) if k != numbered}  # fmt: skip
     columns = [k for k, matches in units.items() if matches] or [k for k in range(table.shape[1]) if k != numbered]
     best = [k for k in columns if units.get(k) == "Hz"]

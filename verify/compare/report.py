@@ -1,23 +1,19 @@
-"""The result of a comparison: modes, candidates, faults, required N and acceptance as tables; one figure."""
+"""The result of a comparison: modes, candidates, faults, required N and acceptance as tables."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
-import numpy as np
 
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import is_uneven
 from verify.analysis.verdict import Margin, per_cent, void
-from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
+from verify.compare.candidates import EULER
 from verify.compare.fit import FAULTS, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.compare.sorting import ACROSS, BENDING
 from verify.problem.beam import Beam
-from verify.report.result import Column, Figure, Result, Table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from verify.report.result import Column, Result, Table
 
 SHOWN = 10
 """Largest number of candidates in the table; all are in the data."""
@@ -34,7 +30,6 @@ TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies o
 WALL = (
     "The joint at the wall should be 2EI/l, or compliances 3/8, 7/6, 23/24 of l/EI on the first three joints (Gregory)."
 )
-TIP_LINK = "EI/l at the wall (a fixed first link) is equivalent to 2EI/l with twice the mass (no mass) at the free end."
 UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
 INCH, GRAVITY = 0.0254, 9.80665
 ENTRY = (Column("entry"), Column("mode"), Column("listed", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
@@ -63,7 +58,7 @@ def result_of(
     data: Data,
     fits: Identification,
     rows: list[Entry],
-    required: list[tuple[Candidate | int | None, ...]],
+    required: list[tuple[Any, ...]],
     warnings: list[str],
     within: float,
 ) -> Result:
@@ -71,19 +66,48 @@ def result_of(
 
     `required`: candidates, modes, and N for 1 % and 0.1 %.
     """
-    best, beam = fits.best, data.beam
-    kind, candidate = best.fault.kind, best.candidate
+    best, beam, kind = fits.best, data.beam, fits.best.fault.kind
     misread = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * (kind in ("missing", "extra"))
     faults = [*misread, *warnings]
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
-    off = abs(worst.error)
-    checks = [("faults of the list", float(len(faults)), 0.0, not faults)]
-    checks.append(("largest error against the exact beam", off, within, off <= within))
+    off, passed = abs(worst.error), abs(worst.error) <= within and not faults
+    summary = f"{STATUS[fits.status]}: {_title(best, beam)}, rms difference {best.rms:.2g}."
+    if fits.status in ("identified", "ambiguous") and fits.alternatives:
+        summary += f" Alternatives: {'; '.join(_title(one, beam) for one in fits.alternatives[:3])}."
+    if source.unit != "Hz" and not source.declared:
+        summary += f" The values are read as {source.unit}."
+    clamp = beam.uniform and set(beam.supports) == {"clamped", "free"}
+    clamp &= any(one.fault.kind == "clamp" for one in (best, *fits.alternatives))
+    wrong = fits.status == "identified" and best.candidate.wall in ("full", "rigid", "stiff")
+    about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
+    about |= {"status": fits.status, "identified": fits.status == "identified", "best": _plain(best, beam)}
+    groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
+    about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
+    failure = f"the list is {per_cent(off)} too {'low' if worst.error < 0.0 else 'high'} at mode {worst.mode}"
+    own = Margin(name="error of the list", size=off, where=f"at mode {worst.mode}", fine=within, limit=within,
+                 failure=failure)  # fmt: skip
+    margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent)), own]
+    margins += [void(f"the list ({text})", text.rstrip(".")) for text in faults]
+    checks: list[Any] = [("faults of the list", float(len(faults)), 0.0, "no" if faults else "yes")]
+    checks.append(("largest error against the exact beam", off, within, "yes" if off <= within else "no"))
+    columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
+    tables = [*_tables(fits, beam, rows, required), Table("Acceptance", columns, checks)]
+    warnings = [*warnings, *[TIP_MASS] * clamp, *[WALL] * wrong]
+    return Result(summary, tables, warnings=warnings, data=about, margins=margins)
+
+
+def _tables(fits: Identification, beam: Beam, rows: list[Entry], required: list[tuple[Any, ...]]) -> list[Table]:
+    """Modes, other motions, candidates, faults, parameters, required N."""
+    best, sizes = fits.best, [Column("candidate"), Column("N")]
     tables = [_modes(best, [row for row in rows if row.motion == BENDING])]
-    if len(others := [row for row in rows if row.motion != BENDING]):
+    lines: list[Any] = [
+        (one.entry, one.motion, one.mode, one.listed_hz, one.exact_hz, one.error)
+        for one in rows
+        if one.motion != BENDING
+    ]
+    if lines:
         columns = [ENTRY[0], Column("motion"), *ENTRY[1:], Column("error", format=".4g", percent=True)]
-        lines = [(row.entry, row.motion, row.mode, row.listed_hz, row.exact_hz, row.error) for row in others]
         tables.append(Table("Other motions", columns, lines))
     words = {id(one): "equivalent" for one in fits.equivalent} | {id(one): "alternative" for one in fits.alternatives}
     words[id(best)] = "nearest" if fits.status in ("few", "unknown") else "best"
@@ -92,47 +116,25 @@ def result_of(
         for one in fits.ranking[:SHOWN]
     ]
     notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: rms below twice the best."]
-    columns = [Column("candidate"), Column("N"), Column("order"), *RMS, Column("status")]
-    tables.append(Table("Candidates", columns, lines, notes))
-    if kind != "none" or fits.status == "unknown" or any(one.fault.kind != "none" for one in fits.alternatives):
-        columns = [Column("fault"), Column("value"), Column("candidate"), Column("N"), *RMS]
+    tables.append(Table("Candidates", [*sizes, Column("order"), *RMS, Column("status")], lines, notes))
+    tested = fits.tested
+    if fits.status == "unknown" or any(one.fault.kind != "none" for one in (best, *fits.alternatives)):
+        titles = [(FAULTS[one.fault.kind][0], value(one, beam)) for one in tested]
         lines = [
-            (FAULTS[f.fault.kind][0], value(f, beam), f.candidate.label, f.count, f.rms, f.largest) for f in fits.tested
+            (*title, f.candidate.label, f.count, f.rms, f.largest) for title, f in zip(titles, tested, strict=True)
         ]
+        columns = [Column("fault"), Column("value"), *sizes, *RMS]
         tables.append(Table("Faults tested, the likeliest first", columns, lines))
-    if kind == "factor":
-        held, bare = bool(beam.spring or beam.foundation or beam.tension), candidate.theory == EULER
+    if best.fault.kind == "factor":
+        held = bool(beam.spring or beam.foundation or beam.tension)
+        bare = best.candidate.theory == EULER and not (held or beam.mass)
         kept = {"E": not held, "rho": not beam.mass}
-        bare &= not (held or beam.mass)
         lines = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if kept.get(name, bare)]
         columns = [Column("parameter"), Column("change", format="+.3g", percent=True)]
         tables.append(Table("Parameters that alone explain the factor", columns, lines))
     columns = [Column("model"), Column("mode"), Column("N for 1 %"), Column("N for 0.1 %")]
-    lines = [(one.label, *counts) for one, *counts in required]  # type: ignore[union-attr]
-    tables.append(Table("Required N", columns, lines, [UNEVEN] * is_uneven(beam)))
-    columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
-    tables.append(Table("Acceptance", columns, [(*check[:3], "yes" if check[3] else "no") for check in checks]))
-    summary = f"{STATUS[fits.status]}: {_title(best, beam)}, rms difference {best.rms:.2g}."
-    if fits.status in ("identified", "ambiguous") and fits.alternatives:
-        summary += f" Alternatives: {'; '.join(_title(one, beam) for one in fits.alternatives[:3])}."
-    read = "" if source.declared or source.unit == "Hz" else f" The values are read as {source.unit}."
-    if set(beam.supports) == {"clamped", "free"} and beam.uniform:
-        clamp = any(one.fault.kind == "clamp" for one in (best, *fits.alternatives))
-        lumped = candidate.mass == "joints" and candidate.wall in ("full", "rigid")
-        warnings = [*warnings, *[TIP_MASS] * clamp, *[TIP_LINK] * lumped]
-    wrong = fits.status == "identified" and candidate.wall in ("full", "rigid", "stiff")
-    about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit}
-    about |= {"passed": all(check[3] for check in checks), "status": fits.status}
-    about |= {"identified": fits.status == "identified", "best": _plain(best, beam)}
-    groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
-    about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
-    low = "low" if worst.error < 0.0 else "high"
-    own = Margin(name="error of the list", size=off, where=f"at mode {worst.mode}", fine=within, limit=within,
-                 failure=f"the list is {per_cent(off)} too {low} at mode {worst.mode}")  # fmt: skip
-    margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent)), own]
-    margins += [void(f"the list ({text})", text.rstrip(".")) for text in faults]
-    return Result(summary + read, tables, [_figure(beam, fits, rows)], warnings=[*warnings, *[WALL] * wrong], data=about,
-                  margins=margins)  # fmt: skip
+    lines = [(one.label, *counts) for one, *counts in required]
+    return [*tables, Table("Required N", columns, lines, [UNEVEN] * is_uneven(beam))]
 
 
 def _title(fit: Fit, beam: Beam) -> str:
@@ -151,28 +153,6 @@ def named_factors(beam: Beam) -> dict[str, float]:
     if beam.width and beam.thickness and beam.width != beam.thickness and beam.uniform:
         factors["width and thickness exchanged"] = beam.width / beam.thickness
     return factors
-
-
-def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
-    """Errors of the list, the best and the next candidate."""
-    best = fits.best
-    following = next((one for one in fits.ranking[1:] if one not in fits.equivalent), None)
-    rows = [row for row in rows if row.motion == BENDING]
-    n = max(row.mode for row in rows)
-
-    def draw(ax: "Axes") -> None:
-        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
-        ax.plot([row.mode for row in rows], [100.0 * row.error for row in rows], "o", label="list")
-        for fit, style in ((best, "-"), (following, "--")):
-            if fit is not None:
-                hertz = frequencies_hz(fit.candidate, beam, fit.count, n)
-                errors = 100.0 * (hertz / exact[: len(hertz)] - 1.0)
-                ax.plot(np.arange(1, len(hertz) + 1), errors, style, label=fit.candidate.label)
-        ax.set(xlabel="mode", ylabel="frequency error, %")
-        ax.legend()
-
-    caption = "Errors against the exact Euler-Bernoulli beam. Points: the list. Lines: the best and the next candidate."
-    return Figure("compare", "Frequencies and best candidates", caption, draw)
 
 
 def _modes(best: Fit, rows: list[Entry]) -> Table:

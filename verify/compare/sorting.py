@@ -78,13 +78,11 @@ def _theories(beam: Beam) -> tuple[str, ...]:
 
 def second_plane(beam: Beam) -> Beam:
     """The beam that bends across its width: width and thickness exchanged; other sections are alike in both planes."""
-
-    def turned(one):  # type: ignore[no-untyped-def]
-        return msgspec.structs.replace(one, width=one.thickness, thickness=one.width)
-
     if not (beam.width and beam.thickness):
         return beam
-    return turned(msgspec.structs.replace(beam, section=tuple(map(turned, beam.section))))  # type: ignore[no-any-return]
+    turned = msgspec.structs.replace
+    sections = tuple(turned(one, width=one.thickness, thickness=one.width) for one in beam.section)
+    return turned(beam, width=beam.thickness, thickness=beam.width, section=sections)
 
 
 def _motions(beam: Beam, hertz: Array) -> Motions | None:
@@ -104,7 +102,7 @@ def _motions(beam: Beam, hertz: Array) -> Motions | None:
     for motion, fixed in product(("torsion", "extension"), product(*choices)):
         for mode in range(len(hertz)):
             try:
-                value = rod_frequency_hz(beam, mode + 1, motion, fixed)
+                value = rod_frequency_hz(beam, mode + 1, motion, (fixed[0], fixed[1]))
             except InputError:  # stepped, with attachments, or without shape
                 break
             if value > top:
@@ -113,7 +111,8 @@ def _motions(beam: Beam, hertz: Array) -> Motions | None:
     if len(rows) < len(hertz):
         return None
     exact = np.array([row[2:] for row in rows])
-    low, high, logs = *np.log(np.sort(exact, axis=1)).T, np.log(hertz)[:, None]
+    low, high = np.log(exact.min(axis=1)), np.log(exact.max(axis=1))
+    logs = np.log(hertz)[:, None]
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
     at = linear_sum_assignment(off + 1e-3 * abs(logs - 0.5 * (low + high)) + 1e3 * (off > BAND))[1]
     missing = np.delete(np.array([row[0] in planes for row in rows]) & (high < np.log(hertz[-1]) - BAND), at)

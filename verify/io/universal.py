@@ -1,0 +1,53 @@
+"""Measured mode shapes from universal files (.uff, .unv), read by pyuff."""
+
+from pathlib import Path
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.errors import InputError, one_line
+
+
+def read_universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    """(points (n, 3), modes at them, frequencies as "hz") of sets 15 or 2411 and 55, else peaks of responses, sets 58.
+
+    At a peak of the sum of squared responses their imaginary part is the shape. Raises InputError.
+    """
+    try:
+        import pyuff
+    except ImportError:
+        raise InputError(f"{source} needs pyuff: pip install fem-segment-verify[measured]") from None
+    try:
+        sets = [pyuff.UFF(str(path)).read_sets(i) for i in range(pyuff.UFF(str(path)).get_n_sets())]
+    except Exception as error:  # its reader raises plain ones
+        raise InputError(
+            f"{source} cannot be read by pyuff ({one_line(str(error))[:200]}): write sets 15, 55"
+        ) from None
+    of = {kind: [one for one in sets if one["type"] == kind] for kind in (15, 2411, 55, 58)}
+    node = {
+        int(n): xyz for one in of[15] + of[2411] for n, *xyz in zip(*map(one.get, ("node_nums", *"xyz")), strict=True)
+    }
+    modes: list[tuple[float, dict[int, Array]]] = []
+    for one in of[55]:
+        vectors = np.array([one["r1"], one["r2"], one["r3"]]).T
+        vectors = (vectors * np.exp(-0.5j * np.angle((vectors**2 + 0j).sum()))).real
+        hertz = one["freq"] if "freq" in one else abs(one["eig"]) / (2.0 * np.pi)
+        modes.append((float(hertz), dict(zip(map(int, one["node_nums"]), vectors, strict=True))))
+    if not modes and of[58]:
+        from scipy.signal import find_peaks
+
+        moving = "rsp" if len({one["rsp_node"] for one in of[58]}) > 1 else "ref"  # or a roving hammer
+        power = np.log(sum(abs(one["data"]) ** 2 for one in of[58]))
+        for i in find_peaks(power, prominence=np.log(10.0))[0]:
+            a, b, c = power[i - 1 : i + 2]
+            hertz = float(of[58][0]["x"][i] + 0.5 * (a - c) / (a - 2.0 * b + c) * np.diff(of[58][0]["x"][i : i + 2])[0])
+            shape = {int(one[f"{moving}_node"]): np.zeros(3) for one in of[58]}
+            for one in of[58]:
+                axis = int(one[f"{moving}_dir"])
+                shape[int(one[f"{moving}_node"])][abs(axis) - 1] += np.sign(axis) * one["data"][i].imag
+            modes.append((hertz, shape))
+    shared = sorted(set(node).intersection(*(shape for _, shape in modes)))
+    if not modes or len(shared) < 3:
+        raise InputError(f"{source} has {len(modes)} modes at {len(shared)} points: write sets 15 and 55, or 15 and 58")
+    arrays = {f"mode_{i}": np.array([shape[n] for n in shared]) for i, (_, shape) in enumerate(modes, start=1)}
+    return np.array([node[n] for n in shared], dtype=float), arrays, {"hz": np.array([hertz for hertz, _ in modes])}
