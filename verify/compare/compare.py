@@ -121,7 +121,7 @@ def compare(
             for i, (name, mode, exact) in each
             if name != BENDING
         ]
-    return result_of(scene.name, listed, data, fits, rows, required, warnings, options.within)
+    return result_of(scene.name, listed, data, fits, rows, required, warnings, options.within, options.theory)
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:

@@ -6,7 +6,7 @@ import msgspec
 
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
-from verify.analysis.variants import is_uneven
+from verify.analysis.variants import is_uneven, not_default
 from verify.analysis.verdict import Margin, per_cent, void
 from verify.compare.candidates import EULER
 from verify.compare.fit import FAULTS, Data, Fit, Identification
@@ -20,7 +20,7 @@ SHOWN = 10
 STATUS = {
     "identified": "Identified",
     "ambiguous": "Ambiguous, several agree with the list; the likeliest",
-    "exact": "No discretisation detected; the list is that of the",
+    "exact": "No discretisation detected",
     "few": "Too few frequencies to identify a model; one that agrees",
     "unknown": "None of the known family; nearest",
 }
@@ -61,6 +61,7 @@ def result_of(
     required: list[tuple[Any, ...]],
     warnings: list[str],
     within: float,
+    theory: str,
 ) -> Result:
     """The result of a comparison with acceptance `data["passed"]`; `warnings` are faults of the list.
 
@@ -87,7 +88,8 @@ def result_of(
     failure = f"the list is {per_cent(off)} too {'low' if worst.error < 0.0 else 'high'} at mode {worst.mode}"
     own = Margin(name="error of the list", size=off, where=f"at mode {worst.mode}", fine=within, limit=within,
                  failure=failure)  # fmt: skip
-    margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent)), own]
+    settings = not_default({"theory": theory})
+    margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent), settings=settings), own]
     margins += [void(f"the list ({text})", text.rstrip(".")) for text in faults]
     checks: list[Any] = [("faults of the list", float(len(faults)), 0.0, "no" if faults else "yes")]
     checks.append(("largest error against the exact beam", off, within, "yes" if off <= within else "no"))
