@@ -5,12 +5,12 @@ References: frequency equations solved here, Timoshenko's closed form, dense ele
 
 from functools import cache
 from itertools import product
-from math import cosh, floor, log10, pi, sqrt, tanh
+from math import pi, sqrt
 
 import numpy as np
 import pytest
+from reference.closed_lists import BETAS, euler, pinned_timoshenko, space, written
 from reference.discrete_beams import rigid_links, varying_beam
-from scipy.optimize import brentq
 from shared_lists import compared, table
 
 from verify.problem.beam import Beam
@@ -21,29 +21,11 @@ CLAMPED = Beam(length=0.45, width=0.03, thickness=0.004, supports=("clamped", "f
 THICK = Beam(length=0.6, width=0.045, thickness=0.03, **STEEL)
 BAR = Beam(length=1.0, width=0.15, thickness=0.1, youngs_modulus=68e9, density=2700.0, supports=("clamped", "free"))
 EI, MASS = CLAMPED.bending_stiffness, CLAMPED.mass_per_length
-BETAS = [
-    brentq(lambda x: np.cos(x) + 1 / cosh(x), (i - 0.5) * pi - 0.4, (i - 0.5) * pi + 0.4, xtol=1e-15)
-    for i in range(1, 7)
-]
-
-
-def written(value, digits, how="rounded", i=0):
-    """A value with so many digits: rounded, cut, or with the last off by one."""
-    unit = 10.0 ** (floor(log10(value)) - digits + 1)
-    whole = floor(value / unit) if how == "cut" else round(value / unit) + (how == "off") * (-1) ** i
-    return float(f"{whole * unit:.{digits - 1}e}")
-
-
-def euler(beam, betas=BETAS):
-    return np.array(betas) ** 2 * beam.wave_constant / beam.length**2 / (2 * pi)
 
 
 @pytest.mark.parametrize(("nu", "kappa", "digits"), [*product((0.2, 0.3, 0.45), (5 / 6, pi**2 / 12, 0.9), (5, 7))])
 def test_shear_of_another_nu_or_kappa_is_no_discretisation(nu, kappa, digits):
-    k = np.arange(1, 9) * pi / THICK.length
-    a = (k * THICK.thickness) ** 2 / 12
-    s = a * 2 * (1 + nu) / kappa
-    hertz = k**2 * THICK.wave_constant / (2 * pi) * np.sqrt(2 / (1 + a + s + np.sqrt((1 + a + s) ** 2 - 4 * a * s)))
+    hertz = pinned_timoshenko(THICK, nu, kappa, 8)
     data = compared(THICK, hertz, digits=digits).data
     assert (data["status"], data["best"]["model"], data["identified"]) == ("exact", "analytic", False)
 
@@ -84,20 +66,6 @@ def test_cracked_and_tapered_beams_are_of_no_known_family(cause, size):
     assert (result.data["status"], result.data["identified"]) == ("unknown", False)
     assert result.data["best"]["fault"]["kind"] == "none"
     assert "None of the known family" in result.summary
-
-
-def space(beam, ends=0.5):
-    """(Hz, motions) of bending in both planes, torsion and extension of a rectangle, ascending."""
-    b, h, c = beam.width, beam.thickness, sqrt(beam.youngs_modulus / beam.density)
-    j = b * h**3 / 3 * (1 - 192 / pi**5 * h / b * sum(tanh(n * pi * b / 2 / h) / n**5 for n in (1, 3, 5, 7)))
-    twist = c * sqrt(12 * j / (b * h * (b * b + h * h)) / 2 / (1 + beam.poissons_ratio))
-    rows = [(f, "bending") for f in euler(beam)] + [(f * b / h, "bending, width") for f in euler(beam)]
-    rows += [
-        ((i - ends) * v / 2 / beam.length, name)
-        for i in (1, 2, 3)
-        for v, name in ((c, "extension"), (twist, "torsion"))
-    ]
-    return zip(*sorted(rows)[:9], strict=True)
 
 
 def test_motions_of_a_bar_in_space_are_sorted_in_rad_per_second():
