@@ -153,11 +153,6 @@ class TestFaults:
         assert best(result, "model") == (model,)
         assert any("mass rho A L / c" in warning for warning in result.warnings)
 
-    def test_another_count(self):
-        result = compared(CANTILEVER, exudyn()[0], count=31)
-        assert result.data["best"]["fault"]["kind"] == "count"
-        assert best(result, "count", "wall") == (30, "half")
-
     def test_rigid_motions_of_a_clamped_beam(self):
         result = compared(PROPPED, [0.0, 1e-4, *rigid_links(PROPPED, 37)[:8]], count=37)
         assert "starts with 2 rigid-body motions, the beam of the scene has 0" in result.warnings[0]

@@ -1,8 +1,6 @@
 """Mode shapes of a beam on a mesh of any format of meshio, or measured, averaged over the cross-sections."""
 
-import io
 import re
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +9,9 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.compare.reading import FrequencyList, ModeShapes, checked_shapes, listed
-from verify.errors import InputError, one_line
+from verify.errors import InputError
 from verify.files import exists
-from verify.io.universal import read_universal
+from verify.io.mode_files import UNIVERSAL, read_points
 
 UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}
 """Number of length units per metre."""
@@ -44,8 +42,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     source = f"file = {str(path)!r}"
     if not exists(path, "file"):
         raise InputError(f"{source} does not exist: give a mesh, for instance a .vtu")
-    measured = path.suffix.lower() in (".uff", ".unv")
-    points, arrays, field = read_universal(path, source) if measured else _series(path) or _mesh(path, source)
+    points, arrays, field = read_points(path, source)
     if len(points) < 3 or not np.isfinite(points).all():
         raise InputError(f"{source} has {len(points)} points, or infinite ones: give three or more finite points")
     real = {name: v.astype(float) for name, v in arrays.items() if v.dtype.kind == "f" and len(v) == len(points)}
@@ -64,7 +61,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
         raise InputError(f"{source} is {sizes[along]:.4g} long and {sizes[wide]:.4g} wide: give the mesh of a beam")
     unit = next((u for u, factor in UNITS.items() if abs(sizes[along] / (factor * length) - 1.0) < LENGTH), None)
     start, last = points[:, along].min(), 1.0
-    if unit is None and measured and start >= 0.0:  # sensors need not be at the ends
+    if unit is None and path.suffix.lower() in UNIVERSAL and start >= 0.0:  # sensors need not be at the ends
         start, last = 0.0, points[:, along].max() / length
         unit = next((u for u, factor in UNITS.items() if 0.5 < last / factor < 1.0 + LENGTH), None)
         last /= UNITS[unit or "m"]
@@ -92,38 +89,6 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     shapes = ModeShapes(x=places * (last * length / places[-1]), values=np.array(list(bent.values())))
     frequencies = _frequencies(field, len(vectors), [list(vectors).index(name) for name in bent], source)
     return MeshShapes(source, checked_shapes(shapes, length, source), tuple(bent), frequencies, tuple(notes))
-
-
-def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
-    """(points, arrays at them, field data) by meshio, which prints and exits on failure. Raises InputError."""
-    import meshio
-
-    output = io.StringIO()
-    try:
-        with redirect_stdout(output), redirect_stderr(output):
-            mesh = meshio.read(path)
-    except (Exception, SystemExit) as error:  # readers of many formats raise many types
-        why = one_line(str(error) or output.getvalue())[:200]
-        raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
-    arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
-    return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
-
-
-def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:
-    """`_mesh` of an xdmf series with one mode per step and frequencies in Hz as times; None for other files."""
-    import meshio
-
-    if path.suffix.lower() != ".xdmf":
-        return None
-    try:
-        with meshio.xdmf.TimeSeriesReader(path) as reader:
-            points, _ = reader.read_points_cells()
-            steps = [reader.read_data(i)[:2] for i in range(reader.num_steps)]
-    except Exception:  # not a series
-        return None
-    arrays = {f"step_{i}": np.asarray(next(iter(data.values()))) for i, (_, data) in enumerate(steps, start=1)}
-    times = np.array([float(time) for time, _ in steps])
-    return np.asarray(points, dtype=float), arrays, {"hz": times} if (np.diff(times, prepend=0.0) > 0.0).all() else {}
 
 
 def _frequencies(field: dict[str, Any], n: int, chosen: list[int], source: str) -> FrequencyList | None:

@@ -1,15 +1,28 @@
-"""Measured mode shapes from universal files (.uff, .unv), read by pyuff."""
+"""Points and vectors of mode shapes from meshes (any format of meshio) and universal files of measurements (pyuff)."""
 
+import io
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError, one_line
 
+UNIVERSAL = (".uff", ".unv")
+"""Suffixes of universal files."""
 
-def read_universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
-    """(points (n, 3), modes at them, frequencies as "hz") of sets 15 or 2411 and 55, else peaks of responses, sets 58.
+
+def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Any]]:
+    """(points (n, 3), arrays at them, field data with frequencies). Raises InputError."""
+    if path.suffix.lower() in UNIVERSAL:
+        return _universal(path, source)
+    return _series(path) or _mesh(path, source)
+
+
+def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    """`read_points` of sets 15 or 2411 and 55, else peaks of responses, sets 58.
 
     At a peak of the sum of squared responses their imaginary part is the shape. Raises InputError.
     """
@@ -51,3 +64,35 @@ def read_universal(path: Path, source: str) -> tuple[Array, dict[str, Array], di
         raise InputError(f"{source} has {len(modes)} modes at {len(shared)} points: write sets 15 and 55, or 15 and 58")
     arrays = {f"mode_{i}": np.array([shape[n] for n in shared]) for i, (_, shape) in enumerate(modes, start=1)}
     return np.array([node[n] for n in shared], dtype=float), arrays, {"hz": np.array([hertz for hertz, _ in modes])}
+
+
+def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    """`read_points` by meshio, which prints and exits on failure. Raises InputError."""
+    import meshio
+
+    output = io.StringIO()
+    try:
+        with redirect_stdout(output), redirect_stderr(output):
+            mesh = meshio.read(path)
+    except (Exception, SystemExit) as error:  # readers of many formats raise many types
+        why = one_line(str(error) or output.getvalue())[:200]
+        raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
+    arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
+    return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
+
+
+def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:
+    """`read_points` of an xdmf series with one mode per step and frequencies in Hz as times; None for other files."""
+    import meshio
+
+    if path.suffix.lower() != ".xdmf":
+        return None
+    try:
+        with meshio.xdmf.TimeSeriesReader(path) as reader:
+            points, _ = reader.read_points_cells()
+            steps = [reader.read_data(i)[:2] for i in range(reader.num_steps)]
+    except Exception:  # not a series
+        return None
+    arrays = {f"step_{i}": np.asarray(next(iter(data.values()))) for i, (_, data) in enumerate(steps, start=1)}
+    times = np.array([float(time) for time, _ in steps])
+    return np.asarray(points, dtype=float), arrays, {"hz": times} if (np.diff(times, prepend=0.0) > 0.0).all() else {}
