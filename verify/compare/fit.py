@@ -182,8 +182,10 @@ def identify(data: Data) -> Identification:
     equal = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
     most = data.fitted(best) + 1
     close = [one for one in near if one is not best and one not in equal and data.fitted(one) <= most]
-    # half a link welded to the wall and a common factor are EI/l at the wall of a beam of another length
-    close = [one for one in close if data.accepts(one) and (one.fault.kind, one.candidate.wall) != ("factor", "welded")]
+    if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
+        same = [one for one in close if one.fault.kind == "factor" and one.candidate.wall in ("welded", "rigid")]
+        close = [one for one in close if one not in same]
+    close = [one for one in close if data.accepts(one)]
     close.sort(key=data.score)
     if not data.accepts(best):
         status = "few" if data.agrees(best) else "unknown"
