@@ -23,14 +23,14 @@ BAR = Beam(length=1.0, width=0.15, thickness=0.1, youngs_modulus=68e9, density=2
 EI, MASS = CLAMPED.bending_stiffness, CLAMPED.mass_per_length
 
 
-@pytest.mark.parametrize(("nu", "kappa", "digits"), [*product((0.2, 0.3, 0.45), (5 / 6, pi**2 / 12, 0.9), (5, 7))])
+@pytest.mark.parametrize(("nu", "kappa", "digits"), [*product((0.2, 0.45), (pi**2 / 12, 0.9), (5, 7))])
 def test_shear_of_another_nu_or_kappa_is_no_discretisation(nu, kappa, digits):
     hertz = pinned_timoshenko(THICK, nu, kappa, 8)
     data = compared(THICK, hertz, digits=digits).data
     assert (data["status"], data["best"]["model"], data["identified"]) == ("exact", "analytic", False)
 
 
-@pytest.mark.parametrize(("digits", "how"), [(3, "cut"), *product((4, 5, 6), ("rounded", "cut", "off"))])
+@pytest.mark.parametrize(("digits", "how"), [(3, "cut"), *product((4, 6), ("rounded", "cut", "off"))])
 def test_digits_of_an_exact_list_are_no_discretisation_and_no_factor(digits, how):
     cells = [written(f, digits, how, i) for i, f in enumerate(euler(CLAMPED))]
     data = compared(CLAMPED, cells, digits=digits).data
@@ -118,7 +118,7 @@ def test_mass_that_the_list_has_not_is_named():
     assert result.data["best"]["fault"] == {"kind": "scene", "label": "beam.mass", "parameter": 1.0}
 
 
-@pytest.mark.parametrize(("factor", "wall", "count"), [*product((0.95, 1.02), ("half", "full"), (20,))])
+@pytest.mark.parametrize(("factor", "wall", "count"), [(0.95, "half", 20), (1.02, "full", 20)])
 def test_wrong_modulus_names_no_wrong_wall(factor, wall, count):
     hertz = factor * rigid_links(CLAMPED, 20, {"half": 2.0, "full": 1.0}[wall])[:6]
     data = compared(CLAMPED, hertz, digits=6, count=count).data
