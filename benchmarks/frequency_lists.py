@@ -1,19 +1,32 @@
 """Natural frequencies by Exudyn, MuJoCo and PyElastica, as the tests of `verify compare` hold them.
 
     python -m benchmarks.frequency_lists FOLDER
+    python -m benchmarks.frequency_lists sets [STEP]
 
-The steel cantilever and the paper's beam, recorded with Exudyn 1.13.6, MuJoCo 4.0.0 and PyElastica 1.0.0.
+The steel cantilever and the paper's beam, recorded with Exudyn 1.13.6, MuJoCo 4.0.0 and PyElastica 1.0.0. `sets` counts
+the statuses of larger sets of lists than the tests have, every STEP-th of them, and prints lists that are surely wrong.
 """
 
 import sys
+from collections import Counter
+from collections.abc import Iterator
+from itertools import islice, product
 from math import pi
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.linalg import eigh
 
+from tests.reference.closed_lists import pinned_timoshenko, written
+from tests.reference.discrete_beams import rigid_links, varying_beam
+from verify.compare.compare import Options, compare
+from verify.compare.reading import listed
 from verify.engines import ENGINES, chain_of
+from verify.exact.closed_forms import frequency_hz
 from verify.problem.beam import Beam
+
+PAIRS = (("clamped", "free"), ("clamped", "clamped"), ("clamped", "pinned"), ("pinned", "pinned"))
 
 CANTILEVER = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850.0)
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -82,6 +95,49 @@ def elastica_pinned(n: int, n_modes: int, poissons_ratio: float) -> np.ndarray:
     return np.sqrt(eigh(matrix, np.diag(mass), eigvals_only=True)[:n_modes]) / (2.0 * pi)
 
 
+def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str]]]:
+    """(set, beam, Hz, digits, N, walls that may be identified) of lists whose origin is known."""
+    ends = "clamped", "free"
+    thin = Beam(length=0.45, width=0.03, thickness=0.004, youngs_modulus=206e9, density=7850.0, supports=ends)
+    ei, mass, length = thin.bending_stiffness, thin.mass_per_length, thin.length
+    for h, nu, kappa, digits in product((0.01, 0.03, 0.06), (0.2, 0.25, 0.3, 0.35, 0.45), (5 / 6, pi**2 / 12), (5, 7)):
+        thick = Beam(length=0.6, width=1.5 * h, thickness=h, youngs_modulus=206e9, density=7850.0)
+        yield "shear of other nu and kappa", thick, pinned_timoshenko(thick, nu, kappa, 8).tolist(), digits, None, set()
+    for pair, n, digits, how in product(PAIRS, (4, 6, 8, 10), (3, 4, 5, 6), ("rounded", "cut", "off")):
+        beam = Beam(length=0.45, width=0.03, thickness=0.004, youngs_modulus=206e9, density=7850.0, supports=pair)
+        hertz = [frequency_hz(beam, mode) for mode in range(1, n + 1)]
+        cells = [written(f, digits, how, i) for i, f in enumerate(hertz)]
+        yield "digits of exact lists", beam, cells, digits, None, set()
+    for at, softness, n, digits in product((1, 2, 6, 12, 36), (0.003, 0.03, 0.3), (5, 8, 20), (6, 15)):
+        hertz = varying_beam(length, lambda x: ei, lambda x: mass, *ends, (at, ei / (softness * length)))
+        yield "cracks", thin, hertz[:n].tolist(), digits, None, set()
+    for taper, n, digits in product((0.01, -0.05, 0.2, 0.5), (5, 8, 20), (6, 15)):
+        slope = taper / length
+        hertz = varying_beam(
+            length, lambda x, s=slope: ei * (1 - s * x) ** 3, lambda x, s=slope: mass * (1 - s * x), *ends
+        )
+        yield "tapers", thin, hertz[:n].tolist(), digits, None, set()
+    for factor, (name, wall), digits, n, count in product(
+        (0.9, 0.95, 0.976, 1.02, 1.05), (("half", 2.0), ("full", 1.0)), (4, 5, 6), (5, 8), (20, None)
+    ):
+        hertz = factor * rigid_links(thin, 20, wall)[:n]
+        yield "wrong modulus", thin, hertz.tolist(), digits, count, {name}
+
+
+def judge(step: int) -> None:
+    """Print the statuses by set, and the lists that are identified as what they are not."""
+    tally: Counter[tuple[str, str, str]] = Counter()
+    for name, beam, hertz, digits, count, walls in islice(sets(), 0, None, step):
+        cells = [f"{value:.{digits - 1}e}" for value in hertz]
+        source = listed("list", [float(cell) for cell in cells], cells)
+        result = compare(SimpleNamespace(name="beam", beam=beam), source, None, Options(count=count))
+        tally[name, result.data["status"], result.data["best"]["fault"]["kind"]] += 1
+        if result.data["identified"] and result.data["best"]["wall"] not in walls:
+            print("wrong:", name, cells, result.summary)
+    for key, number in sorted(tally.items()):
+        print(*key, number, sep=", ")
+
+
 def main(folder: Path) -> None:
     """Write the lists and the shapes."""
     frequencies, x, shapes = exudyn_cantilever(30, 8)
@@ -98,4 +154,7 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    if sys.argv[1] == "sets":
+        judge(int(sys.argv[2]) if len(sys.argv) > 2 else 1)
+    else:
+        main(Path(sys.argv[1]))

@@ -5,6 +5,7 @@ import json
 import meshio
 import numpy as np
 import pytest
+from reference.universal_files import write_universal
 from shared_lists import CANTILEVER, DATA, exudyn, table
 
 from verify.cli import status_of
@@ -13,6 +14,7 @@ from verify.compare.reading import read_frequencies, read_shapes, solve_model
 from verify.compare.shapes import compare_shapes
 from verify.errors import InputError
 
+SOLVER = "1 {0} 3341.453 57.80530 9.2 {1}\n2 {0} 53754.19 231.8495 36.9 {1}\n3 {0} 270657.7 520.2477 82.8 {1}\n"
 LAYOUTS = {
     "decimal commas": ("9,2\n36,9\n82,8\n", "Hz", None),
     "semicolons": ("mode;f/Hz\n1;9,2\n2;36,9\n5;82,8\n", "Hz", (1, 2, 5)),
@@ -20,6 +22,17 @@ LAYOUTS = {
     "numpy header": ("# mode frequency_hz\n0 9.2\n1 36.9\n2 82.8\n", "Hz", (1, 2, 3)),
     "named column": ("mode,damping,freq_hz\n1,0.01,9.2\n2,0.02,36.9\n3,0.01,82.8\n", "Hz", (1, 2, 3)),
     "Fortran": ("f [kHz]\n9.2D-3\n3.69D-2\n8.28D-2\n", "kHz", None),
+    "Python list": ("[np.float64(9.2), 36.9, 82.8]", "Hz", None),
+    "one row": ("9.2, 36.9, 82.8\n", "Hz", None),
+    "names and units": ("f1 = 9.2Hz\nf2 = 36.9Hz\nf3 = 82.8Hz\n", "Hz", None),
+    "eigenvalues": ("mode;eigenvalue\n1;3341.453\n2;53754.19\n3;270657.7\n", "rad2/s2", (1, 2, 3)),
+    "periods": ("n period\n1 0.108695652\n2 0.0271002710\n3 0.0120772947\n", "s", (1, 2, 3)),
+    "CalculiX": (
+        " MODE NO    EIGENVALUE   FREQUENCY\n" + SOLVER.format("", "0.0") + "\n 1 0.1 0.2 0.3 0.4\n",
+        "Hz",
+        None,
+    ),
+    "Nastran": ("R E A L   E I G E N V A L U E S\n" + SOLVER.format("1", "1.0 3341.453"), "Hz", None),
 }
 
 
@@ -36,6 +49,7 @@ def test_layout_is_read(tmp_path, name):
     ("text", "message"),
     [
         ("", "0 rows of numbers"),
+        ("9.2\n36.9 a b\n82.8\n", "row 2 has other columns"),
         ("9.2\nabc\n", "row 2: 'abc' is not a number"),
         ("9.2 1.5\n36.9 2.5\n", "2 columns that may be frequencies"),
         ("mode;hz\n2;9.2\n1;36.9\n", "do not count upwards"),
@@ -124,6 +138,17 @@ class TestMesh:
             for f, shape in zip(hertz, shapes, strict=True):
                 writer.write_data(f, point_data={"u": np.stack([0.0 * shape, shape], axis=1)})
         assert read_mesh(tmp_path / "modes.xdmf", 0.3).frequencies.hertz == pytest.approx(hertz)
+
+    @pytest.mark.parametrize("kind", [55, 58])
+    def test_measured_modes_at_sensors(self, tmp_path, kind):
+        pytest.importorskip("pyuff")
+        hertz, x, shapes = exudyn()
+        write_universal(tmp_path / "modes.uff", kind, hertz[:3], x[2:-1:2], shapes[:3, 2:-1:2])
+        mesh = read_mesh(tmp_path / "modes.uff", 0.3)
+        assert mesh.frequencies.hertz == pytest.approx(hertz[:3], rel=3e-3)
+        result = compare_shapes(self.scene, mesh)
+        assert [row["mode"] for row in table(result, "Shapes")] == [1, 2, 3]
+        assert result.data["passed"]
 
     def test_bad_meshes_are_one_sentence(self, tmp_path):
         (tmp_path / "text.vtu").write_text("no mesh")

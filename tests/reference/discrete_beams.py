@@ -66,3 +66,26 @@ def printed_chain(beam, n):
     k /= e[:-1] * i[1:] * chain.lengths[1:] + e[1:] * i[:-1] * chain.lengths[:-1]
     chain.compliance[1:] = 1 / k
     return hertz((chain.bend.T / chain.compliance) @ chain.bend, chain.mass, chain.free)
+
+
+def varying_beam(length, stiffness, mass, left, right, crack=None, n=120):
+    """Hermite elements with EI(x) and rho A(x) of their middles between clamped, pinned or free ends.
+
+    `crack`: node and rotational spring, N m.
+    """
+    size, part = 2 * n + 3, length / n
+    k = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]) / part**3
+    m = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) * part / 420
+    scale = np.array([1.0, part, 1.0, part])
+    k, m = (matrix * np.outer(scale, scale) for matrix in (k, m))
+    stiff, heavy, fixed = np.zeros((size, size)), np.zeros((size, size)), set()
+    for i in range(n):
+        at = [2 * i, size - 1 if crack and i == crack[0] else 2 * i + 1, 2 * i + 2, 2 * i + 3]
+        stiff[np.ix_(at, at)] += stiffness((i + 0.5) * part) * k
+        heavy[np.ix_(at, at)] += mass((i + 0.5) * part) * m
+    if crack:
+        both = [2 * crack[0] + 1, size - 1]
+        stiff[np.ix_(both, both)] += crack[1] * np.array([[1, -1], [-1, 1]])
+    for node, support in ((0, left), (n, right)):
+        fixed |= {"free": set(), "pinned": {2 * node}, "clamped": {2 * node, 2 * node + 1}}[support]
+    return hertz(stiff, heavy, [i for i in range(size) if i not in fixed and (crack or i < size - 1)])

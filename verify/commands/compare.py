@@ -7,7 +7,9 @@ import click
 from verify.commands import shared
 from verify.options import THEORIES
 
-TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
+UNITS = ("Hz", "kHz", "mHz", "rad/s", "1/min", "Hz/(2 pi)", "rad2/s2", "s", "ms")
+"""As in `compare.reading.UNITS`: rad2/s2 are squares of omega, s and ms periods."""
+TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
 
 
@@ -20,14 +22,13 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 )
 @click.option("--modes", "shapes", metavar="FILE", help="Mode shapes: x in the first column, then one column a mode.")
 @click.option("--model", metavar="MODULE:FUNCTION", help="A Python model (beam, n_modes, count) -> frequencies in Hz.")
-@click.option("--unit", type=click.Choice(["Hz", "kHz", "rad/s"]), help="Of the list. Default: its header's, else Hz.")
+@click.option("--unit", type=click.Choice(UNITS), help="Of the list. Default: its header's, else Hz.")
 @click.option("--kind", type=click.Choice(["segments", "elements"]), help="Candidates of one kind only.")
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
-@click.option("--within", metavar="E", help="Acceptance: largest error against the exact beam, for instance 1%.")
+@click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
     "--theory", type=click.Choice(THEORIES), default=THEORIES[0], show_default=True, help="Of the exact beam."
 )
-@shared.charts_option
 @shared.format_options
 def compare(
     scene: str,
@@ -39,21 +40,20 @@ def compare(
     unit: str | None,
     kind: str | None,
     mode: int | None,
-    within: str | None,
+    within: str,
     theory: str,
-    charts: str | None,
     **formats: bool,
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
 
-    FILE is a list of frequencies (.csv, .txt, .tsv, .dat, or - for standard input) or a mesh with mode shapes. Exit
-    status 1 where the list has a fault, no candidate agrees, or an error exceeds --within.
+    FILE is a list of frequencies or a solver's output (.csv, .txt, .tsv, .dat, .f06, or - for standard input), measured
+    modes (.uff, .unv), or a mesh with mode shapes. Exit status 1 where the list has a fault or an error is too large.
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
     from verify.compare.compare import Options
     from verify.compare.compare import compare as compare_list
-    from verify.compare.reading import listed, read_frequencies, read_shapes, solve_model
+    from verify.compare.reading import read_frequencies, read_shapes, read_words, solve_model
     from verify.convert import typed
     from verify.errors import InputError
     from verify.scene.load import load_scene
@@ -61,17 +61,16 @@ def compare(
 
     if bool(given) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
-    limit = None if within is None else typed(within, Relative, "within")
-    if limit is not None and not (isinstance(limit, float | int) and limit > 0.0):
+    limit = typed(within, Relative, "within")
+    if not (isinstance(limit, float | int) and limit > 0.0):
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
     loaded = load_scene(scene, overrides)
     options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory)
-    numbers = [_number(word) for word in given]
+    typed_list = None if Path(given[0] if given else "").exists() else read_words(given, unit)
     if model is not None:
         result = compare_list(loaded, solve_model(model, loaded.beam, count, mode), None, options)
-    elif all(number is not None for number in numbers):
-        frequencies = listed("frequencies", [n for n in numbers if n is not None], given, unit=unit or "Hz")
-        result = compare_list(loaded, frequencies, None, options)
+    elif typed_list is not None:
+        result = compare_list(loaded, typed_list, None, options)
     elif len(given) > 1:
         raise InputError(f"frequencies = {' '.join(given)}: give one file, or numbers alone")
     elif Path(given[0]).suffix.lower() in TEXT:
@@ -84,13 +83,7 @@ def compare(
 
         result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
     shared.show(result, **formats)
-    shared.save_charts(result, charts)
+    for text in result.verdict.others if result.verdict and not any(formats.values()) else ():
+        click.echo(f"also: {text}")
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)
-
-
-def _number(word: str) -> float | None:
-    try:
-        return float(word)
-    except ValueError:
-        return None

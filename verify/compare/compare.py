@@ -9,34 +9,35 @@ import numpy as np
 from verify.analysis.comparison import LEAST_MAC, LOW_MAC, mac, node_weights, pair_modes
 from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
-from verify.compare.fit import TOLERANCE, Data, identify, spectrum
+from verify.compare.fit import Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
+from verify.compare.sorting import BENDING, rigid_of, sort_list
 from verify.errors import InputError
 from verify.options import Support
 from verify.problem.beam import Beam
 from verify.report.result import Result
 from verify.validation import check_integer
 
-RIGID = 3e-3
-"""Fraction of the next frequency below which leading ones are rigid-body motions, unless the beam has such a gap."""
 SPARE = 4
 """Number of modes above those of a list for the pairing of shapes."""
 ERRORS = (1e-2, 1e-3)
-"""Errors for which the required N is computed."""
+"""Errors for which the required N is computed; the first is the default of the accuracy."""
+SIMILAR = 0.02
+"""Difference of the lower modes from those of other supports that are named."""
 
 
 class Options(msgspec.Struct, frozen=True, kw_only=True):
     """Options of a comparison; None: any, for `mode` the last of the list.
 
-    `count`: N of the model. `kind`: 'segments' or 'elements'. `mode`: mode for the required N. `within`: tolerance of
-    the relative error against the exact beam. `theory`: theory of the exact beam.
+    `count`: N of the model. `kind`: 'segments' or 'elements'. `mode`: mode for the required N. `within`: accuracy,
+    the largest relative error against the exact beam. `theory`: theory of the exact beam.
     """
 
     count: int | None = None
     kind: str | None = None
     mode: int | None = None
-    within: float | None = None
+    within: float = ERRORS[0]
     theory: str = EULER
 
 
@@ -47,38 +48,41 @@ def compare(
 
     `shapes`, one per frequency, identify the modes. `data["passed"]` of the result is the acceptance.
     """
-    beam, options, hertz = scene.beam, options or Options(), listed.hertz
+    beam, options, motions, read = scene.beam, options or Options(), None, listed
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
             check_integer(field, getattr(options, field), 1)
-    if shapes is not None and len(shapes.values) != len(hertz):
-        raise InputError(f"modes = {len(shapes.values)} shapes for {len(hertz)} frequencies: give one for each")
-    if shapes is None and (np.diff(hertz) < 0.0).any():
-        raise InputError(f"{listed.source}: frequencies do not ascend: sort them, or give the shapes of the modes")
-    n = max(len(hertz), *(listed.numbers or (0,))) + SPARE
-    exact_hz, rigid = frequencies_hz(Candidate(model=EXACT, theory=options.theory), beam, None, n), 0
-    for k in range(min(len(hertz), 7) - 1, 0, -1):
-        gap = min(4.0 * exact_hz[k - 1] / exact_hz[k], 1.0)
-        if hertz[:k].max() == 0.0 or hertz[:k].max() < RIGID * gap * hertz[k]:
-            rigid = k
-            break
+    if shapes is not None and len(shapes.values) != len(listed.values):
+        raise InputError(f"modes = {len(shapes.values)} shapes for {len(listed.values)} frequencies: give one for each")
+    if shapes is None:
+        listed, motions = sort_list(beam, listed)
+        if (np.diff(listed.hertz) < 0.0).any():
+            raise InputError(f"{listed.source}: frequencies do not ascend: sort them, or give the shapes of the modes")
+    hertz = listed.hertz
+    rigid, n = rigid_of(beam, hertz), max(len(hertz), *(listed.numbers or (0,))) + SPARE
     if not hertz[rigid:].all():
         raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
+    exact_hz = frequencies_hz(Candidate(model=EXACT, theory=options.theory), beam, None, n)
     entries = modes = np.arange(len(hertz) - rigid)
-    likeness, ordered = None, shapes is None
+    likeness, ordered = None, shapes is None and motions is None
     if shapes is not None:
         paired, macs = pair_shapes(beam, shapes.x, shapes.values[rigid:])
         entries = np.flatnonzero(macs >= LEAST_MAC)
         modes, likeness = paired[entries], macs[entries]
+    elif motions is not None:
+        entries = motions.entries(BENDING)
+        modes = motions.modes[entries]
     elif listed.numbers is not None:
         modes = np.array(listed.numbers)[rigid:] - 1 - (rigid if listed.numbers[0] == 1 else 0)
         ordered = bool((modes == entries).all())
+    order = np.arange(len(entries)) if motions is not None else entries  # motions: the list of one plane alone
+    chosen = rigid + (entries if motions is not None else np.arange(len(hertz) - rigid))
     data = Data(
         beam=beam,
-        logs=np.log(hertz[rigid:]),
-        rounding=listed.rounding[rigid:],
+        logs=np.log(hertz[chosen]),
+        rounding=listed.rounding[chosen],
         members=candidates(beam, options.kind),
-        entries=entries,
+        entries=order,
         modes=modes,
         ordered=ordered,
         count=options.count,
@@ -91,24 +95,33 @@ def compare(
     ]
     disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
     unlike = 0 if likeness is None else len(hertz) - rigid - int((likeness >= LOW_MAC).sum())
-    supports = _other_supports(beam, data.logs[entries], modes) if fits.status == "unknown" else ()
+    supports = _other_supports(beam, data.logs[order], modes) if fits.status == "unknown" else ()
+    own = beam.rigid_motions  # in space and along the axis there are more
     messages = {
-        f"The list starts with {rigid} rigid-body motions, the beam of the scene has {beam.rigid_motions}.": rigid
-        and rigid != beam.rigid_motions,
+        f"The list starts with {rigid} rigid-body motions, the beam of the scene has {own}.": rigid
+        and rigid not in ((own, own + 1, 2 * own, 2 * own + 1, 2 * own + 2) if own else (0,)),
+        f"The values are in {listed.unit}, not in {read.unit}.": listed.unit != read.unit and read.declared,
         "Frequencies are not in the order of the modes: see the column entry.": disorder,
         f"{unlike} of the shapes have a MAC below {LOW_MAC} with all modes of the beam: check beam.supports.": unlike,
         f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
     }
     warnings = [text for text, holds in messages.items() if holds]
     mode = options.mode or max(row.mode for row in rows)
-    sized: list[Candidate] = []
-    if fits.status != "unknown" and (best := fits.best.candidate).sized:  # and the most accurate of its kind
-        wall, joints = "gregory" if "clamped" in beam.supports else None, "tensioned" if beam.tension else "series"
-        chain = Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=best.theory)
-        accurate = Candidate(model=ELEMENTS, mass="consistent", theory=best.theory)
-        sized = list(dict.fromkeys([best, chain if best.model == CHAIN else accurate]))
-    required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in sized]
-    return result_of(scene.name, listed, data, fits, rows, required, warnings, options.within)
+    rules = ("gregory", "half", "full") if "clamped" in beam.supports else (None,)
+    joints = "tensioned" if beam.tension else "series"
+    sized = [fits.best.candidate] if fits.status != "unknown" and fits.best.candidate.sized else []
+    sized += [Candidate(model=CHAIN, mass="links", wall=rule, joints=joints, theory=options.theory) for rule in rules]
+    sized.append(Candidate(model=ELEMENTS, mass="consistent", theory=options.theory))
+    required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in dict.fromkeys(sized)]
+    if motions is not None:  # the other motions of a model in space
+        thick = options.theory == "timoshenko"
+        each = enumerate(zip(motions.names, motions.modes.tolist(), motions.exact[:, int(thick)].tolist(), strict=True))
+        rows += [
+            Entry(i + rigid + 1, mode + 1, float(hertz[i + rigid]), exact, None, name)
+            for i, (name, mode, exact) in each
+            if name != BENDING
+        ]
+    return result_of(scene.name, listed, data, fits, rows, required, warnings, options.within, options.theory)
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
@@ -141,7 +154,7 @@ def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
             exact = np.log(frequencies_hz(Candidate(model=EXACT), other, None, int(modes[low].max(initial=0)) + 1))
         except InputError:  # for example a beam that has buckled
             continue
-        if low.sum() > 1 and abs(logs[low] - exact[modes[low]]).max() < 20.0 * TOLERANCE:
+        if low.sum() > 1 and abs(logs[low] - exact[modes[low]]).max() < SIMILAR:
             return () if supports == beam.supports else supports
     return ()
 

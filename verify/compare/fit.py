@@ -6,26 +6,32 @@ from math import hypot, log, pi
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.analysis.variants import is_uneven
 from verify.arrays import Array, Indices
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
-from verify.compare.clamp import clamp_effect, fit_clamp
+from verify.compare.effects import effect_of, fit_parameter
 from verify.errors import InputError
+from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam
 
-FLOOR, TOLERANCE, AMBIGUOUS = 1e-9, 1e-3, 2.0
-"""Relative error of solvers; tolerance of agreement; factor of the rms within which candidates are alternatives."""
+FLOOR, AGREED, AMBIGUOUS = 1e-9, 3e-6, 2.0
+"""Relative error of solvers; difference beyond the digits up to which a candidate agrees with a list; factor of the rms
+within which candidates are alternatives."""
+PROMISING = 5e-3
+"""Largest rms by interpolated N and effects of a fit that is solved."""
 EFFECT = 0.02
 """Largest rms over the effect of an accepted fault."""
 SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
 """Largest N if it is unknown; largest N of the interpolated spectra."""
 FEWEST, REFINED = 3, 5
 """Least number of entries for a fault; number of candidates solved around their interpolated N."""
-UNITS = {"rad/s": 2 * pi, "mHz": 1e3, "1/min": 60.0, "divided by 2 pi": 0.5 / pi, "kHz": 1e-3, "1/60 Hz": 1 / 60}
 FAULTS = {
     "none": ("none", 0.0, 0),
-    "unit": ("wrong unit, factor", 5.0, 0),
+    "shear": ("another kappa G, factor", 4.0, 1),
+    "constants": ("constants by hand, beta L to", 4.0, 1),
+    "scene": ("part of the scene left out", 5.0, 0),
     "count": ("another size", 5.0, 1),
     "missing": ("missing mode", 6.0, 1),
     "extra": ("extra entry", 6.0, 2),
@@ -33,28 +39,37 @@ FAULTS = {
     "clamp": ("compliant clamp, k_r L/EI", 9.0, 1),
 }
 """Title, cost in log likelihood, number of fitted parameters; an extra entry also removes one value."""
+EXACTS = ("none", "shear", "constants")
+"""Faults with which the exact beam is no discretisation."""
 
 
 class Fault(msgspec.Struct, frozen=True, eq=False):
     """A possible fault of a list, or none; `kind` is a key of FAULTS.
 
-    `entries` of the list, (k,) from 0, are `modes`, (k,) from 0. `label`: unit, mode, entry or ends. `factor` of all
-    frequencies, None if fitted. `ends`: compliant clamps.
+    `entries` of the list, (k,) from 0, are `modes`, (k,) from 0. `label`: mode, entry, ends or part. `ends`: compliant
+    clamps. `decimals` of constants. `beam`: another than that of the scene.
     """
 
     kind: str
     entries: Indices
     modes: Indices
     label: str = ""
-    factor: float | None = 1.0
     ends: tuple[str, ...] = ()
+    decimals: int = 0
+    beam: Beam | None = None
+
+    def applies(self, candidate: Candidate) -> bool:
+        """Whether it is tested with a candidate."""
+        if theory := {"shear": "timoshenko", "constants": EULER}.get(self.kind):
+            return not candidate.sized and candidate.theory == theory
+        return candidate.springs or not self.ends
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A candidate and a fault fitted to a list.
+    """A candidate and a fault fitted to a list; `digits`: relative last digit of its entries.
 
-    `parameter`: the factor, or the clamp's k_r L/EI. `differences` (k,): relative differences of the corrected list
-    from the candidate. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
+    `parameter`: the factor of frequencies or kappa G, or the clamp's k_r L/EI. `differences` (k,): relative ones of the
+    corrected list. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
     the rounding of the list.
     """
 
@@ -66,6 +81,7 @@ class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     effect: float
     rms: float
     largest: float
+    digits: float
 
 
 class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -103,18 +119,25 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return len(self.logs) * log(hypot(fit.rms, self.floor)) + FAULTS[fit.fault.kind][1]
 
     def accepts(self, fit: Fit) -> bool:
-        """Whether a fit is evidence: small differences, more entries than parameters, and an effective fault."""
+        """Whether a fit is evidence: it agrees, with more entries than parameters, and its fault has an effect.
+
+        A factor with an interval that contains 1 has no effect.
+        """
         sharp = self.floor <= 1e-8 and fit.rms <= FLOOR
         enough = len(fit.differences) - self.fitted(fit) >= (1 if sharp else 2)
-        explains = fit.fault.kind not in ("factor", "clamp") or fit.rms <= EFFECT * fit.effect
-        return fit.largest <= TOLERANCE and enough and explains
+        explains = fit.rms <= EFFECT * fit.effect and fit.effect > 2.0 * self.rounding[fit.fault.entries].max()
+        return self.agrees(fit) and enough and (explains or fit.fault.kind not in ("factor", "clamp"))
+
+    def agrees(self, fit: Fit) -> bool:
+        """Whether all differences are within the digits; the last digit may be off by one."""
+        return fit.largest <= AGREED + 0.5 * self.floor
 
     def near(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit is within the factor of ambiguity of the best."""
         return hypot(fit.rms, self.floor) <= AMBIGUOUS * hypot(best.rms, self.floor)
 
 
-class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class Identification(msgspec.Struct, frozen=True, eq=False):
     """Result of an identification; `status`: identified, ambiguous, exact (no discretisation), few or unknown.
 
     `ranking`: candidates with the likeliest fault, best first. `equivalent` fits have the frequencies of the best,
@@ -136,48 +159,62 @@ class Identification(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def identify(data: Data) -> Identification:
     """Rank all candidates with the likeliest fault of the list. Raises InputError if none has enough modes."""
-    tested = {"none": _best(data, [Fault("none", data.entries, data.modes)])}
-    if tested["none"][0].rms > data.floor:
-        faults = list(_faults(data))
+    none = Fault("none", data.entries, data.modes)
+    tested = {"none": _best(data, [none])}
+    plain = tested["none"][0]
+    if plain.candidate.sized or not data.accepts(plain):
+        rivalling = ("factor", *EXACTS) if data.accepts(plain) else FAULTS
+        faults = [one for one in _faults(data) if one.kind in rivalling]
         tested |= {kind: _best(data, [one for one in faults if one.kind == kind]) for kind in {f.kind for f in faults}}
-    plain, firsts = tested["none"][0], [fits[0] for fits in tested.values() if fits]
+    firsts = [fits[0] for fits in tested.values() if fits]
     accepted = [one for one in firsts if data.accepts(one) and data.score(one) <= data.score(plain)]
-    likeliest = min(accepted or [plain], key=data.score)
-    best, *ranking = _best(data, [likeliest.fault], every=True)
-    if data.count is not None and not any(one.candidate.sized for one in (best, *ranking)):
+    best = min(accepted or [plain], key=data.score)
+    ranking = _best(data, [best.fault], every=True)
+    if data.count is not None and not any(one.candidate.sized for one in ranking):
         raise InputError(f"count = {data.count}: no model has {data.n_modes - 1} modes, raise count")
-    equal = [one for one in ranking if _same(one, best)]
-    close = [one for one in ranking if one not in equal and data.near(one, best)]
-    rivals = []
-    for kind in tested.keys() - {best.fault.kind}:
-        fits = (one for one in tested[kind] if data.near(one, best) and data.fitted(one) <= data.fitted(best))
-        rivals += [one for one in fits if data.accepts(one)][:1]
+    best = ranking[0]
+    every = [*ranking, *(one for kind, fits in tested.items() if kind != best.fault.kind for one in fits)]
+    near = [one for one in every if data.near(one, best) and data.agrees(one)]
+    exact = [one for one in near if not one.candidate.sized and one.fault.kind in EXACTS]
+    if exact:
+        best = min(exact, key=lambda one: (data.fitted(one), data.score(one)))
+        ranking = [best, *(one for one in ranking if one is not best)]
+    equal = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
+    most = data.fitted(best) + 1
+    close = [one for one in near if one is not best and one not in equal and data.fitted(one) <= most]
+    if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
+        same = [one for one in close if one.fault.kind == "factor" and one.candidate.wall in ("welded", "rigid")]
+        close = [one for one in close if one not in same]
+    close = [one for one in close if data.accepts(one)]
+    close.sort(key=data.score)
     if not data.accepts(best):
-        status = "unknown" if best.largest > TOLERANCE else "few"
-    elif best.candidate.sized and not rivals and any(not one.candidate.sized for one in close):
+        status = "few" if data.agrees(best) else "unknown"
+    elif exact:
         status = "exact"
     else:
-        status = "ambiguous" if close or rivals else "identified"
-    return Identification(
-        status=status,
-        ranking=(best, *ranking),
-        equivalent=tuple(equal),
-        alternatives=(*close, *rivals),
-        tested=tuple(sorted(firsts, key=data.score)),
-    )
+        status = "ambiguous" if close else "identified"
+    tested_first = tuple(sorted(firsts, key=data.score))
+    return Identification(status, tuple(ranking), tuple(equal), tuple(close), tested_first)
 
 
 def _faults(data: Data) -> Iterator[Fault]:
     """All faults that are tested."""
-    entries, modes, n = data.entries, data.modes, len(data.logs)
-    yield from (Fault("unit", entries, modes, label, factor) for label, factor in UNITS.items())
+    entries, modes, n, beam = data.entries, data.modes, len(data.logs), data.beam
     if data.count is not None:
         yield Fault("count", entries, modes)
+    for name in beam.features:
+        if name != "section":
+            without = replace(beam, **{name: () if name in ("mass", "spring") else 0.0})
+            yield Fault("scene", entries, modes, f"beam.{name}", beam=without)
     if len(entries) < FEWEST:
         return
-    yield Fault("factor", entries, modes, factor=None)
-    clamped = tuple(n for n, held in zip(("left", "right"), data.beam.supports, strict=True) if held == "clamped")
-    symmetric = data.beam.mirrored() == data.beam  # there the left end alone equals the right one
+    if beam.own.shear_stiffness and beam.own.rotary_inertia:
+        yield Fault("shear", entries, modes)
+    for decimals in (2, 3, 4) if beam.uniform else ():
+        yield Fault("constants", entries, modes, f"{decimals} decimals", decimals=decimals)
+    yield Fault("factor", entries, modes)
+    clamped = tuple(n for n, held in zip(("left", "right"), beam.supports, strict=True) if held == "clamped")
+    symmetric = beam.mirrored() == beam  # there the left end alone equals the right one
     for ends in dict.fromkeys([*((one,) for one in clamped[: 1 if symmetric else None]), clamped] if clamped else []):
         yield Fault("clamp", entries, modes, " and ".join(ends), ends=ends)
     for i in range(n if data.ordered else 0):
@@ -195,10 +232,12 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
 
     scanned = rank(_scanned(data, one, fault) for one in data.members for fault in faults)
     near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
-    if faults[0].ends:  # the scan uses the effect on the exact beam, which differs from that on the candidate
-        near += [one for one in scanned if one not in near and one.candidate.theory == EULER]
+    if faults and faults[0].ends:  # the scan uses the effect on the exact beam, which differs from the candidate's
+        near += [one for one in scanned if one not in near and one.candidate.theory == EULER][:REFINED]
+    parts = {"factor": 0.03, "clamp": 0.1}.get(faults[0].kind if faults else "", np.inf)
+    near = [one for one in near if one.rms < min(PROMISING, parts * one.effect) or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
-    if faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
+    if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
         refined = rank(_refined(data, one, SEARCHED) for one in near)
     if every:
         solved = {one.candidate for one in refined}
@@ -213,32 +252,52 @@ def _same(one: Fit, other: Fit) -> bool:
     return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
 
 
+def _by_hand(data: Data, fault: Fault) -> Array:
+    """Log frequency changes, (k,), by beta L or its square cut or rounded to decimals, or by multiples of pi/4.
+
+    Of these the nearest to the list for each entry.
+    """
+    betas = np.array([wavenumber_length(data.beam.supports, int(mode) + 1) for mode in fault.modes])
+    raw = data.logs[fault.entries] - _logs(data.beam, Candidate(model=EXACT), None, data.n_modes)[fault.modes]
+    unit, changes = 10.0**fault.decimals, [2.0 * np.log(np.round(4.0 * betas / pi) * pi / 4.0 / betas)]
+    for power in (1, 2):
+        values = betas**power
+        digits = unit / 10.0 ** np.floor(np.log10(values))
+        near = np.round(values * unit) / unit, np.floor(values * unit) / unit, np.round(values * digits) / digits
+        changes += [2.0 / power * np.log(one / values) for one in near]
+    table = np.array(changes)
+    return np.asarray(table[np.argmin(abs(raw - table), axis=0), np.arange(len(raw))])
+
+
 def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[int | None] = ()) -> Fit | None:
     """The fit at the best of `counts` (default: interpolated N); None if the fault does not apply."""
-    if fault.ends and not candidate.springs:
+    if not fault.applies(candidate):
         return None
+    beam = fault.beam or data.beam
     if not candidate.sized:
         counts = (None,)
     elif not counts and data.count is not None:
         near = {2 * data.count, data.count // 2, *range(data.count - 2, data.count + 3)} - {data.count}
         counts = sorted(near - set(range(SMALLEST))) if fault.kind == "count" else (data.count,)
     if counts:
-        table = np.array([_logs(data.beam, candidate, size, data.n_modes) for size in counts])
+        table = np.array([_logs(beam, candidate, size, data.n_modes) for size in counts])
     else:
-        sizes, table = spectrum(data.beam, candidate, data.n_modes)
+        sizes, table = spectrum(beam, candidate, data.n_modes)
         counts, table = sizes[sizes <= SEARCHED].tolist(), table[sizes <= SEARCHED]
     raw = data.logs[fault.entries] - table[:, fault.modes]
-    parameters = np.full(len(raw), fault.factor or 1.0)
-    if fault.ends:
+    parameters, removed = np.ones(len(raw)), np.zeros_like(raw)
+    if fault.ends or fault.kind == "shear":
         try:
-            stiffnesses, effect = clamp_effect(data.beam, fault.ends, data.n_modes)
+            grid, effect = effect_of(beam, fault.ends, data.n_modes)
         except InputError:
             return None
         effect = effect[:, fault.modes]
         at = np.argmin(np.sum((raw[:, None, :] - effect) ** 2, axis=2), axis=1)
-        parameters, removed = stiffnesses[at], effect[at]
-    else:
-        factors = np.median(raw, axis=1) if fault.factor is None else np.log(parameters)
+        parameters, removed = grid[at], effect[at]
+    elif fault.kind == "constants":
+        removed = _by_hand(data, fault)[None, :]
+    elif fault.kind == "factor":
+        factors = np.median(raw, axis=1)
         parameters, removed = np.exp(factors), np.repeat(factors[:, None], raw.shape[1], axis=1)
     squares = np.mean((raw - removed) ** 2, axis=1)
     if not np.isfinite(squares).any():
@@ -252,6 +311,7 @@ def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: flo
     beyond = np.maximum(abs(left) - data.rounding[fault.entries], 0.0)
     effect, rms = (float(np.sqrt(np.mean(values**2))) for values in (removed, beyond))
     sizes = {"effect": effect, "rms": rms, "largest": float(beyond.max())}
+    sizes["digits"] = float(np.median(data.rounding[fault.entries]))
     return Fit(candidate=one, count=n, fault=fault, parameter=parameter, differences=np.expm1(left), **sizes)
 
 
@@ -261,9 +321,12 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
     `around`: least search distance.
     """
     best = _solved(data, fit, fit.count)
+    wide = is_uneven(data.beam) and not fit.fault.ends
     if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
         return best
-    wide = is_uneven(data.beam) and not fit.fault.ends
+    off = float(abs(best.differences - fit.differences).max())  # by interpolation: at the right N it is all there is
+    if fit.rms > min(PROMISING, 10.0 * off + AGREED) and not wide:
+        return best
     around = max(around, 2 + best.count * (0.3 if wide else 0.03))
     sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)
     for size in sorted(sizes, key=lambda size: abs(size - (fit.count or 0))):
@@ -277,11 +340,11 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
 def _solved(data: Data, fit: Fit, count: int | None) -> Fit | None:
     """A fit with the computed frequencies of a candidate at N; None if the model does not exist."""
     fault, candidate = fit.fault, fit.candidate
-    if not fault.ends:
+    if (not fault.ends and fault.kind != "shear") or fit.rms > PROMISING:
         return fit if data.count is not None else _scanned(data, candidate, fault, (count,))
     try:
         logs = data.logs[fault.entries]
-        parameter, left = fit_clamp(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
+        parameter, left = fit_parameter(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
     except InputError:
         return None
     return _fit(data, candidate, count, fault, parameter, left, np.full(len(logs), fit.effect))

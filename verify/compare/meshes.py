@@ -1,8 +1,6 @@
-"""Mode shapes of a beam on a solid, shell or line mesh (any format of meshio), averaged over the cross-sections."""
+"""Mode shapes of a beam on a mesh of any format of meshio, or measured, averaged over the cross-sections."""
 
-import io
 import re
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +9,9 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.compare.reading import FrequencyList, ModeShapes, checked_shapes, listed
-from verify.errors import InputError, one_line
+from verify.errors import InputError
 from verify.files import exists
+from verify.io.mode_files import UNIVERSAL, read_points
 
 UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}
 """Number of length units per metre."""
@@ -43,7 +42,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     source = f"file = {str(path)!r}"
     if not exists(path, "file"):
         raise InputError(f"{source} does not exist: give a mesh, for instance a .vtu")
-    points, arrays, field = _series(path) or _mesh(path, source)
+    points, arrays, field = read_points(path, source)
     if len(points) < 3 or not np.isfinite(points).all():
         raise InputError(f"{source} has {len(points)} points, or infinite ones: give three or more finite points")
     real = {name: v.astype(float) for name, v in arrays.items() if v.dtype.kind == "f" and len(v) == len(points)}
@@ -52,9 +51,8 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     if not vectors or not all(np.isfinite(v).all() for v in vectors.values()):
         raise InputError(f"{source} has no finite vectors or numbers at its points: write the modes as point data")
     sizes = np.ptp(points, axis=0)
-    along = int(np.argmax(sizes))
+    along, first = int(np.argmax(sizes)), next(iter(vectors.values()))
     others = sorted((axis for axis in range(len(sizes)) if axis != along), key=lambda axis: sizes[axis])
-    first = next(iter(vectors.values()))
     if len(others) == 2 and sizes[others[1]] <= 1.01 * sizes[others[0]] and first.shape[1] == 3:  # the one with motion
         moved = sum((v**2).sum(axis=0) / (v**2).sum() for v in vectors.values() if v.any())
         others.sort(key=lambda axis: -float(np.asarray(moved)[axis]))
@@ -62,16 +60,20 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     if max(sizes[across], sizes[wide]) > SLENDER * sizes[along]:
         raise InputError(f"{source} is {sizes[along]:.4g} long and {sizes[wide]:.4g} wide: give the mesh of a beam")
     unit = next((u for u, factor in UNITS.items() if abs(sizes[along] / (factor * length) - 1.0) < LENGTH), None)
+    start, last = points[:, along].min(), 1.0
+    if unit is None and path.suffix.lower() in UNIVERSAL and start >= 0.0:  # sensors need not be at the ends
+        start, last = 0.0, points[:, along].max() / length
+        unit = next((u for u, factor in UNITS.items() if 0.5 < last / factor < 1.0 + LENGTH), None)
+        last /= UNITS[unit or "m"]
     if unit is None:
         lengths = f"{sizes[along]:.6g} long, the beam {length!r} m"
         raise InputError(f"{source} is {lengths}: set beam.length to that of the mesh")
-    x = points[:, along] - points[:, along].min()
+    x = points[:, along] - start
     order = np.argsort(x, kind="stable")
-    station = np.empty(len(x), dtype=int)
-    station[order] = np.append(0, np.cumsum(np.diff(x[order]) > SAME * x.max()))
+    station = np.append(0, np.cumsum(np.diff(x[order]) > SAME * x.max()))[np.argsort(order)]
     counts = np.bincount(station)
     places = np.bincount(station, weights=x) / counts
-    places[[0, -1]] = 0.0, x.max()
+    places[[0, -1]] = x.min(), x.max()
     bent: dict[str, Array] = {}
     notes = [f"{len(points)} points in {unit}, {len(places)} cross-sections along {'xyz'[along]}."]
     for name, vector in vectors.items():
@@ -84,42 +86,9 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
             notes.append(f"{name} does not bend the beam across its thickness: ignored.")
     if not bent:
         raise InputError(f"{source} has no shape that bends the beam across its thickness: write bending modes")
-    shapes = ModeShapes(x=places * (length / places[-1]), values=np.array(list(bent.values())))
-    chosen = [list(vectors).index(name) for name in bent]
-    frequencies = _frequencies(field, len(vectors), chosen, source)
+    shapes = ModeShapes(x=places * (last * length / places[-1]), values=np.array(list(bent.values())))
+    frequencies = _frequencies(field, len(vectors), [list(vectors).index(name) for name in bent], source)
     return MeshShapes(source, checked_shapes(shapes, length, source), tuple(bent), frequencies, tuple(notes))
-
-
-def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
-    """(points, arrays at them, field data) by meshio, which prints and exits on failure. Raises InputError."""
-    import meshio
-
-    output = io.StringIO()
-    try:
-        with redirect_stdout(output), redirect_stderr(output):
-            mesh = meshio.read(path)
-    except (Exception, SystemExit) as error:  # readers of many formats raise many types
-        why = one_line(str(error) or output.getvalue())[:200]
-        raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
-    arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
-    return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
-
-
-def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:
-    """`_mesh` of an xdmf series with one mode per step and frequencies in Hz as times; None for other files."""
-    import meshio
-
-    if path.suffix.lower() != ".xdmf":
-        return None
-    try:
-        with meshio.xdmf.TimeSeriesReader(path) as reader:
-            points, _ = reader.read_points_cells()
-            steps = [reader.read_data(i)[:2] for i in range(reader.num_steps)]
-    except Exception:  # not a series
-        return None
-    arrays = {f"step_{i}": np.asarray(next(iter(data.values()))) for i, (_, data) in enumerate(steps, start=1)}
-    times = np.array([float(time) for time, _ in steps])
-    return np.asarray(points, dtype=float), arrays, {"hz": times} if (np.diff(times, prepend=0.0) > 0.0).all() else {}
 
 
 def _frequencies(field: dict[str, Any], n: int, chosen: list[int], source: str) -> FrequencyList | None:
@@ -130,4 +99,4 @@ def _frequencies(field: dict[str, Any], n: int, chosen: list[int], source: str) 
     values = np.asarray(field[name], dtype=float).ravel()
     if len(values) != n:
         raise InputError(f"{source}: field data {name!r} has {len(values)} values for {n} shapes: give one for each")
-    return listed(source, values[chosen].tolist(), unit="rad/s" if _RADIANS.search(name) else "Hz")
+    return listed(source, values[chosen].tolist(), unit="rad/s" if _RADIANS.search(name) else "Hz", declared=True)

@@ -1,10 +1,11 @@
-"""Natural frequencies and mode shapes from text files, or frequencies from a model in Python."""
+"""Natural frequencies from text files, output of solvers or a model in Python; mode shapes from text files."""
 
 import re
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stdout
 from importlib import import_module
+from itertools import takewhile
 from math import isfinite, pi
 from pathlib import Path
 from typing import Any
@@ -18,23 +19,54 @@ from verify.files import exists
 from verify.linear.base import BeamModel
 from verify.problem.beam import Beam
 
-HERTZ = {"Hz": 1.0, "kHz": 1e3, "rad/s": 0.5 / pi}
-"""Frequency units in Hz."""
+UNITS: dict[str, tuple[float, int | float]] = {
+    "Hz": (1.0, 1),
+    "kHz": (1e3, 1),
+    "mHz": (1e-3, 1),
+    "rad/s": (0.5 / pi, 1),
+    "1/min": (1.0 / 60.0, 1),
+    "Hz/(2 pi)": (2.0 * pi, 1),
+    "rad2/s2": (0.5 / pi, 0.5),
+    "s": (1.0, -1),
+    "ms": (1e3, -1),
+}
+"""Units of a list: frequency in Hz = factor * value**power. rad2/s2: squares of omega; s, ms: periods."""
 MOST, MODEL_MODES = 2000, 10
 """Largest number of frequencies of a list; default number of modes of a Python model."""
-_UNITS = {"rad/s": r"rad|omega|ω|puls", "kHz": r"khz", "Hz": r"hz|hertz|freq|^f(_?\w{0,2})?$|cycles"}
+_HEADS = {"rad2/s2": r"eigenval|lambda|λ|(omega|ω|w)(\^|\*\*)?[2²]|rad\S*2/s", "rad/s": r"rad|omega|ω|puls|^w\d*$",
+          "ms": r"period.*\bms\b", "s": r"period|^t(_?\w{0,2})?$|^s$", "1/min": r"1/min|rpm|cpm", "kHz": r"khz",
+          "mHz": r"mHz", "Hz": r"hz|hertz|freq|^f(_?\w{0,2})?$|cycles"}  # fmt: skip
 _MODE = re.compile(r"#|n|no\.?|nr\.?|modes?([ _]?(number|no\.?|nr\.?))?|number|index|i|k", re.IGNORECASE)
-_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][+-]?\d+)?|[+-]?(nan|inf)", re.IGNORECASE)
+_DIGITS = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?"
+_NUMBER = re.compile(rf"{_DIGITS}|[+-]?(nan|inf)", re.IGNORECASE)
+_VALUE = re.compile(rf"(?:[^\W\d]\w*\s*[=:]\s*)?({_DIGITS})\s*([a-zA-Z/]+[\w/^²]*)?")
+"""A number, perhaps with a name and a unit: 'f1=15.7', '15.7Hz'."""
 
 
 class FrequencyList(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Natural frequencies, (n,), relative rounding (half a unit of the last digit), and mode numbers from 1."""
+    """Values of natural frequencies in a unit of UNITS, (n,), relative last digit, (n,), and mode numbers from 1.
+
+    `declared`: whether the unit is that of an option or header.
+    """
 
     source: str
-    hertz: Array
-    rounding: Array
+    values: Array
+    digits: Array
     numbers: tuple[int, ...] | None = None
     unit: str = "Hz"
+    declared: bool = False
+
+    @property
+    def hertz(self) -> Array:
+        """Frequencies, (n,), Hz."""
+        factor, power = UNITS[self.unit]
+        with np.errstate(divide="ignore"):
+            return factor * self.values**power
+
+    @property
+    def rounding(self) -> Array:
+        """Relative last digit of the frequencies, (n,)."""
+        return abs(UNITS[self.unit][1]) * self.digits
 
 
 class ModeShapes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -48,29 +80,74 @@ def listed(source: str, values: Sequence[float], cells: Sequence[str] = (), **mo
     """A list of values in `unit`, with text `cells`. Raises InputError for negative, infinite and too many values."""
     if not 0 < len(values) <= MOST:
         raise InputError(f"{source} has {len(values)} frequencies: give 1 to {MOST}")
-    for i, value in enumerate(values, start=1):
-        if not isfinite(value) or value < 0.0:
+    array = np.array(values, dtype=float)
+    if more.get("unit") == "rad2/s2":  # rigid motions may have small negative ones
+        array = np.where(abs(array) < 1e-6 * abs(array).max(), abs(array), array)
+    for i, value in enumerate(array.tolist(), start=1):
+        if not isfinite(value) or value < 0.0 or (value == 0.0 and more.get("unit") in ("s", "ms")):
             raise InputError(f"{source}, entry {i} is {value!r}: give frequencies as finite numbers from 0")
-    rounding = [_rounding(cell, value) for cell, value in zip(cells or map(repr, values), values, strict=True)]
-    hertz = np.array(values) * HERTZ[more.get("unit", "Hz")]
-    return FrequencyList(source=source, hertz=hertz, rounding=np.array(rounding), **more)
+    cells = cells or [*map(repr, values)]
+    significant = [len(re.sub(r"[eEdD].*|\D", "", cell).lstrip("0")) for cell in cells]
+    most = max((n for n, cell in zip(significant, cells, strict=True) if "." in cell), default=max(significant))
+    digits = [_last_digit(cell, value, most) for cell, value in zip(cells, values, strict=True)]
+    return FrequencyList(source=source, values=array, digits=np.array(digits), **more)
+
+
+def read_words(words: Sequence[str], unit: str | None = None) -> FrequencyList | None:
+    """The list of typed words such as '15.7', 'f1=15.7', '15.7Hz' or '15.7,98.4'; None if they are no numbers.
+
+    Raises InputError for units that differ, and for one word that may be a decimal comma or two values.
+    """
+    words = [word.rstrip(",;") for word in words if word.strip(",;")]
+    cells = [word.replace(",", ".") if re.fullmatch(_DIGITS, word) else word for word in words]
+    if len(words) == 1 and re.fullmatch(r"\d+,\d+", words[0]):
+        raise InputError(f"frequencies = {words[0]}: a decimal comma or two values, write a point or a space")
+    if not all(_VALUE.fullmatch(cell) for cell in cells):
+        cells = [cell for word in words for cell in re.split(r"[,;\s]+", word.strip("[]()")) if cell]
+    found = [_VALUE.fullmatch(cell) for cell in cells]
+    if not cells or not all(found):
+        return None
+    units = {one[2] for one in found if one and one[2]}
+    known = next((name for name in UNITS if {u.lower() for u in units} == {name.lower()}), None)
+    if units and known is None:
+        raise InputError(
+            f"frequencies = {shown(' '.join(words))}: units {', '.join(sorted(units))}, give one of --unit"
+        )
+    numbers = [one[1] for one in found if one]
+    chosen = unit or known
+    values = [float(re.sub("[dD]", "e", number)) for number in numbers]
+    return listed("frequencies", values, numbers, unit=chosen or "Hz", declared=chosen is not None)
 
 
 def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     """Frequencies from a text file, or '-' for standard input; unit None: that of the header. Raises InputError.
 
-    One column, two columns with mode numbers first, or several with a header that names the frequencies, separated by
-    comma, semicolon, tab or spaces; decimal commas in files without points.
+    Output of a solver with columns omega^2, omega, omega / 2 pi; else values in one column, one row or a Python list;
+    two columns with mode numbers first; or several with a header that names the frequencies. Comma, semicolon, tab or
+    spaces separate; decimal commas in files without points.
     """
     source = f"frequencies file {str(path)!r}"
-    head, rows = _rows(path, source)
+    text = _text(path, source)
+    if cells := _solver_cells(text):
+        return listed(source, [_float(cell, source, i) for i, cell in enumerate(cells, 1)], cells, declared=True)
+    lines = [line.strip() for line in text.splitlines() if line.strip() and line.strip()[0] not in "#%!"]
+    if brackets := re.match(r"\s*(?:\w+\s*=\s*)?(?:(?:np\.)?array\()?[\[(](.*)[\])]", text, re.DOTALL):
+        lines = re.sub(r"np\.float64\(|[()\[\]]", " ", brackets[1]).replace(",", " ").split()
+    elif len(lines) == 1 and len(row := lines[0].replace(";", " ").split()) > 2:
+        lines, brackets = row, re.match("", "")
+    named = all(map(_VALUE.fullmatch, lines)) and not all(map(_NUMBER.fullmatch, lines))
+    if (brackets or named) and (read := read_words(lines, unit)):
+        return msgspec.structs.replace(read, source=source)
+    head, rows = _rows(text, source)
     table = np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
     numbered = next((k for k, name in enumerate(head) if _MODE.fullmatch(name)), None)
     if not head and table.shape[1] == 2 and not (table[:, 0] % 1.0).any() and (np.diff(table[:, 0]) > 0.0).all():
         numbered = 0
-    units = {k: next((u for u, pattern in _UNITS.items() if re.search(pattern, name, re.IGNORECASE)), None)
+    units = {k: next((u for u, pattern in _HEADS.items() if re.search(pattern, name, 0 if u == "mHz" else re.I)), None)
              for k, name in enumerate(head) if k != numbered}  # fmt: skip
     columns = [k for k, matches in units.items() if matches] or [k for k in range(table.shape[1]) if k != numbered]
+    best = [k for k in columns if units.get(k) == "Hz"]
+    columns = best[:1] if len(columns) > 1 and len(best) == 1 else columns
     if len(columns) != 1:
         raise InputError(f"{source} has {len(columns)} columns that may be frequencies: name one of them 'hz'")
     column, numbers = columns[0], None
@@ -79,14 +156,37 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
         if (order % 1.0).any() or not (np.diff(order) > 0.0).all() or not 0 <= order[0] <= order[-1] <= MOST:
             raise InputError(f"{source}: mode numbers {order[:5].tolist()} do not count upwards: number them from 1")
         numbers = tuple(int(number) + (order[0] == 0) for number in order)
-    cells = [row[column] for row in rows]
-    return listed(source, table[:, column].tolist(), cells, unit=unit or units.get(column) or "Hz", numbers=numbers)
+    cells, chosen = [row[column] for row in rows], unit or units.get(column)
+    more = {"unit": chosen or "Hz", "declared": chosen is not None, "numbers": numbers}
+    return listed(source, table[:, column].tolist(), cells, **more)
+
+
+def _solver_cells(text: str) -> list[str]:
+    """Frequencies in Hz as text from a solver's table: a mode number, then among others omega^2, omega, omega / 2 pi.
+
+    So do CalculiX (.dat), Nastran (.f06) and Abaqus (.dat) print them. Empty without such a table.
+    """
+    cells: list[str] = []
+    for line in text.splitlines():
+        words = list(takewhile(_NUMBER.fullmatch, line.split()))
+        values = [abs(float(re.sub("[dD]", "e", word.replace(",", ".")))) for word in words]
+        for k in range(1, min(len(values) - 2, 4)):
+            square, omega, hertz = values[k : k + 3]
+            if abs(square - omega**2) <= 1e-3 * square and abs(omega - 2.0 * pi * hertz) <= 1e-3 * omega:
+                if values[0] != len(cells) + 1:  # another step
+                    return cells
+                cells.append(words[k + 2].lstrip("-"))
+                break
+            if square < 1e-3 and omega == hertz == 0.0 and values[0] == len(cells) + 1:  # a rigid motion
+                cells.append("0.0")
+                break
+    return cells if len(cells) > 1 else []
 
 
 def read_shapes(path: Path, length: float) -> ModeShapes:
     """Mode shapes in a text file: x in metres, then one column for each mode. Raises InputError."""
     source = f"modes file {str(path)!r}"
-    rows = _rows(path, source)[1]
+    rows = _rows(_text(path, source), source)[1]
     table = np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
     return checked_shapes(ModeShapes(x=table[:, 0], values=table[:, 1:].T), length, source)
 
@@ -128,21 +228,30 @@ def solve_model(name: str, beam: Beam, count: int | None, n_modes: int | None) -
     return listed(f"model {name}", values.ravel().tolist())
 
 
-def _rows(path: Path, source: str) -> tuple[list[str], list[list[str]]]:
-    """(header or empty, rows of cells). Raises InputError for a missing file, no text, and unequal rows."""
+def _text(path: Path, source: str) -> str:
+    """Text of a file or of standard input. Raises InputError."""
     try:
         if str(path) != "-" and not exists(path, "file"):
             raise InputError(f"{source} does not exist: give a text file")
-        text = (sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()).decode("utf-8-sig")
+        return (sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{source} cannot be read ({error}): give a text file in UTF-8") from None
+
+
+def _rows(text: str, source: str) -> tuple[list[str], list[list[str]]]:
+    """(header or empty, rows of cells). Raises InputError for no rows and for unequal ones."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     comments = [line.lstrip("#%! ") for line in lines if line[0] in "#%!"]
     rows, head = _cells([line for line in lines if line[0] not in "#%!"]), _cells(comments[-1:])
     if rows and not any(_NUMBER.fullmatch(cell) for cell in rows[0]):
         head, rows = rows[:1], rows[1:]
     if not rows or min(map(len, rows)) != max(map(len, rows)):
-        raise InputError(f"{source} has {len(rows)} rows of numbers: give one or more, all of the same length")
+        widths = [len(row) for row in rows]
+        odd = next((i for i, width in enumerate(widths) if width != max(widths, key=widths.count)), None)
+        if odd is None:
+            raise InputError(f"{source} has 0 rows of numbers: give one or more")
+        text = shown(" ".join(rows[odd]))
+        raise InputError(f"{source}, row {odd + 1} has other columns than most of the rows, cut it: {text}")
     words, width = (head[0] if head else []), len(rows[0])
     if len(words) != width:  # a header of words between spaces
         words = ["mode", " ".join(words)][-width:] if words and width <= 2 else []
@@ -167,8 +276,10 @@ def _float(cell: str, source: str, row: int) -> float:
         raise InputError(f"{source}, row {row}: {shown(cell)} is not a number: correct it or leave it out") from None
 
 
-def _rounding(cell: str, value: float) -> float:
-    """Half a unit of the last digit, relative."""
+def _last_digit(cell: str, value: float, most: int) -> float:
+    """A unit of the last digit, relative; zeros that end an integer count up to the `most` digits of other cells."""
     mantissa, _, exponent = re.sub("[dDE]", "e", cell).partition("e")
     digits = len(mantissa.partition(".")[2])
-    return max(0.5 * 10.0 ** (int(exponent or 0) - digits) / value, 1e-16) if value else 0.0
+    if "." not in mantissa:
+        digits = -min(len(mantissa) - len(mantissa.rstrip("0")), max(len(mantissa) - most, 0))
+    return max(10.0 ** (int(exponent or 0) - digits) / abs(value), 1e-16) if value else 0.0

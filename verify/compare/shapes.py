@@ -57,8 +57,8 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     warnings = [words for words, holds in faults.items() if holds]
     listed = None
     if mesh.frequencies is not None:
-        hertz, rounding = mesh.frequencies.hertz[bent], mesh.frequencies.rounding[bent]
-        frequencies = msgspec.structs.replace(mesh.frequencies, hertz=hertz, rounding=rounding)
+        own = mesh.frequencies
+        frequencies = msgspec.structs.replace(own, values=own.values[bent], digits=own.digits[bent])
         listed = compare(scene, frequencies, ModeShapes(x=x, values=values), options)
     known = None if listed is None else listed.data["best"]["count"]
     near = _nearest(beam, x, values, modes, options.count or known or len(x) - 1)

@@ -1,11 +1,11 @@
 """Exact frequencies and mode shapes of uniform beams in closed form.
 
-Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair of supports, and the frequencies of a
-pinned-pinned beam by Rayleigh's and Timoshenko's theories.
+Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair of supports, the frequencies of a
+pinned-pinned beam by Rayleigh's and Timoshenko's theories, and those of a rod in extension and torsion.
 """
 
 from collections.abc import Callable
-from math import atan, exp, pi, sqrt
+from math import atan, exp, pi, sqrt, tanh
 
 import numpy as np
 
@@ -113,3 +113,28 @@ def theory_ratio(piece: Piece, wavenumber: float, theory: str = "timoshenko") ->
     shear = piece.shear_stiffness if theory == "timoshenko" else None
     s = square * piece.bending_stiffness / shear if shear else 0.0
     return sqrt(2.0 / (1.0 + a + s + sqrt((1.0 + a + s) ** 2 - 4.0 * a * s)))
+
+
+def torsion_constant(width: float, thickness: float) -> float:
+    """Saint-Venant's J of a rectangle, m^4 (Timoshenko and Goodier, Theory of Elasticity, art. 109)."""
+    long, short = max(width, thickness), min(width, thickness)
+    series = sum(tanh(0.5 * n * pi * long / short) / n**5 for n in range(1, 12, 2))
+    return long * short**3 / 3.0 * (1.0 - 192.0 / pi**5 * short / long * series)
+
+
+def rod_frequency_hz(beam: Beam, mode: int, motion: str, fixed: tuple[bool, bool]) -> float:
+    """The frequency of a uniform rod in 'extension' or 'torsion', Hz; `fixed`: its left and right end.
+
+    c / 2L times the mode, less a half with one fixed end, with c = sqrt(E/rho) or sqrt(G J / (rho I_p)). Raises
+    InputError for a section that is not defined by shape, sizes and material.
+    """
+    check_uniform(beam)
+    own = beam.own
+    speed = sqrt(own.axial_stiffness / own.mass_per_length)
+    if motion == "torsion":
+        ratio = 1.0
+        if beam.width and beam.thickness:
+            polar = beam.width * beam.thickness * (beam.width**2 + beam.thickness**2) / 12.0
+            ratio = torsion_constant(beam.width, beam.thickness) / polar
+        speed *= sqrt(ratio / (2.0 * (1.0 + beam.poissons_ratio)))
+    return (mode - 0.5 * (fixed[0] != fixed[1])) * speed / (2.0 * beam.length)

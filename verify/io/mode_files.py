@@ -1,0 +1,98 @@
+"""Points and vectors of mode shapes from meshes (any format of meshio) and universal files of measurements (pyuff)."""
+
+import io
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.errors import InputError, one_line
+
+UNIVERSAL = (".uff", ".unv")
+"""Suffixes of universal files."""
+
+
+def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Any]]:
+    """(points (n, 3), arrays at them, field data with frequencies). Raises InputError."""
+    if path.suffix.lower() in UNIVERSAL:
+        return _universal(path, source)
+    return _series(path) or _mesh(path, source)
+
+
+def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    """`read_points` of sets 15 or 2411 and 55, else peaks of responses, sets 58.
+
+    At a peak of the sum of squared responses their imaginary part is the shape. Raises InputError.
+    """
+    try:
+        import pyuff
+    except ImportError:
+        raise InputError(f"{source} needs pyuff: pip install fem-segment-verify[measured]") from None
+    try:
+        sets = [pyuff.UFF(str(path)).read_sets(i) for i in range(pyuff.UFF(str(path)).get_n_sets())]
+    except Exception as error:  # its reader raises plain ones
+        raise InputError(
+            f"{source} cannot be read by pyuff ({one_line(str(error))[:200]}): write sets 15, 55"
+        ) from None
+    of = {kind: [one for one in sets if one["type"] == kind] for kind in (15, 2411, 55, 58)}
+    node = {
+        int(n): xyz for one in of[15] + of[2411] for n, *xyz in zip(*map(one.get, ("node_nums", *"xyz")), strict=True)
+    }
+    modes: list[tuple[float, dict[int, Array]]] = []
+    for one in of[55]:
+        vectors = np.array([one["r1"], one["r2"], one["r3"]]).T
+        vectors = (vectors * np.exp(-0.5j * np.angle((vectors**2 + 0j).sum()))).real
+        hertz = one["freq"] if "freq" in one else abs(one["eig"]) / (2.0 * np.pi)
+        modes.append((float(hertz), dict(zip(map(int, one["node_nums"]), vectors, strict=True))))
+    if not modes and of[58]:
+        from scipy.signal import find_peaks
+
+        moving = "rsp" if len({one["rsp_node"] for one in of[58]}) > 1 else "ref"  # or a roving hammer
+        power = np.log(sum(abs(one["data"]) ** 2 for one in of[58]))
+        for i in find_peaks(power, prominence=np.log(10.0))[0]:
+            a, b, c = power[i - 1 : i + 2]
+            hertz = float(of[58][0]["x"][i] + 0.5 * (a - c) / (a - 2.0 * b + c) * np.diff(of[58][0]["x"][i : i + 2])[0])
+            shape = {int(one[f"{moving}_node"]): np.zeros(3) for one in of[58]}
+            for one in of[58]:
+                axis = int(one[f"{moving}_dir"])
+                shape[int(one[f"{moving}_node"])][abs(axis) - 1] += np.sign(axis) * one["data"][i].imag
+            modes.append((hertz, shape))
+    shared = sorted(set(node).intersection(*(shape for _, shape in modes)))
+    if not modes or len(shared) < 3:
+        raise InputError(f"{source} has {len(modes)} modes at {len(shared)} points: write sets 15 and 55, or 15 and 58")
+    arrays = {f"mode_{i}": np.array([shape[n] for n in shared]) for i, (_, shape) in enumerate(modes, start=1)}
+    return np.array([node[n] for n in shared], dtype=float), arrays, {"hz": np.array([hertz for hertz, _ in modes])}
+
+
+def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
+    """`read_points` by meshio, which prints and exits on failure. Raises InputError."""
+    import meshio
+
+    output = io.StringIO()
+    try:
+        with redirect_stdout(output), redirect_stderr(output):
+            mesh = meshio.read(path)
+    except (Exception, SystemExit) as error:  # readers of many formats raise many types
+        why = one_line(str(error) or output.getvalue())[:200]
+        raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
+    arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
+    return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
+
+
+def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:
+    """`read_points` of an xdmf series with one mode per step and frequencies in Hz as times; None for other files."""
+    import meshio
+
+    if path.suffix.lower() != ".xdmf":
+        return None
+    try:
+        with meshio.xdmf.TimeSeriesReader(path) as reader:
+            points, _ = reader.read_points_cells()
+            steps = [reader.read_data(i)[:2] for i in range(reader.num_steps)]
+    except Exception:  # not a series
+        return None
+    arrays = {f"step_{i}": np.asarray(next(iter(data.values()))) for i, (_, data) in enumerate(steps, start=1)}
+    times = np.array([float(time) for time, _ in steps])
+    return np.asarray(points, dtype=float), arrays, {"hz": times} if (np.diff(times, prepend=0.0) > 0.0).all() else {}
