@@ -29,6 +29,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 @click.option(
     "--theory", type=click.Choice(THEORIES), default=THEORIES[0], show_default=True, help="Of the exact beam."
 )
+@shared.charts_option
 @shared.format_options
 def compare(
     scene: str,
@@ -42,6 +43,7 @@ def compare(
     mode: int | None,
     within: str,
     theory: str,
+    charts: str | None,
     **formats: bool,
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
@@ -83,7 +85,6 @@ def compare(
 
         result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
     shared.show(result, **formats)
-    for text in result.verdict.others if result.verdict and not any(formats.values()) else ():
-        click.echo(f"also: {text}")
+    shared.save_charts(result, charts)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)

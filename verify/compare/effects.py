@@ -18,7 +18,7 @@ CLAMPS, SHEARS = np.geomspace(0.3, 1e4, 400), np.geomspace(0.4, 2.5, 400)
 def varied(beam: Beam, ends: tuple[str, ...], parameter: float) -> Beam:
     """The beam with hinges and springs k_r = `parameter` EI/L at `ends`; without ends with kappa G times it."""
     if not ends:
-        sizes = [(piece.shear_stiffness or 0.0) * parameter for piece in (beam.own, *beam.pieces)]
+        sizes = [(piece.shear_stiffness or 0.0) * parameter for piece in (beam.base_section, *beam.pieces)]
         sections = zip(beam.section, sizes[1:], strict=False)
         sheared = tuple(replace(section, shear_stiffness=size) for section, size in sections)
         return replace(beam, shear_stiffness=sizes[0], section=sheared)

@@ -208,7 +208,7 @@ def _faults(data: Data) -> Iterator[Fault]:
             yield Fault("scene", entries, modes, f"beam.{name}", beam=without)
     if len(entries) < FEWEST:
         return
-    if beam.own.shear_stiffness and beam.own.rotary_inertia:
+    if beam.base_section.shear_stiffness and beam.base_section.rotary_inertia:
         yield Fault("shear", entries, modes)
     for decimals in (2, 3, 4) if beam.uniform else ():
         yield Fault("constants", entries, modes, f"{decimals} decimals", decimals=decimals)

@@ -1,19 +1,23 @@
-"""The result of a comparison: modes, candidates, faults, required N and acceptance as tables."""
+"""The result of a comparison: modes, candidates, faults, required N and acceptance as tables; one figure."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
+import numpy as np
 
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import is_uneven, not_default
 from verify.analysis.verdict import Margin, per_cent, void
-from verify.compare.candidates import EULER
+from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import FAULTS, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.compare.sorting import ACROSS, BENDING
 from verify.problem.beam import Beam
-from verify.report.result import Column, Result, Table
+from verify.report.result import Column, Figure, Result, Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 SHOWN = 10
 """Largest number of candidates in the table; all are in the data."""
@@ -28,7 +32,8 @@ POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """Parameters that change all frequencies by a common factor, with the power of the factor."""
 TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
 WALL = (
-    "The joint at the wall should be 2EI/l, or compliances 3/8, 7/6, 23/24 of l/EI on the first three joints (Gregory)."
+    "The joint at the wall should be 2EI/l, or the first three joints have compliances 3/8, 7/6, 23/24 of l/EI "
+    "(Gregory): `verify chain` prints them in N m/rad."
 )
 UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
 INCH, GRAVITY = 0.0254, 9.80665
@@ -96,7 +101,30 @@ def result_of(
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables = [*_tables(fits, beam, rows, required), Table("Acceptance", columns, checks)]
     warnings = [*warnings, *[TIP_MASS] * clamp, *[WALL] * wrong]
-    return Result(summary, tables, warnings=warnings, data=about, margins=margins)
+    figures = [_figure(beam, fits, rows)] if any(row.motion == BENDING for row in rows) else []
+    return Result(summary, tables, figures, warnings=warnings, data=about, margins=margins)
+
+
+def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
+    """Errors of the list, the best and the next candidate."""
+    best = fits.best
+    following = next((one for one in fits.ranking[1:] if one not in fits.equivalent), None)
+    rows = [row for row in rows if row.motion == BENDING]
+    n = max(row.mode for row in rows)
+
+    def draw(ax: "Axes") -> None:
+        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
+        ax.plot([row.mode for row in rows], [100.0 * row.error for row in rows], "o", label="list")
+        for fit, style in ((best, "-"), (following, "--")):
+            if fit is not None:
+                hertz = frequencies_hz(fit.candidate, beam, fit.count, n)
+                errors = 100.0 * (hertz / exact[: len(hertz)] - 1.0)
+                ax.plot(np.arange(1, len(hertz) + 1), errors, style, label=fit.candidate.label)
+        ax.set(xlabel="mode", ylabel="frequency error, %")
+        ax.legend()
+
+    caption = "Errors against the exact Euler-Bernoulli beam. Points: the list. Lines: the best and the next candidate."
+    return Figure("compare", "Frequencies and best candidates", caption, draw)
 
 
 def _tables(fits: Identification, beam: Beam, rows: list[Entry], required: list[tuple[Any, ...]]) -> list[Table]:

@@ -5,13 +5,14 @@ pinned-pinned beam by Rayleigh's and Timoshenko's theories, and those of a rod i
 """
 
 from collections.abc import Callable
-from math import atan, exp, pi, sqrt, tanh
+from math import atan, exp, pi, sqrt
 
 import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.exact.layout import HELD
+from verify.exact.torsion import torsion_constant
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Piece
 from verify.validation import check_integer
@@ -115,13 +116,6 @@ def theory_ratio(piece: Piece, wavenumber: float, theory: str = "timoshenko") ->
     return sqrt(2.0 / (1.0 + a + s + sqrt((1.0 + a + s) ** 2 - 4.0 * a * s)))
 
 
-def torsion_constant(width: float, thickness: float) -> float:
-    """Saint-Venant's J of a rectangle, m^4 (Timoshenko and Goodier, Theory of Elasticity, art. 109)."""
-    long, short = max(width, thickness), min(width, thickness)
-    series = sum(tanh(0.5 * n * pi * long / short) / n**5 for n in range(1, 12, 2))
-    return long * short**3 / 3.0 * (1.0 - 192.0 / pi**5 * short / long * series)
-
-
 def rod_frequency_hz(beam: Beam, mode: int, motion: str, fixed: tuple[bool, bool]) -> float:
     """The frequency of a uniform rod in 'extension' or 'torsion', Hz; `fixed`: its left and right end.
 
@@ -129,12 +123,12 @@ def rod_frequency_hz(beam: Beam, mode: int, motion: str, fixed: tuple[bool, bool
     InputError for a section that is not defined by shape, sizes and material.
     """
     check_uniform(beam)
-    own = beam.own
+    own = beam.base_section
     speed = sqrt(own.axial_stiffness / own.mass_per_length)
     if motion == "torsion":
         ratio = 1.0
         if beam.width and beam.thickness:
             polar = beam.width * beam.thickness * (beam.width**2 + beam.thickness**2) / 12.0
-            ratio = torsion_constant(beam.width, beam.thickness) / polar
+            ratio = torsion_constant("rectangle", beam.width, beam.thickness) / polar
         speed *= sqrt(ratio / (2.0 * (1.0 + beam.poissons_ratio)))
     return (mode - 0.5 * (fixed[0] != fixed[1])) * speed / (2.0 * beam.length)
