@@ -9,6 +9,8 @@ from verify.options import THEORIES
 
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
+CHAINS = {".xml", ".mjcf", ".sdf", ".urdf"}
+"""Suffixes of chains of rigid bodies, with a scene in front or without."""
 
 
 @click.command(cls=shared.BeamCommand)
@@ -27,6 +29,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
 @click.option(
     "--theory", type=click.Choice(THEORIES), default=THEORIES[0], show_default=True, help="Of the exact beam."
 )
+@click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
 @shared.charts_option
 @shared.format_options
 def compare(
@@ -41,6 +44,7 @@ def compare(
     mode: int | None,
     within: str | None,
     theory: str,
+    corrected: str | None,
     charts: str | None,
     **formats: bool,
 ) -> None:
@@ -59,11 +63,19 @@ def compare(
     from verify.scene.load import load_scene
     from verify.validation import Relative
 
-    if bool(given) == bool(model):
-        raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     limit = None if within is None else typed(within, Relative, "within")
     if limit is not None and not (isinstance(limit, float | int) and limit > 0.0):
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
+    *scenes, last = scene, *given
+    if Path(last).suffix.lower() in CHAINS:
+        from verify.engines.judgement import judge_file
+
+        beam = load_scene(scenes[0], overrides).beam if scenes else None
+        result = judge_file(Path(last), beam, mode or 5, limit, theory, Path(corrected) if corrected else None)
+        shared.show(result, **formats)
+        raise SystemExit(0 if result.data["passed"] else shared.GATE_FAILED)
+    if bool(given) == bool(model):
+        raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     loaded = load_scene(scene, overrides)
     options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory)
     numbers = [_number(word) for word in given]
