@@ -1,56 +1,47 @@
-"""A chain of rigid links from a file of an engine against the exact beam it means: faults, their errors, corrections.
+"""A chain of rigid links from a file of an engine against the exact beam it means: faults, errors, corrections.
 
-Compliances of the joints are w times the half links next to them in series, over EI. w of the joints at the wall is the
-rule; a rule that makes EI of all joints equal is that of the file. Without a beam, EI and rho A are those of the file.
+The compliance of a joint is w times that of the half links next to it, of the whole link at a wall. The rule of a file
+is the one by which all its joints have the same EI. Without a beam next to it, EI and rho A are those of the file.
 """
 
 import json
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 from pathlib import Path
-from typing import Any, NamedTuple
-from xml.parsers import expat
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import msgspec
 import numpy as np
 
+from verify.analysis.verdict import FINE, LIMIT, Margin, per_cent
 from verify.arrays import Array
 from verify.engines.description import Axis, Body, Hinge, Joint, Link, RigidChain, in_plane
-from verify.engines.reading import Line, lines, read
+from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
 from verify.exact.torsion import Shaft, shafts, torsion_hz
 from verify.problem.beam import Beam
+from verify.problem.materials import MATERIALS
 from verify.problem.point_attachments import PointMass
 from verify.problem.supports import FIXED
 from verify.segments.walls import WALLS, wall_factors
 
-HELD = (0.0, 1.0 + 239 / 240, 1.0 - 67 / 240, 1.0 - 41 / 80, 1.0 + 71 / 240)
-"""w behind a first link fixed to the wall: the least corrections of 1 with the sums 1/2, 1/12 and 0 over j^0, j, j^2."""
-RULES = {
-    "gregory": "Gregory's joints at the wall",
-    "half": "2EI/l at the wall",
-    "full": "EI/l at the wall",
-    "third-order": "weights 5/12, 13/12 at the wall",
-    "five-joint": "five-joint weights at the wall",
-    "rigid": "first link held by the wall",
-    "held": "first link held by the wall, joints behind it corrected",
-}
-SPACINGS = ("half links in series", "stiffness from the mean length", "stiffness from the link beyond the joint",
-            "stiffness from the link before the joint")  # fmt: skip
+if TYPE_CHECKING:
+    from verify.report.result import Result
+
+HELD = (0.0, 479 / 240, 173 / 240, 39 / 80, 311 / 240)
+"""w behind a first link fixed to the wall: least corrections of 1 with the sums 1/2, 1/12, 0 over j^0, j, j^2: order 3."""
+RULES = {"gregory": "Gregory's joints", "half": "2EI/l", "full": "EI/l", "third-order": "weights 5/12, 13/12",
+         "five-joint": "five-joint weights", "rigid": "first link held", "held": "first link held, joints adapted"}  # fmt: skip
+SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
+FACTORS = {16 / (3 * pi): "a square section's for a round one, 1.3029 in frequency", 16.0: "diameter for radius",
+           3 * pi / 16: "a round section's for a square one", 1 / 16: "radius for diameter"}  # fmt: skip
 ALIKE = 2e-3
 """Largest relative spread of EI over the joints by one rule."""
-FACTORS = {
-    16 / (3 * pi): "the square section's stiffness for a round one, sqrt = 1.3029 in frequency",
-    3 * pi / 16: "the round section's stiffness for a square one",
-    16.0: "the diameter for the radius",
-    1 / 16: "the radius for the diameter",
-}
 
 
 @dataclass(frozen=True, eq=False)
 class Plane(RigidChain):
-    """A chain about one axis, with armatures of its hinges, kg m^2, and its own exact beam or shaft."""
+    """A chain about one axis, with armatures of its hinges, kg m^2, and its exact beam or shaft."""
 
     axis: Axis = "bending"
     armatures: tuple[float, ...] = ()
@@ -60,24 +51,27 @@ class Plane(RigidChain):
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
         """(mass with armatures, stiffness) as in `RigidChain`."""
         mass, stiffness = super().matrices(axis)
-        return mass + np.diag(np.append(np.zeros(len(mass) - len(self.armatures)), self.armatures)), stiffness
+        return mass + np.diag(self.armatures), stiffness
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the exact beam or shaft, (n_modes,), Hz."""
         from verify.analytic_modes import ExactModel
 
-        if self.shaft:
+        if axis == "torsion":
             bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
-            return torsion_hz(self.shaft, (self.beam.supports[0] == "clamped", False), n_modes, bodies)
+            return torsion_hz(self.shaft, (self.held[0], False), n_modes, bodies)
         exact = ExactModel(self.beam, self.theory)
         return np.array([exact.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
 
 class Judged(NamedTuple):
-    """What a line of a file is: its beam, its rules, EI or GJ (N m^2), faults with the chain that lacks each."""
+    """A chain as it is and with correct joints, its rule, EI or GJ (N m^2), correct springs (N m/rad), and its faults.
+
+    `faults`: text, and the chain without the fault. `advice`: sentences.
+    """
 
     line: Line
-    read: Plane
+    present: Plane
     correct: Plane
     rule: str
     stiffness: float
@@ -87,283 +81,257 @@ class Judged(NamedTuple):
 
 
 def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli") -> Judged:
-    """The rules of a chain and what is wrong with it. `beam`: that of the scene, in the plane of the line."""
-    (lengths, masses, centres, inertias), k = line.links.T, line.springs
-    n, bends, edges = len(k), line.axis != "torsion", np.append(0.0, np.cumsum(lengths))
-    held, wall, length = bool(np.isnan(k[0])), bool(k[0] > 0.0) and not line.slides, float(edges[-1])
-    support = ("guided" if k[0] else "free") if line.slides else "clamped" if held or wall else "pinned"
-    support = "free" if not bends and support == "pinned" else support
-    scale, extra, per_length = np.ones(n), list(line.bodies), float(np.median(masses / lengths))
-    shaft: tuple[Shaft, ...] = ()
+    """The rules of a chain and what is wrong with it. `beam`: the one it means, in the plane of the line."""
+    (lengths, masses, centres, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
+    n, edges, held, wall = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0])), bool(k[0] > 0.0)
+    support: Any = "clamped" if held or wall else "pinned" if bends else "free"
+    first, scale, shaft, extra = np.arange(n) == 0, np.ones(n), tuple[Shaft, ...](), list(line.bodies)
+    expected, values = np.median(masses / lengths) * lengths, np.ones(1)
     if beam is not None:
-        at = np.searchsorted(np.cumsum([piece.length for piece in beam.pieces])[:-1], 0.5 * (edges[1:] + edges[:-1]))
-        shaft = () if bends else tuple(shafts(beam))
-        values = np.array(
-            [piece.bending_stiffness if bends else shaft[i].stiffness for i, piece in enumerate(beam.pieces)]
-        )
-        scale, expected = values[at] / values[at][0], np.array([p.mass_per_length for p in beam.pieces])[at] * lengths
-    else:
-        expected = per_length * lengths
-        for i in np.flatnonzero(masses > 1.01 * expected) if sum(masses > 1.01 * expected) <= max(1, n // 4) else ():
-            more = float(masses[i] - expected[i])
-            x = float((masses[i] * centres[i] - 0.5 * expected[i] * lengths[i]) / more)
-            own = expected[i] * (lengths[i] ** 2 / 12.0 + (0.5 * lengths[i] - centres[i]) ** 2)
-            extra.append((int(i), x, more, max(float(inertias[i] - own - more * (x - centres[i]) ** 2), 0.0)))
+        ends, shaft = np.cumsum([piece.length for piece in beam.pieces]), () if bends else tuple(shafts(beam))
+        at = np.searchsorted(ends[:-1], 0.5 * (edges[1:] + edges[:-1]))
+        values = np.array([one.stiffness for one in shaft] or [one.bending_stiffness for one in beam.pieces])[at]
+        scale, expected = values / values[0], np.array([one.mass_per_length for one in beam.pieces])[at] * lengths
+        extra = [
+            (min(int(np.searchsorted(edges[1:-1], m.position)), n - 1), m.position, m.mass, m.rotary_inertia)
+            for m in beam.mass
+        ]
+        extra = [(i, x - edges[i], *rest) for i, x, *rest in extra]
+    elif (heavy := np.flatnonzero(masses > 1.01 * expected)).size <= max(1, n // 4):  # bodies in the links
+        for i in heavy:
+            more, l = masses[i] - expected[i], lengths[i]
+            x = (masses[i] * centres[i] - 0.5 * expected[i] * l) / more
+            own = expected[i] * (l**2 / 12.0 + (0.5 * l - centres[i]) ** 2) + more * (x - centres[i]) ** 2
+            extra.append((int(i), float(x), float(more), max(float(inertias[i] - own), 0.0)))
 
-    before = np.append(0.0, (lengths / scale)[:-1])
-    first = np.arange(n) == 0
-    bases = [np.where(first, lengths / scale, 0.5 * (before + lengths / scale))]
+    soft = lengths / scale
+    before = np.append(soft[0], soft[:-1])
+    bases = [0.5 * (before + soft)]
     if np.ptp(lengths) > 1e-4 * lengths.mean():
-        bases += [np.full(n, lengths.mean()), lengths, np.where(first, lengths, before)]
+        bases += [np.full(n, lengths.mean()), lengths, np.append(lengths[0], lengths[:-1])]
 
     def weights(rule: str) -> Array:
         """w of the joints by a rule at the wall."""
-        row = np.array(HELD) - 1.0 if rule == "held" else np.array(WALLS.get(rule, ()))
-        w = np.ones(n)
-        w[: len(row)] += row[:n]
-        return w
+        row = np.array(HELD) if rule == "held" else 1.0 + np.array(WALLS.get(rule, ()))
+        return np.append(row, np.ones(n))[:n]
 
     names = [name for name in WALLS if name != "welded" and (bends or name in ("half", "full"))]
-    names = names if wall or (support == "guided" and not held) else ["rigid", "held"] if held else ["full"]
-    uses = np.flatnonzero(k > 0.0)
-    fits = [(k * base * weights(name))[uses] for base in bases for name in names]
-    spreads = [float(fit.std() / fit.mean()) for fit in fits]
-    best = int(np.argmin(np.round(spreads, 6)))
+    names = names if wall else ["rigid", "held"] if held else ["full"]
+    fits = [(k * base * weights(name))[k > 0.0] for base in bases for name in names]
+    spreads = [round(float(fit.std() / fit.mean()), 6) for fit in fits]
+    best = int(np.argmin(spreads))
     rule, spacing, stiffness = names[best % len(names)], best // len(names), float(np.median(fits[best]))
-    text, w = RULES[rule], weights(rule)
+    text = RULES[rule]
     if spreads[best] > ALIKE:
-        inner = [(k * base)[uses[uses > 0]] for base in bases]
+        inner = [(k * base)[~first] for base in bases]
         spacing = int(np.argmin([round(float(one.std() / one.mean()), 6) for one in inner]))
-        stiffness = float(np.median(inner[spacing]))
-        w = np.where(first, stiffness / np.where(k > 0, k * bases[spacing], 1.0), 1.0) if wall else np.ones(n)
-        text = f"{1 / w[0]:.4g} EI/l at the wall" if wall else "irregular joints"
-    text = text if wall or held or support == "guided" else f"{support} end"
+        stiffness, text = float(np.median(inner[spacing])), "irregular joints"
+        if inner[spacing].std() < ALIKE * stiffness:
+            text = f"{k[0] * bases[spacing][0] / stiffness:.4g} EI/l"
+    text = f"{text} at the wall" if wall or held else f"{support} end"
     text = text if bends else text.replace("EI", "GJ")
 
-    even = np.ptp(lengths[:3] / scale[:3]) < 1e-4 * lengths[0]
-    ideal = wall_factors((support, "free"), n, "gregory" if even and bends else "half")[:-1]
-    close = np.array([0.0, 1.5, *[1.0] * n])[:n]
-    behind = weights("held") if even and bends and n >= len(HELD) else close
-    reference = stiffness if beam is None else float(values[at][0])
-    with np.errstate(divide="ignore"):
-        target = reference / (bases[0] * (behind if held else ideal))
-        target[0] = np.nan if held else target[0]
-        hinged = reference / (bases[0] * ideal)
+    factor, named = _square(line, stiffness, expected) if beam is None and bends else (1.0, "")
+    reference = stiffness / factor if beam is None else float(values[0])
+    even = bends and np.ptp(soft[:3]) < 1e-4 * soft[0]
+    ideal = wall_factors((support, "free"), n, "gregory" if even else "half")[:-1]
+    behind = weights("held") if even and n > len(HELD) else np.append([0.0, 1.5], np.ones(n))[:n]
+    behind[0], hinged = np.nan, reference / (bases[0] * ideal)
+    springs = reference / (bases[0] * behind) if held else hinged
     if beam is None:
-        moments = float(np.median(inertias / lengths))
-        q = float(np.median(inertias / (masses * lengths**2)))
-        bodies = {(round(edges[i] + x, 12), m, inertia) for i, x, m, inertia in extra}
-        points = [PointMass(position=min(max(x, 0.0), length), mass=m, rotary_inertia=i) for x, m, i in bodies]
-        beam = Beam(
-            length=length, supports=(support, "free"), bending_stiffness=stiffness, mass_per_length=per_length,
-            mass=tuple(points), rotary_inertia=max((q - 1 / 12) * per_length * float(np.median(lengths)) ** 2, 0) or None,
-        )  # fmt: skip
-        shaft = () if bends else (Shaft(length, stiffness, moments),)
+        spin = float(np.median(inertias / (masses * lengths**2)) - 1 / 12) * expected[0] * lengths[0]
+        points = [PointMass(position=float(np.clip(edges[i] + x, 0.0, edges[-1])), mass=m, rotary_inertia=inertia)
+                  for i, x, m, inertia in extra]  # fmt: skip
+        beam = Beam(length=float(edges[-1]), supports=(support, "free"), bending_stiffness=reference, mass=tuple(points),
+                    mass_per_length=float(expected[0] / lengths[0]), rotary_inertia=spin if spin > 0.0 else None)  # fmt: skip
+        shaft = () if bends else (Shaft(beam.length, reference, float(np.median(inertias / lengths))),)
 
-    def chain(springs: Array, links: Array = line.links, parts: Any = line.bodies, armature: bool = True) -> Plane:
+    def chain(springs: Array, links: Array = line.links, bodies: Any = line.bodies, armature: bool = True) -> Plane:
         kind: Axis = "bending" if bends else "torsion"
         hinges = [() if np.isnan(one) else (Hinge(kind, float(one)),) for one in [*springs, 0.0]]
-        armatures = [float(a) * armature for a, one in zip(line.armatures, springs, strict=True) if not np.isnan(one)]
+        rigid = [
+            Link(float(x), *map(float, one[:3]), (float(one[3]),) * 3) for x, one in zip(edges, links, strict=False)
+        ]  # type: ignore[misc]
         return Plane(
-            beam=beam, wall=rule, axis=kind, armatures=tuple(armatures), shaft=shaft, theory=theory,
-            joints=tuple(Joint(float(x), hinge) for x, hinge in zip(edges, hinges, strict=True)),
-            links=tuple(Link(float(x), *map(float, one[:3]), (float(one[3]),) * 3) for x, one in zip(edges, links)),
-            bodies=tuple(Body(float(edges[i] + x), i, m, inertia) for i, x, m, inertia in parts),
+            beam=beam, wall=rule, joints=tuple(map(Joint, edges.tolist(), hinges)), links=tuple(rigid),
+            bodies=tuple(Body(float(edges[i] + x), i, m, inertia) for i, x, m, inertia in bodies), axis=kind,
+            armatures=tuple(armature * line.armatures[~np.isnan(springs)]), shaft=shaft, theory=theory,
         )  # fmt: skip
 
-    read, faults, ratio = chain(k), list[tuple[str, Plane]](), stiffness / reference
-    near, advice = np.arange(n) < 5, list[str]()
-    fixed = np.where(near, ratio * target, k)
-    if (wall or held or support == "guided") and np.nanmax(abs(fixed / k - 1.0)) > ALIKE:
-        faults.append((text, chain(fixed)))
+    ratio, faults, advice = stiffness / reference, list[tuple[str, Plane]](), list[str]()
+    fixed = np.where(np.arange(n) < len(HELD), ratio * springs, k)
+    if rule == "rigid" or (wall and max(abs(fixed / k - 1.0)) > ALIKE):
+        faults.append((text, chain(ratio * hinged if held else fixed)))
     if spacing:
-        faults.append(
-            (
-                f"{SPACINGS[spacing]} in place of half links in series",
-                chain(k * bases[spacing] / np.where(first, bases[spacing], bases[0])),
-            )
-        )
+        faults.append((f"stiffness from {SPACINGS[spacing]} in place of two half links in series",
+                       chain(np.where(first, k, k * bases[spacing] / bases[0]))))  # fmt: skip
     if abs(ratio - 1.0) > ALIKE:
-        named = next((f": {what}" for factor, what in FACTORS.items() if abs(ratio / factor - 1.0) < 0.01), "")
-        faults.append((f"stiffness {ratio:.5g} times that of the beam{named}", chain(k / ratio)))
-    faults += _masses(line, expected, extra, chain, k)
+        named = named or next((what for one, what in FACTORS.items() if abs(ratio / one - 1.0) < 0.01), "")
+        faults.append((f"stiffness {ratio:.5g} times that of the beam{': ' * bool(named)}{named}", chain(k / ratio)))
+    if bends and (wrong := _inertia_faults(line, expected, extra)):
+        rods = np.stack([lengths, expected, 0.5 * lengths, expected * lengths**2 / 12.0], axis=1)
+        faults.append((wrong, chain(k, rods, extra, armature=False)))
     if held:
-        better = chain(np.where(np.isnan(hinged), 0.0, hinged))
-        errors = ", ".join(f"{error:+.2g} %" for error in 100.0 * better.errors(better.axis, min(3, n)))
-        first3 = ", ".join(f"{one:.6g}" for one in hinged[:3])
-        advice.append(
-            f"a hinge at the wall in the first link, and {first3} N m/rad from it on, leave {errors} at modes 1 to {min(3, n)}"
-        )
-    return Judged(line, read, chain(target), text, stiffness, target, faults, advice)
+        errors = ", ".join(f"{100.0 * error:+.2g} %" for error in chain(hinged).errors(chain(k).axis, min(3, n)))
+        advice.append(f"{line.axis}: with a hinge at the wall, and {', '.join(f'{one:.6g}' for one in hinged[:3])} N m/rad "
+                      f"in the first joints, the errors are {errors}")  # fmt: skip
+    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, advice)
 
 
-def _masses(line: Line, expected: Array, extra: Any, chain: Any, k: Array) -> list[tuple[str, Plane]]:
-    """What is wrong with the inertias of the links, with the chain whose links are uniform rods and the bodies."""
-    (lengths, masses, centres, inertias), wrong = line.links.T, list[str]()
-    rods, q = expected * lengths**2 / 12.0, float(np.median(inertias / (masses * lengths**2)))
-    if line.axis == "torsion":
-        return []
-    shape, _, depth = line.sizes or ("box", 0.0, 0.0)
-    section = depth**2 / (16.0 if shape == "round" else 12.0)
-    largest = 1 / 12 + 2.0 * section / float(np.median(lengths)) ** 2
-    if not 0.98 / 12 < q < 1.02 * largest:
-        name = "point masses" if q < 1e-3 else f"inertia {q:.3g} m l^2"
-        name += " about the joint" if abs(q - 1 / 3) < 0.01 else ""
-        wrong.append(f"{name} in place of m l^2/12")
-    if abs(r := float(np.median(centres / lengths)) - 0.5) > 0.01:
-        wrong.append(f"centre of mass at {r + 0.5:.3g} l in place of l/2")
-    bare = masses - np.array([sum(m for i, _, m, _ in extra if i == j) for j in range(len(masses))])
-    if (off := abs((bare if extra != line.bodies else masses) / expected - 1.0)).max() > 0.01:
-        wrong.append(f"mass of link {int(off.argmax())} is {masses[off.argmax()] / expected[off.argmax()]:.4g} rho A l")
+def _square(line: Line, stiffness: float, expected: Array) -> tuple[float, str]:
+    """(factor, its name) by which EI of a drawn section exceeds that of the material with its density."""
+    shape, width, depth = line.section or ("", 1.0, 1.0)
+    area, second = (
+        (width * depth, width * depth**3 / 12.0) if shape == "box" else (pi * depth**2 / 4, pi * depth**4 / 64)
+    )
+    density, modulus = expected[0] / line.links[0, 0] / area, stiffness / second
+    for material in MATERIALS.values() if shape else ():
+        for factor, what in FACTORS.items():
+            if (
+                abs(density / material.density - 1) < 0.01
+                and abs(modulus / material.youngs_modulus / factor - 1) < 0.02
+            ):
+                return factor, what
+    return 1.0, ""
+
+
+def _inertia_faults(line: Line, expected: Array, extra: list[Any]) -> str:
+    """What is wrong with mass, centre and inertia of the links."""
+    lengths, masses, centres, inertias = line.links.T
+    shape, _, depth = line.section or ("box", 0.0, 0.0)
+    q, wrong = inertias / (masses * lengths**2), list[str]()
+    most = (1.0 + 12.0 * depth**2 / lengths**2 / (8.0 if shape == "round" else 6.0)) * 1.02 / 12
+    off = abs(centres / lengths - 0.5) > 0.01
+    off[[i for i, *_ in extra]] = False
+    middle = float(np.median(q))
+    if not 0.98 / 12 < middle < np.median(most):
+        words = "point masses" if middle < 1e-3 else f"inertia {middle:.3g} m l^2"
+        wrong.append(words + " about the joint" * (abs(middle - 1 / 3) < 0.01) + " in place of m l^2/12")
+    if off.any():
+        wrong.append(f"centre of mass at {centres[off][0] / lengths[off][0]:.3g} l in place of l/2")
+    bodies = sum((m * (np.arange(len(masses)) == i) for i, _, m, _ in extra[len(line.bodies) :]), np.zeros(len(masses)))
+    if (change := abs((masses - bodies) / expected - 1.0)).max() > 0.01:
+        i = int(change.argmax())
+        wrong.append(f"mass of link {i} {masses[i] / expected[i]:.4g} times rho A l")
     if line.armatures.any():
-        wrong.append(
-            f"armature {line.armatures.max():.3g} kg m2, {line.armatures.max() / np.median(rods):.3g} m l^2/12"
-        )
-    links = np.stack([lengths, expected, 0.5 * lengths, rods + expected * section], axis=1)
-    return [("; ".join(wrong), chain(k, links, extra, False))] if wrong else []
+        wrong.append(f"armature of {line.armatures.max() / np.median(expected * lengths**2 / 12):.3g} m l^2/12")
+    return ", ".join(wrong)
 
 
-def judge_file(path: Path, beam: Beam | None, modes: int, within: float | None, theory: str, out: Path | None) -> Any:
-    """The `Result` of a file, with `data["passed"]`; `out` is the corrected file. Raises InputError."""
-    from verify.analysis.verdict import FINE, LIMIT, Margin, per_cent
+def judge_file(
+    path: Path, beam: Beam | None, modes: int = 5, within: float | None = None, theory: str = "euler-bernoulli",
+    corrected: Path | None = None,
+) -> "Result":  # fmt: skip
+    """The result of the chain in a file, acceptance in `data["passed"]`: all errors are `within`, by default 1 %.
+
+    `corrected`: file to write, with correct stiffnesses. Raises InputError for a file that is not such a chain.
+    """
     from verify.report.result import Column, Result, Table
 
-    kind, solids = read(path)
-    judged = []
+    (kind, solids), judged = read(path), list[Judged]()
     for line in lines(solids, path.name):
-        own = None
+        own = beam
         if beam is not None:
-            turned = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
-            planes = [in_plane(turned, axis) for axis in ("bending", "width")]
-            values = [judge(line).stiffness / one.bending_stiffness for one in planes]
-            own = planes[int(np.argmin(abs(np.log(values))))] if line.axis != "torsion" else turned
-            own.check_features("a chain of a file", ("section", "mass"))
+            beam.check_features("the comparison of a file", ("section", "mass"))
+            own = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
+            if abs(sum(line.links[:, 0]) / own.length - 1.0) > 0.01:
+                raise InputError(
+                    f"{path.name}: its chain is {sum(line.links[:, 0]):.6g} m long, the beam {own.length:.6g} m"
+                )
+            planes, found = [in_plane(own, axis) for axis in ("bending", "width")], judge(line).stiffness
+            distance = [abs(np.log(found / one.bending_stiffness)) for one in planes]
+            own = own if line.axis == "torsion" else planes[int(np.argmin(distance))]
         judged.append(judge(line, own, theory))
-    faults, rows, joints, margins, warnings = list[Any](), list[Any](), list[Any](), list[Margin](), list[str]()
-    data, worst = list[Any](), 0.0
+    rows, faults, joints, margins, data = list[Any](), list[Any](), list[Any](), list[Margin](), list[Any]()
+    limits = {"fine": within or FINE, "limit": within or LIMIT}
     for one in judged:
-        axis, n = one.line.axis, min(modes, len(one.read.frequencies_hz(one.read.axis)))
-        exact, hertz = one.read.exact_hz(one.read.axis, n), one.read.frequencies_hz(one.read.axis, n)
-        errors, better = hertz / exact - 1.0, one.correct.frequencies_hz(one.read.axis, n) / exact - 1.0
-        rows += zip([axis] * n, range(1, n + 1), exact, hertz, errors, better, strict=True)
-        springs, fine, worst = one.line.springs, within or FINE, max(worst, float(abs(errors).max()))
+        kind_, n, axis = one.present.axis, len(one.springs), one.line.axis
+        m = min(modes, len(one.present.frequencies_hz(kind_)))
+        hertz, exact = one.present.frequencies_hz(kind_, m), one.present.exact_hz(kind_, m)
+        errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(kind_, m) / exact - 1.0
+        rows += zip([axis] * m, range(1, m + 1), exact, hertz, errors, after, strict=True)
         for text, without in one.faults:
-            effects = hertz / without.frequencies_hz(one.read.axis, n) - 1.0
-            m = int(abs(effects).argmax())
+            effects = hertz / without.frequencies_hz(kind_, m) - 1.0
+            worst = int(abs(effects).argmax())
+            size, where = float(abs(effects[worst])), f"at mode {worst + 1} in {axis}"
             faults.append((axis, text, effects[0], effects[-1]))
-            size = float(abs(effects[m]))
-            margins.append(Margin(name=f"{text}, {axis},", size=size, where=f"at mode {m + 1}", fine=fine,
-                                  limit=within or LIMIT, condition=f"{text} is acceptable", remedy="Correct the joints",
-                                  failure=f"{text}: {per_cent(size)} at mode {m + 1} in {axis}"))  # fmt: skip
-        count = len(springs)
-        margins.append(Margin(name=f"discretisation of {count} links in {axis}", size=float(abs(better[-1])), fine=fine,
-                              limit=within or LIMIT, where=f"at mode {n}", remedy="give more links",
-                              condition=f"{count} links are enough in {axis}"))  # fmt: skip
-        present, target = ([None if np.isnan(k) else float(k) for k in each] for each in (springs, one.springs))
-        change = [None if k is None or not k else want / k - 1.0 for k, want in zip(present, target, strict=True)]
-        names = ["/".join(own) for own in one.line.joints]
-        joints += zip(map(str, range(count)), names, [axis] * count, present, target, change, strict=True)
-        warnings += one.advice
-        data.append({"axis": axis, "links": count, "rule": one.rule, "supports": one.read.beam.supports,
-                     "length": one.read.beam.length, "stiffness": one.stiffness, "faults": [text for text, _ in one.faults],
-                     "mass_per_length": one.read.beam.mass_per_length, "frequencies_hz": hertz, "exact_hz": exact,
-                     "error": errors, "corrected_error": better})  # fmt: skip
-    if out is not None:
-        warnings.append(_write(path, kind, solids, judged, out))
-    columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this file", "Hz", ".7g")]
-    columns += [Column(name, format="+.3g", percent=True) for name in ("error", "with correct joints")]
-    tables = [Table("Frequencies", columns, rows)]
-    columns = [
-        Column("axis"),
-        Column("fault"),
-        *(Column(f"at mode {m}", format="+.3g", percent=True) for m in ("1", "n")),
-    ]
-    tables += [Table("Faults, each alone, in frequency", columns, faults)] if faults else []
-    columns = [Column("joint"), Column("name"), Column("axis")]
-    columns += [Column(name, "N m/rad", ".6g") for name in ("present", "correct")] + [
-        Column("change", format="+.3g", percent=True)
-    ]
-    tables.append(Table("Joints", columns, joints))
-    first = judged[0]
-    summary = f"{len(first.springs)} rigid links, {', '.join(dict.fromkeys(one.rule for one in judged))}; "
-    summary += (
-        f"the beam: {first.read.beam.length:.6g} m, "
-        + ", ".join(
-            f"{'GJ' if one.line.axis == 'torsion' else 'EI'} {one.stiffness / (1.0):.6g} N m2" for one in judged
-        )
-        + f", {first.read.beam.mass_per_length:.6g} kg/m."
+            remedy = "set the joints below, or --corrected" if len(after) and abs(after[worst]) < size else ""
+            margins.append(Margin(name=text, size=size, where=where, condition=f"{text} is acceptable", remedy=remedy,
+                                  failure=f"{text}: {per_cent(size)} {where}", **limits))  # fmt: skip
+        margins.append(Margin(name=f"discretisation of {n} links", size=float(abs(after[-1])), remedy="give more links",
+                              where=f"at mode {m} in {axis}", condition=f"{n} links are enough", **limits))  # fmt: skip
+        pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]
+        changes = [new / old - 1.0 if old and new else None for old, new in zip(*pairs, strict=True)]
+        joints += zip(map(str, range(n)), one.line.joints, [axis] * n, *pairs, changes, strict=True)
+        own, faulty = one.present.beam, [text for text, _ in one.faults]
+        about = {"axis": axis, "links": n, "rule": one.rule, "stiffness": one.stiffness, "length": own.length}
+        about |= {"mass_per_length": own.mass_per_length, "supports": own.supports, "faults": faulty}
+        data.append(about | {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after})
+    warnings = [text for one in judged for text in one.advice]
+    warnings += [_write(path, kind, solids, judged, corrected)] if corrected else []
+    error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected", "mode 1", "last", "change")]
+    named, hz = [Column("axis"), Column("mode")], [Column(name, "Hz", ".7g") for name in ("exact", "file")]
+    springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
+    tables = [Table("Frequencies", [*named, *hz, *error[:2]], rows)]
+    tables += [Table("Faults, each alone, in frequency", [named[0], Column("fault"), *error[2:4]], faults)] * bool(
+        faults
     )
-    return Result(
-        summary,
-        tables,
-        warnings=warnings,
-        margins=margins,
-        data={"source": path.name, "passed": worst <= (within or FINE), "chains": data},
+    tables += [Table("Joints", [Column("joint"), Column("name"), named[0], *springs, error[4]], joints)]
+    rules = "; ".join(
+        f"{one.line.axis}: {one.rule}, {'GJ' if one.line.axis == 'torsion' else 'EI'} = {one.stiffness:.6g} N m2"
+        for one in judged
     )
+    summary = f"{len(judged[0].springs)} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m; {rules}."
+    passed = max(float(abs(one["error"]).max()) for one in data) <= limits["fine"]
+    return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": data})
 
 
-def _write(path: Path, kind: str, solids: Any, judged: list[Judged], out: Path) -> str:
-    """The file with other stiffnesses and nothing else changed; returns a sentence."""
+def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out: Path) -> str:
+    """The file with other stiffnesses and nothing else changed; returns a sentence. Raises InputError."""
     from verify.files import whole, write_whole
     from verify.report.result import to_json
 
-    new: dict[str, float] = {}
+    new, edits, data = dict[str, float](), list[tuple[int, int, str]](), path.read_bytes()
     for one in judged:
-        for names, k, present in zip(one.line.joints, one.springs, one.line.springs, strict=True):
-            if len(names) > 1:
-                raise InputError(
-                    f"corrected = {shown(str(out))}: joints {' and '.join(names)} are in series, merge them"
-                )
-            if names and present:
-                new.setdefault(names[0], float(k))
-    data = path.read_bytes()
-    if kind == "urdf":
-        beside, name = (
-            json.loads(path.with_name(path.name + ".json").read_text("utf-8")),
-            out.with_name(out.name + ".json"),
-        )
+        for name, k in zip(one.line.joints, one.springs, strict=True):
+            if name and k:
+                new.setdefault(name, float(k))  # a ball has one stiffness: that of bending
+    text = re.sub(rb"(?s)<!--.*?-->", lambda comment: b" " * len(comment[0]), data)
+    if kind == "robot":
+        beside = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
         for j, joint in enumerate(beside.get("joints", ())):
             for hinge in joint["hinges"]:
                 hinge["stiffness"] = new.get(f"joint{j}_{hinge['axis']}", hinge["stiffness"])
-        write_whole(name, to_json(beside if "joints" in beside else beside | new), "corrected")
+        write_whole(
+            out.with_name(out.name + ".json"), to_json(beside if "joints" in beside else beside | new), "corrected"
+        )
     elif kind == "sdf":
         for key, k in new.items():
-            joint, _, axis = key.partition("/")
-            pattern = rf'(?s)(<joint\s[^>]*name\s*=\s*["\']{re.escape(joint)}["\'](?:(?!</joint>).)*?<{axis or "axis"}>'
-            pattern += r"(?:(?!</joint>).)*?<spring_stiffness>)[^<]*"
-            data = re.sub(pattern.encode(), lambda found: found[1] + repr(k).encode(), data, count=1)  # noqa: B023
-    else:
-        spots, inside, parser = list[int](), list[str](), expat.ParserCreate()
-
-        def start(tag: str, _: Any) -> None:
-            if tag in ("joint", "freejoint") and "worldbody" in inside:
-                spots.append(parser.CurrentByteIndex)
-            inside.append(tag)
-
-        parser.StartElementHandler, parser.EndElementHandler = start, lambda _: inside.pop()
-        parser.Parse(data, True)
-        compiled = {move.joint: move.stiffness for one in solids for move in one.moves}
-        tags = [re.match(rb"(?s)<\w+(?:[^>\"']|\"[^\"]*\"|'[^']*')*", data[at:]) for at in spots]
-        own = rb"(\sstiffness\s*=\s*[\"']\s*)([^\"'\s]+)"
-        stated = [re.search(own, tag[0]) for tag in tags if tag]
-        named = [re.search(rb"\sname\s*=\s*[\"']([^\"']*)", tag[0]) for tag in tags if tag]
-        if len(stated) != len(compiled) or any(
-            (name and name[1].decode() != joint) or (number and abs(float(number[2]) - k) > 1e-9 * k)
-            for name, number, (joint, k) in zip(named, stated, compiled.items(), strict=True)
-        ):
-            raise InputError(
-                f"{path.name}: its joints are not all in its text in their order (include, replicate), write it out by "
-                "mujoco.mj_saveLastXML first"
+            name = re.escape(key).encode()
+            joint = re.search(
+                rb"(?s)<joint\s[^>]*name\s*=\s*[\"']" + name + rb"[\"'].*?<spring_stiffness>([^<]*)", text
             )
-        for joint, at, tag, number in reversed(list(zip(compiled, spots, tags, stated, strict=True))):
-            if tag and joint in new:
-                text = repr(new[joint]).encode()
-                fresh = (
-                    re.sub(own, lambda found: found[1] + text, tag[0], count=1)
-                    if number
-                    else tag[0][:6] + b' stiffness="' + text + b'"' + tag[0][6:]
-                )  # noqa: B023
-                data = data[:at] + fresh + data[at + len(tag[0]) :]
+            edits += [(*joint.span(1), repr(k))] if joint else []
+    else:
+        tags = [tag for tag in re.finditer(rb"(?s)<(?:free)?joint\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*", text)
+                if text.rfind(b"<worldbody", 0, tag.start()) > text.rfind(b"</worldbody", 0, tag.start())]  # fmt: skip
+        compiled = {move.joint: move.stiffness for one in solids for move in one.moves}
+        alike = len(tags) == len(compiled)
+        for tag, (joint, present) in zip(tags, compiled.items(), strict=False):
+            named, own = (
+                re.search(rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)", tag[0]) for word in (b"name", b"stiffness")
+            )
+            alike &= not named or named[1].decode() == joint
+            alike &= not own or abs(float(own[1]) - present) <= 1e-9 * abs(present)
+            spot = (tag.start() + own.start(1), tag.start() + own.end(1)) if own else (tag.start() + 6,) * 2
+            if joint in new:
+                edits.append((*spot, repr(new[joint]) if own else f' stiffness="{new[joint]!r}"'))
+        if not alike:
+            raise InputError(
+                f"{path.name}: its text has not all joints in their order, write it by mj_saveLastXML first"
+            )
+    for start, end, word in sorted(edits, reverse=True):
+        data = data[:start] + word.encode() + data[end:]
     with whole(out, "corrected") as part:
         part.write_bytes(data)
-    return f"wrote {out}: other stiffnesses, nothing else"
+    return f"wrote {shown(str(out))}: other stiffnesses, nothing else"

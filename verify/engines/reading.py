@@ -75,7 +75,7 @@ def read(path: Path) -> tuple[str, list[Solid]]:
         if root.tag == "mujoco":
             return root.tag, _mjcf(path)
         if root.tag == "sdf":
-            return root.tag, _xml(root.find(".//model") or root, path.name, None)
+            return root.tag, _xml(next(root.iter("model")), path.name, None)
         if root.tag == "robot":
             beside = path.with_name(path.name + ".json")
             if not beside.exists():
@@ -83,7 +83,15 @@ def read(path: Path) -> tuple[str, list[Solid]]:
             return root.tag, _xml(root, path.name, _stiffnesses(json.loads(beside.read_text("utf-8"))))
     except InputError:
         raise
-    except (OSError, ElementTree.ParseError, ValueError, LookupError, TypeError, RecursionError) as error:
+    except (
+        OSError,
+        ElementTree.ParseError,
+        ValueError,
+        LookupError,
+        TypeError,
+        RecursionError,
+        StopIteration,
+    ) as error:
         raise InputError(f"{path.name}: not readable, {type(error).__name__}: {one_line(str(error))}") from None
     raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
 
