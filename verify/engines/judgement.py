@@ -28,10 +28,10 @@ from verify.segments.walls import WALLS, wall_factors
 if TYPE_CHECKING:
     from verify.report.result import Result
 
-HELD = (0.0, 479 / 240, 173 / 240, 39 / 80, 311 / 240)
-"""w behind a first link fixed to the wall: least corrections of 1 with the sums 1/2, 1/12, 0 over j^0, j, j^2: order 3."""
+HELD = (np.nan, 23 / 12, 7 / 12)
+"""Factors w behind a first link fixed to the wall, order 3 (Press et al., Numerical Recipes, open extended formula)."""
 RULES = {"gregory": "Gregory's joints", "half": "2EI/l", "full": "EI/l", "third-order": "weights 5/12, 13/12",
-         "five-joint": "five-joint weights", "rigid": "first link held", "held": "first link held, joints adapted"}  # fmt: skip
+         "five-joint": "five-joint weights", "rigid": "first link held", "held": "first link held, adapted joints,"}  # fmt: skip
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 FACTORS = {16 / (3 * pi): "a square section's for a round one, 1.3029 in frequency", 16.0: "diameter for radius",
            3 * pi / 16: "a round section's for a square one", 1 / 16: "radius for diameter"}  # fmt: skip
@@ -65,19 +65,20 @@ class Plane(RigidChain):
 
 
 class Judged(NamedTuple):
-    """A chain as it is and with correct joints, its rule, EI or GJ (N m^2), correct springs (N m/rad), and its faults.
+    """A chain as it is, with correct joints, and with correct links and a hinge at the wall as well.
 
-    `faults`: text, and the chain without the fault. `advice`: sentences.
+    `stiffness`: EI or GJ, N m^2. `springs`: correct ones, N m/rad. `faults`: text, and the chain without the fault.
     """
 
     line: Line
     present: Plane
     correct: Plane
+    best: Plane
     rule: str
     stiffness: float
     springs: Array
     faults: list[tuple[str, Plane]]
-    advice: list[str]
+    advice: str
 
 
 def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli") -> Judged:
@@ -85,97 +86,96 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
     (lengths, masses, centres, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
     n, edges, held, wall = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0])), bool(k[0] > 0.0)
     support: Any = "clamped" if held or wall else "pinned" if bends else "free"
-    first, scale, shaft, extra = np.arange(n) == 0, np.ones(n), tuple[Shaft, ...](), list(line.bodies)
-    expected, values = np.median(masses / lengths) * lengths, np.ones(1)
+    scale, shaft, expected, bodies = np.ones(n), tuple[Shaft, ...](), np.median(masses / lengths) * lengths, line.bodies
     if beam is not None:
-        ends, shaft = np.cumsum([piece.length for piece in beam.pieces]), () if bends else tuple(shafts(beam))
-        at = np.searchsorted(ends[:-1], 0.5 * (edges[1:] + edges[:-1]))
+        at = np.searchsorted(np.cumsum([one.length for one in beam.pieces])[:-1], 0.5 * (edges[1:] + edges[:-1]))
+        shaft = () if bends else tuple(shafts(beam))
         values = np.array([one.stiffness for one in shaft] or [one.bending_stiffness for one in beam.pieces])[at]
         scale, expected = values / values[0], np.array([one.mass_per_length for one in beam.pieces])[at] * lengths
-        extra = [
-            (min(int(np.searchsorted(edges[1:-1], m.position)), n - 1), m.position, m.mass, m.rotary_inertia)
-            for m in beam.mass
-        ]
-        extra = [(i, x - edges[i], *rest) for i, x, *rest in extra]
+        carriers = [min(int(np.searchsorted(edges[1:-1], one.position)), n - 1) for one in beam.mass]
+        points = zip(carriers, beam.mass, strict=True)
+        bodies = [(i, one.position - edges[i], one.mass, one.rotary_inertia) for i, one in points]
     elif (heavy := np.flatnonzero(masses > 1.01 * expected)).size <= max(1, n // 4):  # bodies in the links
-        for i in heavy:
-            more, l = masses[i] - expected[i], lengths[i]
-            x = (masses[i] * centres[i] - 0.5 * expected[i] * l) / more
-            own = expected[i] * (l**2 / 12.0 + (0.5 * l - centres[i]) ** 2) + more * (x - centres[i]) ** 2
-            extra.append((int(i), float(x), float(more), max(float(inertias[i] - own), 0.0)))
-
+        more, middle = masses - expected, 0.5 * lengths
+        x = (masses * centres - expected * middle) / np.where(more, more, 1.0)
+        own = expected * (lengths**2 / 12.0 + (middle - centres) ** 2) + more * (x - centres) ** 2
+        rest = np.maximum(inertias - own, 0.0)
+        bodies = [*bodies, *((int(i), float(x[i]), float(more[i]), float(rest[i])) for i in heavy)]
     soft = lengths / scale
-    before = np.append(soft[0], soft[:-1])
-    bases = [0.5 * (before + soft)]
+    bases = [0.5 * (np.append(soft[0], soft[:-1]) + soft)]
     if np.ptp(lengths) > 1e-4 * lengths.mean():
         bases += [np.full(n, lengths.mean()), lengths, np.append(lengths[0], lengths[:-1])]
-
-    def weights(rule: str) -> Array:
-        """w of the joints by a rule at the wall."""
-        row = np.array(HELD) if rule == "held" else 1.0 + np.array(WALLS.get(rule, ()))
-        return np.append(row, np.ones(n))[:n]
-
-    names = [name for name in WALLS if name != "welded" and (bends or name in ("half", "full"))]
-    names = names if wall else ["rigid", "held"] if held else ["full"]
-    fits = [(k * base * weights(name))[k > 0.0] for base in bases for name in names]
-    spreads = [round(float(fit.std() / fit.mean()), 6) for fit in fits]
-    best = int(np.argmin(spreads))
-    rule, spacing, stiffness = names[best % len(names)], best // len(names), float(np.median(fits[best]))
-    text = RULES[rule]
-    if spreads[best] > ALIKE:
-        inner = [(k * base)[~first] for base in bases]
-        spacing = int(np.argmin([round(float(one.std() / one.mean()), 6) for one in inner]))
-        stiffness, text = float(np.median(inner[spacing])), "irregular joints"
-        if inner[spacing].std() < ALIKE * stiffness:
-            text = f"{k[0] * bases[spacing][0] / stiffness:.4g} EI/l"
-    text = f"{text} at the wall" if wall or held else f"{support} end"
-    text = text if bends else text.replace("EI", "GJ")
-
+    rule, spacing, stiffness, text = _rule(k, bases, support, bends)
     factor, named = _square(line, stiffness, expected) if beam is None and bends else (1.0, "")
     reference = stiffness / factor if beam is None else float(values[0])
-    even = bends and np.ptp(soft[:3]) < 1e-4 * soft[0]
-    ideal = wall_factors((support, "free"), n, "gregory" if even else "half")[:-1]
-    behind = weights("held") if even and n > len(HELD) else np.append([0.0, 1.5], np.ones(n))[:n]
-    behind[0], hinged = np.nan, reference / (bases[0] * ideal)
+    ratio, even = stiffness / reference, bends and np.ptp(soft[:3]) < 1e-4 * soft[0]
+    hinged = reference / (bases[0] * wall_factors((support, "free"), n, "gregory" if even else "half")[:-1])
+    behind = np.append(HELD if even and n > len(HELD) else [np.nan, 1.5], np.ones(n))[:n]
     springs = reference / (bases[0] * behind) if held else hinged
     if beam is None:
         spin = float(np.median(inertias / (masses * lengths**2)) - 1 / 12) * expected[0] * lengths[0]
-        points = [PointMass(position=float(np.clip(edges[i] + x, 0.0, edges[-1])), mass=m, rotary_inertia=inertia)
-                  for i, x, m, inertia in extra]  # fmt: skip
-        beam = Beam(length=float(edges[-1]), supports=(support, "free"), bending_stiffness=reference, mass=tuple(points),
-                    mass_per_length=float(expected[0] / lengths[0]), rotary_inertia=spin if spin > 0.0 else None)  # fmt: skip
+        places = [float(np.clip(edges[i] + x, 0.0, edges[-1])) for i, x, *_ in bodies]
+        attached = [
+            PointMass(position=x, mass=one[2], rotary_inertia=one[3]) for x, one in zip(places, bodies, strict=True)
+        ]
+        beam = Beam(length=float(edges[-1]), supports=(support, "free"), mass=tuple(attached),
+                    bending_stiffness=reference, mass_per_length=float(expected[0] / lengths[0]),
+                    rotary_inertia=spin if spin > 0.0 else None)  # fmt: skip
         shaft = () if bends else (Shaft(beam.length, reference, float(np.median(inertias / lengths))),)
 
     def chain(springs: Array, links: Array = line.links, bodies: Any = line.bodies, armature: bool = True) -> Plane:
         kind: Axis = "bending" if bends else "torsion"
         hinges = [() if np.isnan(one) else (Hinge(kind, float(one)),) for one in [*springs, 0.0]]
-        rigid = [
-            Link(float(x), *map(float, one[:3]), (float(one[3]),) * 3) for x, one in zip(edges, links, strict=False)
-        ]  # type: ignore[misc]
+        rows = zip(edges.tolist(), links.tolist(), strict=False)
         return Plane(
-            beam=beam, wall=rule, joints=tuple(map(Joint, edges.tolist(), hinges)), links=tuple(rigid),
-            bodies=tuple(Body(float(edges[i] + x), i, m, inertia) for i, x, m, inertia in bodies), axis=kind,
-            armatures=tuple(armature * line.armatures[~np.isnan(springs)]), shaft=shaft, theory=theory,
+            beam=beam, wall=rule, joints=tuple(map(Joint, edges.tolist(), hinges)), shaft=shaft, theory=theory, axis=kind,
+            links=tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows),
+            bodies=tuple(Body(float(edges[i] + x), i, m, own) for i, x, m, own in bodies),
+            armatures=tuple(armature * line.armatures[~np.isnan(springs)]),
         )  # fmt: skip
 
-    ratio, faults, advice = stiffness / reference, list[tuple[str, Plane]](), list[str]()
-    fixed = np.where(np.arange(n) < len(HELD), ratio * springs, k)
-    if rule == "rigid" or (wall and max(abs(fixed / k - 1.0)) > ALIKE):
+    rods = np.stack([lengths, expected, 0.5 * lengths, expected * lengths**2 / 12.0 if bends else inertias], axis=1)
+    faults, best, fixed = (
+        list[tuple[str, Plane]](),
+        chain(hinged, rods, bodies, False),
+        np.where(np.arange(n) < 5, ratio * springs, k),
+    )
+    if held or (wall and max(abs(fixed / k - 1.0)) > ALIKE):
         faults.append((text, chain(ratio * hinged if held else fixed)))
     if spacing:
-        faults.append((f"stiffness from {SPACINGS[spacing]} in place of two half links in series",
-                       chain(np.where(first, k, k * bases[spacing] / bases[0]))))  # fmt: skip
+        even_k = np.where(np.arange(n) > 0, k * bases[spacing] / bases[0], k)
+        faults.append((f"stiffness from {SPACINGS[spacing]} in place of two half links in series", chain(even_k)))
     if abs(ratio - 1.0) > ALIKE:
-        named = named or next((what for one, what in FACTORS.items() if abs(ratio / one - 1.0) < 0.01), "")
-        faults.append((f"stiffness {ratio:.5g} times that of the beam{': ' * bool(named)}{named}", chain(k / ratio)))
-    if bends and (wrong := _inertia_faults(line, expected, extra)):
-        rods = np.stack([lengths, expected, 0.5 * lengths, expected * lengths**2 / 12.0], axis=1)
-        faults.append((wrong, chain(k, rods, extra, armature=False)))
-    if held:
-        errors = ", ".join(f"{100.0 * error:+.2g} %" for error in chain(hinged).errors(chain(k).axis, min(3, n)))
-        advice.append(f"{line.axis}: with a hinge at the wall, and {', '.join(f'{one:.6g}' for one in hinged[:3])} N m/rad "
-                      f"in the first joints, the errors are {errors}")  # fmt: skip
-    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, advice)
+        named = named or next((f": {what}" for one, what in FACTORS.items() if abs(ratio / one - 1.0) < 0.01), "")
+        faults.append((f"stiffness {ratio:.5g} times that of the beam{named}", chain(k / ratio)))
+    if bends and (wrong := _inertia_faults(line, expected, bodies)):
+        faults.append((wrong, chain(k, rods, bodies, False)))
+    errors = ", ".join(f"{100.0 * error:+.2g} %" for error in best.errors(best.axis, min(3, n)))
+    advice = f"{line.axis}: a hinge at the wall and {', '.join(f'{one:.6g}' for one in hinged[:3])} N m/rad from it on "
+    return Judged(
+        line, chain(k), chain(springs), best, text, stiffness, springs, faults, f"{advice} leave {errors}" * held
+    )
+
+
+def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str, int, float, str]:
+    """(rule at the wall, spacing, EI, text): the first ones by which all joints have the same EI, else the nearest."""
+    held = bool(np.isnan(k[0]))
+    names = [name for name in WALLS if name != "welded" and (bends or name in ("half", "full"))]
+    names = ["rigid", "held"] if held else names if support == "clamped" else ["full"]
+    rows = [HELD if name == "held" else 1.0 + np.array(WALLS.get(name, ())) for name in names]
+    fits = [(k * base * np.append(row, np.ones(len(k)))[: len(k)])[k > 0.0] for base in bases for row in rows]
+    spreads = [round(float(fit.std() / fit.mean()), 6) for fit in fits]
+    best = int(np.argmin(spreads))
+    rule, spacing, stiffness = names[best % len(names)], best // len(names), float(np.median(fits[best]))
+    text = RULES[rule]
+    if spreads[best] > ALIKE:
+        inner = [(k * base)[1:] for base in bases]
+        spacing = int(np.argmin([round(float(one.std() / one.mean()), 6) for one in inner]))
+        stiffness, text = float(np.median(inner[spacing])), "irregular joints"
+        if inner[spacing].std() < ALIKE * stiffness:
+            text = f"{k[0] * bases[spacing][0] / stiffness:.4g} EI/l"
+    text = f"{text} at the wall" if support == "clamped" else f"{support} end"
+    return rule, spacing, stiffness, text if bends else text.replace("EI", "GJ")
 
 
 def _square(line: Line, stiffness: float, expected: Array) -> tuple[float, str]:
@@ -191,26 +191,23 @@ def _square(line: Line, stiffness: float, expected: Array) -> tuple[float, str]:
                 abs(density / material.density - 1) < 0.01
                 and abs(modulus / material.youngs_modulus / factor - 1) < 0.02
             ):
-                return factor, what
+                return factor, f": {what}"
     return 1.0, ""
 
 
-def _inertia_faults(line: Line, expected: Array, extra: list[Any]) -> str:
-    """What is wrong with mass, centre and inertia of the links."""
+def _inertia_faults(line: Line, expected: Array, bodies: list[Any]) -> str:
+    """What is wrong with the masses, centres and inertias of the links."""
     lengths, masses, centres, inertias = line.links.T
-    shape, _, depth = line.section or ("box", 0.0, 0.0)
-    q, wrong = inertias / (masses * lengths**2), list[str]()
-    most = (1.0 + 12.0 * depth**2 / lengths**2 / (8.0 if shape == "round" else 6.0)) * 1.02 / 12
-    off = abs(centres / lengths - 0.5) > 0.01
-    off[[i for i, *_ in extra]] = False
-    middle = float(np.median(q))
-    if not 0.98 / 12 < middle < np.median(most):
-        words = "point masses" if middle < 1e-3 else f"inertia {middle:.3g} m l^2"
-        wrong.append(words + " about the joint" * (abs(middle - 1 / 3) < 0.01) + " in place of m l^2/12")
-    if off.any():
+    (shape, _, depth), wrong = line.section or ("box", 0.0, 0.0), list[str]()
+    plain = np.array([all(i != j for i, *_ in bodies) for j in range(len(masses))]) | (len(bodies) >= len(masses))
+    q = float(np.median((inertias / (masses * lengths**2))[plain]))
+    rod = 1 / 12 + depth**2 / float(np.median(lengths)) ** 2 / (16.0 if shape == "round" else 12.0)
+    if not 0.98 / 12 < q < 1.02 * rod:
+        words = "point masses" if q < 1e-3 else f"inertia {q:.3g} m l^2"
+        wrong.append(words + " about the joint" * (abs(q - 1 / 3) < 0.01) + " in place of m l^2/12")
+    if (off := plain & (abs(centres / lengths - 0.5) > 0.01)).any():
         wrong.append(f"centre of mass at {centres[off][0] / lengths[off][0]:.3g} l in place of l/2")
-    bodies = sum((m * (np.arange(len(masses)) == i) for i, _, m, _ in extra[len(line.bodies) :]), np.zeros(len(masses)))
-    if (change := abs((masses - bodies) / expected - 1.0)).max() > 0.01:
+    if (change := plain * abs(masses / expected - 1.0)).max() > 0.01:
         i = int(change.argmax())
         wrong.append(f"mass of link {i} {masses[i] / expected[i]:.4g} times rho A l")
     if line.armatures.any():
@@ -243,7 +240,7 @@ def judge_file(
             own = own if line.axis == "torsion" else planes[int(np.argmin(distance))]
         judged.append(judge(line, own, theory))
     rows, faults, joints, margins, data = list[Any](), list[Any](), list[Any](), list[Margin](), list[Any]()
-    limits = {"fine": within or FINE, "limit": within or LIMIT}
+    limits: dict[str, Any] = {"fine": within or FINE, "limit": within or LIMIT}
     for one in judged:
         kind_, n, axis = one.present.axis, len(one.springs), one.line.axis
         m = min(modes, len(one.present.frequencies_hz(kind_)))
@@ -255,19 +252,28 @@ def judge_file(
             worst = int(abs(effects).argmax())
             size, where = float(abs(effects[worst])), f"at mode {worst + 1} in {axis}"
             faults.append((axis, text, effects[0], effects[-1]))
-            remedy = "set the joints below, or --corrected" if len(after) and abs(after[worst]) < size else ""
+            remedy = (
+                "add a hinge at the wall" if one.advice and text == one.rule else "set the joints, as by --corrected"
+            )
+            remedy = "give the links m l^2/12 about l/2, no armature" if without.links != one.present.links else remedy
             margins.append(Margin(name=text, size=size, where=where, condition=f"{text} is acceptable", remedy=remedy,
                                   failure=f"{text}: {per_cent(size)} {where}", **limits))  # fmt: skip
-        margins.append(Margin(name=f"discretisation of {n} links", size=float(abs(after[-1])), remedy="give more links",
+        margins.append(Margin(name=f"discretisation of {n} links", size=abs(one.best.errors(kind_, m)[-1]), remedy="give more links",
                               where=f"at mode {m} in {axis}", condition=f"{n} links are enough", **limits))  # fmt: skip
         pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]
         changes = [new / old - 1.0 if old and new else None for old, new in zip(*pairs, strict=True)]
         joints += zip(map(str, range(n)), one.line.joints, [axis] * n, *pairs, changes, strict=True)
         own, faulty = one.present.beam, [text for text, _ in one.faults]
-        about = {"axis": axis, "links": n, "rule": one.rule, "stiffness": one.stiffness, "length": own.length}
+        about: dict[str, Any] = {
+            "axis": axis,
+            "links": n,
+            "rule": one.rule,
+            "stiffness": one.stiffness,
+            "length": own.length,
+        }
         about |= {"mass_per_length": own.mass_per_length, "supports": own.supports, "faults": faulty}
         data.append(about | {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after})
-    warnings = [text for one in judged for text in one.advice]
+    warnings = [one.advice for one in judged if one.advice]
     warnings += [_write(path, kind, solids, judged, corrected)] if corrected else []
     error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected", "mode 1", "last", "change")]
     named, hz = [Column("axis"), Column("mode")], [Column(name, "Hz", ".7g") for name in ("exact", "file")]
@@ -277,11 +283,10 @@ def judge_file(
         faults
     )
     tables += [Table("Joints", [Column("joint"), Column("name"), named[0], *springs, error[4]], joints)]
-    rules = "; ".join(
-        f"{one.line.axis}: {one.rule}, {'GJ' if one.line.axis == 'torsion' else 'EI'} = {one.stiffness:.6g} N m2"
-        for one in judged
-    )
-    summary = f"{len(judged[0].springs)} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m; {rules}."
+    rules = (f"{one.line.axis}: {one.rule}, {'EI' if one.present.axis == 'bending' else 'GJ'} = {one.stiffness:.6g} N m2"
+             for one in judged)  # fmt: skip
+    sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
+    summary = f"{sizes}; {'; '.join(rules)}."
     passed = max(float(abs(one["error"]).max()) for one in data) <= limits["fine"]
     return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": data})
 
