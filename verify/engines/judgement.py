@@ -114,10 +114,8 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
     springs = reference / (bases[0] * behind) if held else hinged
     if beam is None:
         spin = float(np.median(inertias / (masses * lengths**2)) - 1 / 12) * expected[0] * lengths[0]
-        places = [float(np.clip(edges[i] + x, 0.0, edges[-1])) for i, x, *_ in bodies]
-        attached = [
-            PointMass(position=x, mass=one[2], rotary_inertia=one[3]) for x, one in zip(places, bodies, strict=True)
-        ]
+        spots = [(float(min(edges[i] + x, edges[-1])), m, own) for i, x, m, own in bodies]
+        attached = [PointMass(position=x, mass=m, rotary_inertia=own) for x, m, own in spots if x > 1e-9 * edges[-1]]
         beam = Beam(length=float(edges[-1]), supports=(support, "free"), mass=tuple(attached),
                     bending_stiffness=reference, mass_per_length=float(expected[0] / lengths[0]),
                     rotary_inertia=spin if spin > 0.0 else None)  # fmt: skip

@@ -19,8 +19,8 @@ from verify.errors import InputError, one_line, shown
 
 STRAIGHT = 1e-3
 """Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
-LIGHT = 1e-2
-"""Largest mass of a body between two joints at one place, over the median mass."""
+MASSLESS = 1e-8
+"""Mass of a body that counts as none, over the largest: formats demand one between two hinges at one place."""
 
 
 class Move(NamedTuple):
@@ -246,12 +246,12 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         raise InputError(
             f"{name}: {what} joint {shown(move.joint)}, give a chain of hinges and springs alone on a wall"
         )
-    light = LIGHT * float(np.median([solids[i].mass for i in chain]))
-    parts = list[tuple[list[Move], list[Solid]]]()
+    dust, parts = MASSLESS * max(solids[i].mass for i in chain), list[tuple[list[Move], list[Solid]]]()
     for i in chain:
         own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
-        joined = bool(parts) and parts[-1][1][0].mass < light and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6)
-        parts.append(((parts.pop()[0] if joined else []) + own, [solids[i], *(o for o in members[1:] if o.mass)]))
+        before = parts.pop() if parts and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6) else ([], [])
+        others = [one for one in (*members[1:], *before[1]) if one.mass > dust]
+        parts.append((before[0] + own, [members[0], *others]))
     if len(parts) > 1 and (base := solids[chain[0]].parent) >= 0:
         ahead, first = (parts[i][0][-1].at for i in (1, 0))
         reach, step = (np.linalg.norm(one) for one in (first - solids[base].origin, ahead - first))
