@@ -2,6 +2,7 @@
 
 import json
 import runpy
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -32,7 +33,8 @@ def plt(monkeypatch, tmp_path):
     import matplotlib.pyplot as plt
 
     monkeypatch.setattr(plt, "show", plt.draw)
-    monkeypatch.setattr("tempfile.mkdtemp", lambda: str(tmp_path))
+    made = tempfile.mkdtemp
+    monkeypatch.setattr("tempfile.mkdtemp", lambda **where: made(**where) if where else str(tmp_path))
     yield plt
     plt.close("all")
 

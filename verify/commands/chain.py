@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FIRST = 4
 """Joints that the terminal always shows."""
-RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link held"}
+RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed"}
 """Rules at a clamped end that are compared."""
 
 
@@ -59,12 +59,14 @@ def chain(
     if engine and not path:
         raise InputError(f"engine = {engine!r} is for a file: give --to FILE.py")
     ratio, beam = typed(damping, Relative, "damping"), load_scene(scene, overrides).beam
-    count = count or _fewest(beam, mode, relative_error(error), wall, in_space)
-    described = describe(beam, count, wall=wall, in_space=in_space, damping=ratio)
+    if count is None:
+        count = _fewest(beam, mode, relative_error(error), wall, in_space)
+    described, brief = describe(beam, count, wall=wall, in_space=in_space, damping=ratio), not any(formats.values())
+    result = _result(described, mode, brief=brief)
     wrote = write(described, Path(path), engine) if path else ""
-    show(_result(described, mode, brief=not any(formats.values())), **formats)
+    show(result, **formats)
     if wrote:
-        click.echo(printable(wrote), err=any(formats.values()))
+        click.echo(printable(wrote), err=not brief)
 
 
 def _fewest(beam: "Beam", mode: int, error: float, wall: str, in_space: bool) -> int:
@@ -75,13 +77,13 @@ def _fewest(beam: "Beam", mode: int, error: float, wall: str, in_space: bool) ->
     while count <= MOST_LINKS:
         tried = describe(beam, count, wall=wall, in_space=in_space)
         errors = [tried.errors(axis, mode) for axis in tried.axes]
-        within = all(len(one) >= mode and abs(one[-1]) <= error for one in errors)
-        if within and first:
+        worst = max(abs(one[-1]) if len(one) >= mode else 1.0 for one in errors)
+        if worst <= error and first:
             return first
-        first, count = count if within else 0, count + max(count // 40, 1)
-    raise InputError(
-        f"error = {error!r}: {MOST_LINKS} links are not within it at mode {mode}, raise it or give --count"
-    )
+        first = count if worst <= error else 0
+        count += max(int(count * (min(worst / error, 2.4) ** 0.25 - 1.0)), 1)  # no chain is of a higher order than 4
+    text = f"{MOST_LINKS} links are not within it at mode {mode}, raise it or give --count"
+    raise InputError(f"error = {error!r}: {text}")
 
 
 def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
@@ -107,14 +109,13 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
         if len(hertz) < mode:
             raise InputError(f"count = {n}: the chain has {len(hertz)} modes in {axis}, raise it or lower --mode")
         every = [[*one.errors(axis, mode).tolist(), *[None] * mode][:mode] for one in others.values()]
-        rows += zip(
-            [axis] * mode, range(1, mode + 1), chain.exact_hz(axis, mode).tolist(), hertz, errors, *every, strict=True
-        )
+        exact = chain.exact_hz(axis, mode).tolist()
+        rows += zip([axis] * mode, range(1, mode + 1), exact, hertz, errors, *every, strict=True)
         name = f"discretisation of {n} links in {axis}"
         margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
                            condition=f"{n} links are enough in {axis}")]  # fmt: skip
     rule = f", {RULES.get(chain.wall, chain.wall)} at the wall" if walls else ""
-    warnings = ["joint 0 is at the right end of the beam, which holds more"] * chain.mirrored
+    warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.bodies or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
     tables = [_shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]
@@ -130,13 +131,7 @@ def _shortened(table: "Table") -> "Table":
     runs = [(str(row[0]), *row[1:]) for row in rows[:FIRST]]
     for j in range(FIRST + 1, len(rows) + 1):
         if j >= len(rows) - 1 or alike[j] != alike[start]:
-            several = j > start + 1
-            runs.append(
-                (
-                    f"{start} to {j - 1}" if several else str(start),
-                    None if several else rows[start][1],
-                    *rows[start][2:],
-                )
-            )
+            first = (str(start), rows[start][1]) if j == start + 1 else (f"{start} to {j - 1}", None)
+            runs.append((*first, *rows[start][2:]))
             start = j
     return replace(table, rows=runs)

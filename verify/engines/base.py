@@ -21,37 +21,24 @@ SAMPLES = 200
 class Chain:
     """n equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest. SI units.
 
-    `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0.
+    `link`, `mass`, `inertia`: length of a link, its mass, and its inertia about its middle. `spring`: rotational, at
+    each inner joint. `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0. `rigid`: the
+    same chain joint by joint.
     """
 
-    rigid: RigidChain
+    n: int
+    link: float
+    mass: float
+    inertia: float
+    spring: float
     frequency_hz: float
     forces: tuple[PointForce, ...]
-
-    @property
-    def n(self) -> int:
-        """Number of links."""
-        return self.rigid.count
-
-    @property
-    def link(self) -> float:
-        """Length of a link, m."""
-        return self.rigid.links[0].length
-
-    @property
-    def mass(self) -> float:
-        """Mass of a link, kg."""
-        return self.rigid.links[0].mass
-
-    @property
-    def spring(self) -> float:
-        """Stiffness of an inner joint, N m/rad."""
-        return self.rigid.joints[1].hinges[0].stiffness
+    rigid: RigidChain
 
     @property
     def length(self) -> float:
         """Length of the chain, m."""
-        return self.rigid.beam.length
+        return self.n * self.link
 
     def force_values(self, t: float) -> list[float]:
         """Values of all forces at t, s, in N."""
@@ -76,7 +63,9 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
     for i, force in enumerate(forces):
         if force.position > beam.length:
             raise InputError(f"force[{i}].position = {force.position!r}: give one between 0 and {beam.length!r} m")
-    return Chain(describe(beam, n), frequency_hz, tuple(forces))
+    rigid = describe(beam, n)
+    link, spring = rigid.links[0], rigid.joints[1].hinges[0].stiffness
+    return Chain(n, link.length, link.mass, link.inertia[1], spring, frequency_hz, tuple(forces), rigid)
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 x is along the beam, z the deflection across its thickness, y across its width. N rigid links, N + 1 joints: joint 0
 between the wall and link 0, joint j between links j - 1 and j, joint N between the last link and what is behind the far
 end. In space every joint has hinges for both bending planes and for torsion. Angles are relative: a hinge turns all
-links beyond it. An end without deflection is held in z (and y) and free along x; a support holds the twist, a free end
-does not. Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint.
+links beyond it. A pinned or clamped end is fixed in z (and y) and free along x; every support prevents the twist.
+Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint.
 
 The joints in bending are those of `SegmentModel`. In torsion a link is a disk at the centre of its inertia, between
 springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the relative error is -(k l)^2/24 at the
@@ -115,7 +115,7 @@ class RigidChain:
         return AXES if self.in_space else AXES[:1]
 
     @property
-    def held(self) -> tuple[bool, bool]:
+    def supported(self) -> tuple[bool, bool]:
         """Whether each end has no deflection."""
         left, right = (FIXED[support].deflection for support in self.beam.supports)
         return left, right
@@ -127,7 +127,7 @@ class RigidChain:
 
     def slides(self, axis: Axis) -> bool:
         """Whether the first unknown is the deflection of joint 0."""
-        return axis != "torsion" and not self.held[0]
+        return axis != "torsion" and not self.supported[0]
 
     def rows(self, axis: Axis, links: Any, x: Any) -> tuple[Array, Array]:
         """(deflections, rotations) of points x (m) of links by the unknowns, (p, n) each.
@@ -144,9 +144,9 @@ class RigidChain:
     def constraints(self, axis: Axis) -> Array:
         """Rows over the unknowns that the supports of the far end make zero, (0 to 2, n)."""
         across, turned = self.rows(axis, [self.count - 1], [self.joints[-1].position])
-        kept = [across] if self.held[1] and axis != "torsion" else []
-        kept += [] if self.joints[-1].hinge(axis) else [turned]
-        return np.vstack([across[:0], *kept])
+        rows = [across] if self.supported[1] and axis != "torsion" else []
+        rows += [] if self.joints[-1].hinge(axis) else [turned]
+        return np.vstack([across[:0], *rows])
 
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
         """(mass, stiffness) over the unknowns of `rows`, or a basis of those that satisfy the constraints, (n, n)."""
@@ -196,8 +196,8 @@ class RigidChain:
 
     def errors(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Relative errors of the first frequencies against the exact beam, (n_modes,)."""
-        found = self.frequencies_hz(axis, n_modes)
-        return np.asarray(found / self.exact_hz(axis, len(found)) - 1.0)
+        hertz = self.frequencies_hz(axis, n_modes)
+        return np.asarray(hertz / self.exact_hz(axis, len(hertz)) - 1.0)
 
 
 @lru_cache(maxsize=16)
@@ -221,7 +221,7 @@ def describe(
     """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
 
     `wall`: joints at a clamped end, one of `CHAIN_WALLS`; "rigid" fixes the first link to the wall. `damping`:
-    damping ratio of the first mode about every axis. The chain begins at the end that holds more.
+    damping ratio of the first mode about every axis. Joint 0 is at the end with the stronger support.
     """
     from verify.segment_model import SegmentModel
 
@@ -253,7 +253,7 @@ def describe(
         for link, share in _shares(chain, m.position, m.rotary_inertia)
     ]
     if in_space:
-        shaft = np.repeat([(one.stiffness, one.inertia) for one in shafts(beam)], parts.shares, axis=0)
+        shaft = np.repeat(shafts(beam)[:, 1:], parts.shares, axis=0)
         spin, moment = shaft[:, 1] * lengths, np.zeros(count)
         for body in bodies:
             spin[body.link] += body.inertia

@@ -68,7 +68,7 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
     ground = system.AddObject(items.ObjectGround())
     middles = [[(i + 0.5) * chain.link, 0.0, 0.0] for i in range(chain.n)]
     nodes = [system.AddNode(items.NodeRigidBody2D(referenceCoordinates=place)) for place in middles]
-    body = {"mass": chain.mass, "inertia": chain.rigid.links[0].inertia[1]}
+    body = {"mass": chain.mass, "inertia": chain.inertia}
     bodies = [system.AddObject(items.ObjectRigidBody2D(nodeNumber=node, **body)) for node in nodes]
 
     def point(body: int, x: float) -> int:

@@ -1,6 +1,6 @@
 """A `RigidChain` as a file of an engine: MJCF, SDF, URDF, scripts for Exudyn and Pinocchio, JSON, CSV."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,6 @@ from verify.arrays import Array
 from verify.engines.description import Axis, RigidChain
 from verify.errors import InputError, shown
 from verify.files import writable_folder, write_whole
-from verify.problem.beam import Beam
 from verify.problem.cross_section import merged, set_fields
 from verify.report.result import Column, Table, to_json
 
@@ -29,6 +28,7 @@ _MJCF_BODY = (
     '<geom type="box" contype="0" conaffinity="0" pos="{middle!r} 0 0" size="{half}" rgba="{colour}"/>\n'
 )
 _SDF = (
+    '<sdf version="1.9"><model name="beam">\n',
     '<link name="{body}"><pose relative_to="{frame}">{offset!r} 0 0 0 0 0</pose><inertial>'
     "<pose>{centre!r} 0 0 0 0 0</pose><mass>{mass!r}</mass><inertia><ixx>{inertia[0]!r}</ixx>"
     "<iyy>{inertia[1]!r}</iyy><izz>{inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
@@ -37,9 +37,11 @@ _SDF = (
     '<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{body}</child><axis>'
     "<xyz>{direction}</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit><dynamics>"
     "<damping>{damping!r}</damping><spring_reference>0</spring_reference>"
-    "<spring_stiffness>{stiffness!r}</spring_stiffness></dynamics></axis></joint>\n"
+    "<spring_stiffness>{stiffness!r}</spring_stiffness></dynamics></axis></joint>\n",
+    '<frame name="tip" attached_to="{body}"><pose>{length!r} 0 0 0 0 0</pose></frame>\n</model></sdf>\n',
 )
 _URDF = (
+    '<robot name="beam">\n<link name="world"/>\n',
     '<link name="{body}"><inertial><origin xyz="{centre!r} 0 0"/><mass value="{mass!r}"/>'
     '<inertia ixx="{inertia[0]!r}" iyy="{inertia[1]!r}" izz="{inertia[2]!r}" ixy="0" ixz="0" iyz="0"/></inertial>'
     '<visual><origin xyz="{middle!r} 0 0"/><geometry><box size="{size}"/></geometry>'
@@ -47,6 +49,10 @@ _URDF = (
     '<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{body}"/>'
     '<origin xyz="{offset!r} 0 0"/><axis xyz="{direction}"/><dynamics damping="{damping!r}"/>'
     '<limit lower="-3.14" upper="3.14" effort="1e9" velocity="1e9"/></joint>\n'
+    '<gazebo reference="{name}"><springStiffness>{stiffness!r}</springStiffness><springReference>0</springReference>'
+    "</gazebo>\n",
+    '<link name="tip"/>\n<joint name="tip" type="fixed"><parent link="{body}"/><child link="tip"/>'
+    '<origin xyz="{length!r} 0 0"/></joint>\n</robot>\n',
 )
 
 
@@ -56,10 +62,11 @@ def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
     The last at a joint moves the link with the bodies on it, those before it a body without mass. `offset`: x, m, of
     the joint in the parent.
     """
-    parent, offset = "world", chain.joints[0].position
+    beam, parent, offset = chain.beam, "world", chain.joints[0].position
+    steps = np.cumsum([section.length for section in beam.section[:-1]])
     for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
         moves = [(f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping) for h in joint.hinges]
-        if j == 0 and not chain.held[0]:
+        if j == 0 and not chain.supported[0]:
             slides = [(axis, direction) for axis, direction in SLIDES.items() if axis in chain.axes]
             moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0) for axis, direction in slides] + moves
         own = [(link.mass, link.centre, link.inertia)]
@@ -68,8 +75,11 @@ def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
         centre = sum(m * x for m, x, _ in own) / mass
         spread = sum(m * (x - centre) ** 2 for m, x, _ in own)
         inertia = [sum(each[i] for _, _, each in own) + spread * (i > 0) for i in range(3)]
-        sizes = (link.length, *_sizes(chain.beam, link.start + link.centre))
-        halves = [0.5 * one for one in sizes]
+        section = beam.section[int(np.searchsorted(steps, link.start + link.centre))] if beam.section else None
+        fields = merged(section, beam) if section else set_fields(beam)
+        # a hundredth of the length where unknown
+        across = [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
+        size, half = (" ".join(repr(scale * one) for one in (link.length, *across)) for scale in (1.0, 0.5))
         for name, kind, direction, stiffness, damping in moves:
             last = name == moves[-1][0]
             body, share = (f"link{j}", 1.0) if last else (f"link{j}_{name}", MASSLESS)
@@ -77,12 +87,8 @@ def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
                 **{"name": name, "kind": kind, "direction": direction, "body": body, "parent": parent, "link": j},
                 **{"offset": offset, "stiffness": stiffness, "damping": damping, "last": last},
                 **{"mass": share * mass, "centre": centre * last, "inertia": tuple(share * one for one in inertia)},
-                **{"length": link.length, "middle": 0.5 * link.length, "colour": COLOURS[j % 2]},
-                **{
-                    "frame": "__model__" if parent == "world" else parent,
-                    "size": _words(sizes),
-                    "half": _words(halves),
-                },
+                **{"length": link.length, "middle": 0.5 * link.length, "size": size, "half": half},
+                **{"colour": COLOURS[j % 2], "frame": "__model__" if parent == "world" else parent},
             }
             parent, offset = body, 0.0
         offset = link.length
@@ -114,7 +120,7 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     """
     if chain.count > DEEPEST:
         raise InputError(f"count = {chain.count}: MuJoCo reads at most {DEEPEST} nested bodies, lower it")
-    step = step or float(f"{5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
+    step = step or float(f"{0.5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
     bodies, begun = "", False
     for one in tree(chain):
         bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]!r} 0 0">'
@@ -147,35 +153,12 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     )
 
 
-def _words(values: Iterable[float]) -> str:
-    return " ".join(map(repr, values))
-
-
-def _sizes(beam: Beam, x: float) -> list[float]:
-    """Width and thickness at x as drawn, m; a hundredth of the length where unknown."""
-    steps = np.cumsum([section.length for section in beam.section[:-1]])
-    fields = merged(beam.section[int(np.searchsorted(steps, x))], beam) if beam.section else set_fields(beam)
-    return [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
-
-
-def sdf(chain: RigidChain) -> str:
-    """The chain for Gazebo and Drake: `spring_stiffness` on every joint."""
-    bodies = "".join(_SDF.format(**one) for one in tree(chain))
-    return (
-        f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n<sdf version="1.9"><model name="beam">\n'
-        f'{bodies}<frame name="tip" attached_to="link{chain.count - 1}">'
-        f"<pose>{chain.links[-1].length!r} 0 0 0 0 0</pose></frame>\n</model></sdf>\n"
-    )
-
-
-def urdf(chain: RigidChain) -> str:
-    """The chain for ROS and Pinocchio: the tree and its dashpots, without springs."""
-    bodies = "".join(_URDF.format(**one) for one in tree(chain))
-    return (
-        f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n<robot name="beam">\n<link name="world"/>\n'
-        f'{bodies}<link name="tip"/>\n<joint name="tip" type="fixed"><parent link="link{chain.count - 1}"/><child '
-        f'link="tip"/><origin xyz="{chain.links[-1].length!r} 0 0"/></joint>\n</robot>\n'
-    )
+def robot(chain: RigidChain, text: tuple[str, str, str]) -> str:
+    """The chain in SDF, for Gazebo and Drake, or in URDF, whose springs are an extension of Gazebo, by its texts."""
+    head, body, tail = text
+    moves = list(tree(chain))
+    bodies = "".join(body.format(**one) for one in moves)
+    return f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n{head}{bodies}{tail.format(**moves[-1])}'
 
 
 def script(chain: RigidChain, engine: str) -> str:
@@ -194,15 +177,15 @@ def script(chain: RigidChain, engine: str) -> str:
         if pair[0]:
             six = [tuple(value * (k == i) for k in range(6)) for value in pair]
             springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
-    held = (int(chain.held[1] and chain.in_space), int(chain.held[1]))
+    fixed = (int(chain.supported[1] and chain.in_space), int(chain.supported[1]))
     tip = (len(moves) - 1, chain.links[-1].length, end.position)
     text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
     return (
         f'"""{notes(chain)}"""\n\nimport numpy as np\n\n'
         "# joint, type, x in its parent, stiffness, dashpot; mass, centre, inertia (xx, yy, zz about it) of its body\n"
         f"TREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
-        f"SPRINGS = [\n{springs}]\n# whether the far end is held in y, z; its body, x in it, x at rest\n"
-        f"HELD = {held}\nTIP = {tip}\n\n{text}"
+        f"SPRINGS = [\n{springs}]\n# whether the far end is fixed in y, z; its body, x in it, x at rest\n"
+        f"SUPPORTED = {fixed}\nTIP = {tip}\n\n{text}"
     )
 
 
@@ -239,8 +222,8 @@ def data(chain: RigidChain) -> dict[str, object]:
 
 _WRITERS: dict[str, Callable[[RigidChain], str]] = {
     "xml": mjcf,
-    "sdf": sdf,
-    "urdf": urdf,
+    "sdf": lambda chain: robot(chain, _SDF),
+    "urdf": lambda chain: robot(chain, _URDF),
     "json": lambda chain: to_json(data(chain)),
     "csv": lambda chain: table(chain).csv(),
 }
@@ -261,7 +244,7 @@ def write(chain: RigidChain, path: Path, engine: str | None = None) -> str:
         raise InputError(f"engine = {engine!r}: for a .py file give {' or '.join(SCRIPTS)}, for others none")
     writable_folder(path.parent, "to")
     write_whole(path, script(chain, engine) if engine else _WRITERS[kind](chain), "to")
-    missing = ["joint springs"] * (kind == "urdf") + ["springs to the ground"] * bool(chain.springs)
+    missing = ["joint springs but in Gazebo"] * (kind == "urdf") + ["springs to the ground"] * bool(chain.springs)
     missing += ["support of the far end"] * (chain.beam.supports[1] != "free")
     if kind not in ("sdf", "urdf") or not missing:
         return f"wrote {path}"

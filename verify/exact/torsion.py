@@ -1,8 +1,7 @@
 """Torsion of a beam: Saint-Venant's constant of its sections and the exact natural frequencies."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from math import atan2, cos, pi, sin, sqrt, tanh
-from typing import NamedTuple
 
 import numpy as np
 
@@ -10,16 +9,6 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.cross_section import SIZES, merged, set_fields
-
-
-class Shaft(NamedTuple):
-    """A piece of a beam in torsion. SI."""
-
-    length: float
-    stiffness: float
-    """GJ, N m^2."""
-    inertia: float
-    """rho (I_y + I_z) per length, kg m."""
 
 
 def torsion_constant(shape: str, width: float, thickness: float) -> float:
@@ -35,8 +24,11 @@ def torsion_constant(shape: str, width: float, thickness: float) -> float:
     return long * short**3 * (1.0 - 192.0 / pi**5 * short / long * series) / 3.0
 
 
-def shafts(beam: Beam) -> list[Shaft]:
-    """The pieces of a beam in torsion. Raises InputError for a section that is not defined by shape and material."""
+def shafts(beam: Beam) -> Array:
+    """Length (m), GJ (N m^2) and rho (I_y + I_z) (kg m) of every piece, (pieces, 3).
+
+    Raises InputError for a section that is not defined by shape and material.
+    """
     made = []
     every = [merged(section, beam) for section in beam.section] or [set_fields(beam)]
     for fields, piece in zip(every, beam.pieces, strict=True):
@@ -50,21 +42,21 @@ def shafts(beam: Beam) -> list[Shaft]:
         constant = torsion_constant(shape, one, other)
         polar = one * other * (one**2 + other**2) / 12.0 if shape == "rectangle" else constant
         shear = fields["youngs_modulus"] / (2.0 * (1.0 + beam.poissons_ratio))
-        made.append(Shaft(piece.length, shear * constant, fields["density"] * polar))
-    return made
+        made.append((piece.length, shear * constant, fields["density"] * polar))
+    return np.array(made)
 
 
 def torsion_hz(
-    pieces: Sequence[Shaft], held: tuple[bool, bool], n_modes: int, bodies: Iterable[tuple[float, float]] = ()
+    pieces: Array, fixed: tuple[bool, bool], n_modes: int, bodies: Iterable[tuple[float, float]] = ()
 ) -> Array:
-    """The first elastic frequencies in torsion, (n_modes,), Hz; `held`: whether each end has no rotation.
+    """The first elastic frequencies of `shafts` in torsion, (n_modes,), Hz; `fixed`: whether each end has no rotation.
 
     `bodies` are (position, rotary inertia) pairs, m and kg m^2. The phase of (torque over Z omega, rotation), with
     Z^2 = GJ rho I_p, grows along the shaft and with the frequency; at a mode it is a whole number of quarter turns.
     """
     from scipy.optimize import brentq
 
-    ends, start = np.cumsum([piece.length for piece in pieces]), 0.0 if held[0] else 0.5 * pi
+    ends, start = np.cumsum(pieces[:, 0]), 0.0 if fixed[0] else 0.5 * pi
     stations = sorted([(float(end), 0.0) for end in ends] + [body for body in bodies if body[1]])
 
     def phase(omega: float) -> float:
@@ -76,18 +68,20 @@ def torsion_hz(
             return atan2(c * rotation - s * torque, c * torque + s * rotation)
 
         for place, inertia in stations:
-            piece = pieces[min(int(np.searchsorted(ends, 0.5 * (at + place))), len(pieces) - 1)]
-            impedance = sqrt(piece.stiffness * piece.inertia)
+            _, stiffness, inertia_per_length = pieces[
+                min(int(np.searchsorted(ends, 0.5 * (at + place))), len(ends) - 1)
+            ]
+            impedance = sqrt(stiffness * inertia_per_length)
             angle += jump(cos(angle) * (before or impedance), sin(angle) * impedance)  # the torque is continuous
-            angle += omega * (place - at) * sqrt(piece.inertia / piece.stiffness)
+            angle += omega * (place - at) * sqrt(inertia_per_length / stiffness)
             angle += jump(cos(angle) - omega * inertia / impedance * sin(angle), sin(angle))
             at, before = place, impedance
         return angle
 
-    found = []
-    for goal in start + (0.5 * pi if held[0] != held[1] else pi) + pi * np.arange(n_modes):
+    roots = []
+    for goal in start + (0.5 * pi if fixed[0] != fixed[1] else pi) + pi * np.arange(n_modes):
         top = 1.0
         while phase(top) < goal:
             top *= 2.0
-        found.append(brentq(lambda omega, goal=goal: phase(omega) - goal, 0.0, top, xtol=1e-300, rtol=1e-14))
-    return np.array(found) / (2.0 * pi)
+        roots.append(brentq(lambda omega, goal=goal: phase(omega) - goal, 0.0, top, xtol=1e-300, rtol=1e-14))
+    return np.array(roots) / (2.0 * pi)
