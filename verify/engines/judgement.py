@@ -4,7 +4,6 @@ The compliance of a joint is w times that of the half links next to it, of the w
 is the one by which all its joints have the same EI. Without a beam next to it, EI and rho A are those of the file.
 """
 
-import json
 import re
 from dataclasses import dataclass
 from math import pi
@@ -18,7 +17,7 @@ from verify.arrays import Array
 from verify.engines.description import Axis, Body, Hinge, Joint, Link, RigidChain, in_plane
 from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
-from verify.exact.torsion import Shaft, shafts, torsion_hz
+from verify.exact.torsion import shafts, torsion_hz
 from verify.problem.beam import Beam
 from verify.problem.materials import MATERIALS
 from verify.problem.point_attachments import PointMass
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 HELD = (np.nan, 23 / 12, 7 / 12)
 """Factors w behind a first link fixed to the wall, order 3 (Press et al., Numerical Recipes, open extended formula)."""
 RULES = {"gregory": "Gregory's joints", "half": "2EI/l", "full": "EI/l", "third-order": "weights 5/12, 13/12",
-         "five-joint": "five-joint weights", "rigid": "first link held", "held": "first link held, adapted joints,"}  # fmt: skip
+         "five-joint": "five-joint weights", "rigid": "first link fixed", "held": "first link fixed, adapted joints,"}  # fmt: skip
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 FACTORS = {16 / (3 * pi): "a square section's for a round one, 1.3029 in frequency", 16.0: "diameter for radius",
            3 * pi / 16: "a round section's for a square one", 1 / 16: "radius for diameter"}  # fmt: skip
@@ -45,7 +44,7 @@ class Plane(RigidChain):
 
     axis: Axis = "bending"
     armatures: tuple[float, ...] = ()
-    shaft: tuple[Shaft, ...] = ()
+    shaft: Any = None
     theory: Any = "euler-bernoulli"
 
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
@@ -59,7 +58,7 @@ class Plane(RigidChain):
 
         if axis == "torsion":
             bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
-            return torsion_hz(self.shaft, (self.held[0], False), n_modes, bodies)
+            return torsion_hz(self.shaft, (self.supported[0], False), n_modes, bodies)
         exact = ExactModel(self.beam, self.theory)
         return np.array([exact.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
@@ -86,11 +85,11 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
     (lengths, masses, centres, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
     n, edges, held, wall = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0])), bool(k[0] > 0.0)
     support: Any = "clamped" if held or wall else "pinned" if bends else "free"
-    scale, shaft, expected, bodies = np.ones(n), tuple[Shaft, ...](), np.median(masses / lengths) * lengths, line.bodies
+    scale, shaft, expected, bodies = np.ones(n), np.empty((0, 3)), np.median(masses / lengths) * lengths, line.bodies
     if beam is not None:
         at = np.searchsorted(np.cumsum([one.length for one in beam.pieces])[:-1], 0.5 * (edges[1:] + edges[:-1]))
-        shaft = () if bends else tuple(shafts(beam))
-        values = np.array([one.stiffness for one in shaft] or [one.bending_stiffness for one in beam.pieces])[at]
+        shaft = shaft if bends else shafts(beam)
+        values = (np.array([one.bending_stiffness for one in beam.pieces]) if bends else shaft[:, 1])[at]
         scale, expected = values / values[0], np.array([one.mass_per_length for one in beam.pieces])[at] * lengths
         carriers = [min(int(np.searchsorted(edges[1:-1], one.position)), n - 1) for one in beam.mass]
         points = zip(carriers, beam.mass, strict=True)
@@ -119,7 +118,7 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
         beam = Beam(length=float(edges[-1]), supports=(support, "free"), mass=tuple(attached),
                     bending_stiffness=reference, mass_per_length=float(expected[0] / lengths[0]),
                     rotary_inertia=spin if spin > 0.0 else None)  # fmt: skip
-        shaft = () if bends else (Shaft(beam.length, reference, float(np.median(inertias / lengths))),)
+        shaft = np.array([[beam.length, reference, np.median(inertias / lengths)]])
 
     def chain(springs: Array, links: Array = line.links, bodies: Any = line.bodies, armature: bool = True) -> Plane:
         kind: Axis = "bending" if bends else "torsion"
@@ -291,8 +290,7 @@ def judge_file(
 
 def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out: Path) -> str:
     """The file with other stiffnesses and nothing else changed; returns a sentence. Raises InputError."""
-    from verify.files import whole, write_whole
-    from verify.report.result import to_json
+    from verify.files import whole
 
     new, edits, data = dict[str, float](), list[tuple[int, int, str]](), path.read_bytes()
     for one in judged:
@@ -300,35 +298,26 @@ def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out
             if name and k:
                 new.setdefault(name, float(k))  # a ball has one stiffness: that of bending
     text = re.sub(rb"(?s)<!--.*?-->", lambda comment: b" " * len(comment[0]), data)
-    if kind == "robot":
-        beside = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
-        for j, joint in enumerate(beside.get("joints", ())):
-            for hinge in joint["hinges"]:
-                hinge["stiffness"] = new.get(f"joint{j}_{hinge['axis']}", hinge["stiffness"])
-        write_whole(
-            out.with_name(out.name + ".json"), to_json(beside if "joints" in beside else beside | new), "corrected"
-        )
-    elif kind == "sdf":
-        for key, k in new.items():
-            name = re.escape(key).encode()
-            joint = re.search(
-                rb"(?s)<joint\s[^>]*name\s*=\s*[\"']" + name + rb"[\"'].*?<spring_stiffness>([^<]*)", text
-            )
-            edits += [(*joint.span(1), repr(k))] if joint else []
+    if kind != "mujoco":
+        tag, field, spring = ("joint", "name", "spring_") if kind == "sdf" else ("gazebo", "reference", "spring")
+        ahead, behind = rf"(?s)<{tag}\s[^>]*{field}\s*=\s*[\"']", rf"[\"'].*?<{spring}[sS]tiffness>([^<]*)"
+        for name, k in new.items():
+            if spot := re.search((ahead + re.escape(name) + behind).encode(), text):
+                edits.append((*spot.span(1), repr(k)))
     else:
         tags = [tag for tag in re.finditer(rb"(?s)<(?:free)?joint\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*", text)
                 if text.rfind(b"<worldbody", 0, tag.start()) > text.rfind(b"</worldbody", 0, tag.start())]  # fmt: skip
         compiled = {move.joint: move.stiffness for one in solids for move in one.moves}
         alike = len(tags) == len(compiled)
-        for tag, (joint, present) in zip(tags, compiled.items(), strict=False):
+        for found, (joint, present) in zip(tags, compiled.items(), strict=False):
             named, own = (
-                re.search(rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)", tag[0]) for word in (b"name", b"stiffness")
+                re.search(rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)", found[0]) for word in (b"name", b"stiffness")
             )
             alike &= not named or named[1].decode() == joint
             alike &= not own or abs(float(own[1]) - present) <= 1e-9 * abs(present)
-            spot = (tag.start() + own.start(1), tag.start() + own.end(1)) if own else (tag.start() + 6,) * 2
+            place = (found.start() + own.start(1), found.start() + own.end(1)) if own else (found.start() + 6,) * 2
             if joint in new:
-                edits.append((*spot, repr(new[joint]) if own else f' stiffness="{new[joint]!r}"'))
+                edits.append((*place, repr(new[joint]) if own else f' stiffness="{new[joint]!r}"'))
         if not alike:
             raise InputError(
                 f"{path.name}: its text has not all joints in their order, write it by mj_saveLastXML first"

@@ -1,14 +1,13 @@
 """MJCF, SDF and URDF files as bodies and joints at rest, and the straight chain of rigid links in them.
 
 MJCF is compiled by MuJoCo, which resolves defaults, includes and the inertias of geoms. SDF and URDF are read by the
-standard library; the stiffnesses of a URDF are in a JSON file next to it, `beam.urdf.json`: that of the writer, or
-N m/rad by names of joints.
+standard library; the springs of URDF are those of Gazebo's extension.
 """
 
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -74,13 +73,15 @@ def read(path: Path) -> tuple[str, list[Solid]]:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
             return root.tag, _mjcf(path)
+        beside = path.with_name(path.name + ".json")
+        other = json.loads(beside.read_text("utf-8")) if beside.exists() else {}
+        if other.get("springs") or other.get("supports", ["", "free"])[1] != "free":
+            raise InputError(f"{path.name}: springs to the ground and supports of the far end are not judged, free it")
         if root.tag == "sdf":
             return root.tag, _xml(next(root.iter("model")), path.name, None)
         if root.tag == "robot":
-            beside = path.with_name(path.name + ".json")
-            if not beside.exists():
-                raise InputError(f"{path.name}: URDF has no joint springs, give {beside.name}: N m/rad by joint name")
-            return root.tag, _xml(root, path.name, _stiffnesses(json.loads(beside.read_text("utf-8"))))
+            springs = {one.get("reference", ""): one.findtext("springStiffness") for one in root.findall("gazebo")}
+            return root.tag, _xml(root, path.name, springs)
     except InputError:
         raise
     except (
@@ -141,15 +142,6 @@ def _mjcf(path: Path) -> list[Solid]:
     return solids
 
 
-def _stiffnesses(data: Any) -> dict[str, float]:
-    """N m/rad by joint of the JSON file next to a URDF."""
-    if "joints" not in data:
-        return {name: float(value) for name, value in data.items()}
-    if data["springs"] or data["supports"][1] != "free":
-        raise InputError("springs to the ground and supports of the far end are not judged, give a free far end")
-    return {f"joint{j}_{h['axis']}": h["stiffness"] for j, one in enumerate(data["joints"]) for h in one["hinges"]}
-
-
 def _value(one: ElementTree.Element | None, path: str) -> str:
     """An attribute (URDF) or the text of an element (SDF), '' where missing."""
     head, _, last = path.rpartition("/")
@@ -170,7 +162,7 @@ def _pose(one: ElementTree.Element | None) -> Array:
     return pose
 
 
-def _xml(model: ElementTree.Element, name: str, springs: dict[str, float] | None) -> list[Solid]:
+def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] | None) -> list[Solid]:
     """The links of a model of SDF, or of URDF with `springs` of its joints."""
     mark = "" if springs is None else "joint "  # in URDF a joint may have the name of a link
     links = {one.get("name", ""): one for one in model.findall("link")}
@@ -231,7 +223,9 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         up |= {i: above} if one.moves else {}
     sprung = [i for i in up if any(move.stiffness > 0.0 and not move.slides for move in solids[i].moves)]
     if not sprung:
-        raise InputError(f"{name}: no hinge has a stiffness, give the joints their springs")
+        raise InputError(
+            f"{name}: no hinge has a stiffness, give the joints springs (in URDF by gazebo/springStiffness)"
+        )
     chain = sprung[:1]
     while up[chain[0]] >= 0:
         chain.insert(0, up[chain[0]])
