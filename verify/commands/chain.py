@@ -118,11 +118,11 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.bodies or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
-    tables = [_shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]
+    tables = [shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))
 
 
-def _shortened(table: "Table") -> "Table":
+def shortened(table: "Table") -> "Table":
     """The first rows, the last, and in between a row for each run of joints that differ in position alone."""
     from dataclasses import replace
 

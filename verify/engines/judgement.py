@@ -30,12 +30,13 @@ if TYPE_CHECKING:
 HELD = (np.nan, 23 / 12, 7 / 12)
 """Factors w behind a first link fixed to the wall, order 3 (Press et al., Numerical Recipes, open extended formula)."""
 RULES = {"gregory": "Gregory's joints", "half": "2EI/l", "full": "EI/l", "third-order": "weights 5/12, 13/12",
-         "five-joint": "five-joint weights", "rigid": "first link fixed", "held": "first link fixed, adapted joints,"}  # fmt: skip
+         "five-joint": "five-joint weights", "rigid": "first link fixed",
+         "held": "first link fixed, adapted joints,"}  # fmt: skip
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 FACTORS = {16 / (3 * pi): "a square section's for a round one, 1.3029 in frequency", 16.0: "diameter for radius",
            3 * pi / 16: "a round section's for a square one", 1 / 16: "radius for diameter"}  # fmt: skip
-ALIKE = 2e-3
-"""Largest relative spread of EI over the joints by one rule."""
+ALIKE, SAME = 2e-3, 1e-9
+"""Relative differences up to which joints have the same EI by a rule, and a stiffness stays as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +83,7 @@ class Judged(NamedTuple):
 
 def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli") -> Judged:
     """The rules of a chain and what is wrong with it. `beam`: the one it means, in the plane of the line."""
-    (lengths, masses, centres, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
+    (lengths, masses, _, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
     n, edges, held, wall = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0])), bool(k[0] > 0.0)
     support: Any = "clamped" if held or wall else "pinned" if bends else "free"
     scale, shaft, expected, bodies = np.ones(n), np.empty((0, 3)), np.median(masses / lengths) * lengths, line.bodies
@@ -94,12 +95,8 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
         carriers = [min(int(np.searchsorted(edges[1:-1], one.position)), n - 1) for one in beam.mass]
         points = zip(carriers, beam.mass, strict=True)
         bodies = [(i, one.position - edges[i], one.mass, one.rotary_inertia) for i, one in points]
-    elif (heavy := np.flatnonzero(masses > 1.01 * expected)).size <= max(1, n // 4):  # bodies in the links
-        more, middle = masses - expected, 0.5 * lengths
-        x = (masses * centres - expected * middle) / np.where(more, more, 1.0)
-        own = expected * (lengths**2 / 12.0 + (middle - centres) ** 2) + more * (x - centres) ** 2
-        rest = np.maximum(inertias - own, 0.0)
-        bodies = [*bodies, *((int(i), float(x[i]), float(more[i]), float(rest[i])) for i in heavy)]
+    else:
+        bodies = [*bodies, *_bodies_in_links(line, expected)]
     soft = lengths / scale
     bases = [0.5 * (np.append(soft[0], soft[:-1]) + soft)]
     if np.ptp(lengths) > 1e-4 * lengths.mean():
@@ -108,16 +105,17 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
     factor, named = _square(line, stiffness, expected) if beam is None and bends else (1.0, "")
     reference = stiffness / factor if beam is None else float(values[0])
     ratio, even = stiffness / reference, bends and np.ptp(soft[:3]) < 1e-4 * soft[0]
-    hinged = reference / (bases[0] * wall_factors((support, "free"), n, "gregory" if even else "half")[:-1])
+    hinged = reference / bases[0] / wall_factors((support, "free"), n, "gregory" if even else "half")[:-1]
     behind = np.append(HELD if even and n > len(HELD) else [np.nan, 1.5], np.ones(n))[:n]
-    springs = reference / (bases[0] * behind) if held else hinged
+    springs = reference / bases[0] / behind if held else hinged
     if beam is None:
         spin = float(np.median(inertias / (masses * lengths**2)) - 1 / 12) * expected[0] * lengths[0]
         spots = [(float(min(edges[i] + x, edges[-1])), m, own) for i, x, m, own in bodies]
-        attached = [PointMass(position=x, mass=m, rotary_inertia=own) for x, m, own in spots if x > 1e-9 * edges[-1]]
-        beam = Beam(length=float(edges[-1]), supports=(support, "free"), mass=tuple(attached),
-                    bending_stiffness=reference, mass_per_length=float(expected[0] / lengths[0]),
-                    rotary_inertia=spin if spin > 0.0 else None)  # fmt: skip
+        beam = Beam(
+            length=float(edges[-1]), supports=(support, "free"), bending_stiffness=reference,
+            mass_per_length=float(expected[0] / lengths[0]), rotary_inertia=spin if spin > 0.0 else None,
+            mass=tuple(PointMass(position=x, mass=m, rotary_inertia=own) for x, m, own in spots if x > SAME),
+        )  # fmt: skip
         shaft = np.array([[beam.length, reference, np.median(inertias / lengths)]])
 
     def chain(springs: Array, links: Array = line.links, bodies: Any = line.bodies, armature: bool = True) -> Plane:
@@ -125,33 +123,30 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
         hinges = [() if np.isnan(one) else (Hinge(kind, float(one)),) for one in [*springs, 0.0]]
         rows = zip(edges.tolist(), links.tolist(), strict=False)
         return Plane(
-            beam=beam, wall=rule, joints=tuple(map(Joint, edges.tolist(), hinges)), shaft=shaft, theory=theory, axis=kind,
+            beam=beam, wall=rule, axis=kind, shaft=shaft, theory=theory,
+            joints=tuple(map(Joint, edges.tolist(), hinges)),
             links=tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows),
             bodies=tuple(Body(float(edges[i] + x), i, m, own) for i, x, m, own in bodies),
             armatures=tuple(armature * line.armatures[~np.isnan(springs)]),
         )  # fmt: skip
 
     rods = np.stack([lengths, expected, 0.5 * lengths, expected * lengths**2 / 12.0 if bends else inertias], axis=1)
-    faults, best, fixed = (
-        list[tuple[str, Plane]](),
-        chain(hinged, rods, bodies, False),
-        np.where(np.arange(n) < 5, ratio * springs, k),
-    )
+    faults, best = list[tuple[str, Plane]](), chain(hinged, rods, bodies, False)
+    fixed = np.where(np.arange(n) < 5, ratio * springs * bases[0] / bases[spacing], k)
     if held or (wall and max(abs(fixed / k - 1.0)) > ALIKE):
         faults.append((text, chain(ratio * hinged if held else fixed)))
     if spacing:
-        even_k = np.where(np.arange(n) > 0, k * bases[spacing] / bases[0], k)
-        faults.append((f"stiffness from {SPACINGS[spacing]} in place of two half links in series", chain(even_k)))
+        faults.append((f"stiffness from {SPACINGS[spacing]} in place of two half links in series",
+                       chain(k * bases[spacing] / bases[0])))  # fmt: skip
     if abs(ratio - 1.0) > ALIKE:
         named = named or next((f": {what}" for one, what in FACTORS.items() if abs(ratio / one - 1.0) < 0.01), "")
         faults.append((f"stiffness {ratio:.5g} times that of the beam{named}", chain(k / ratio)))
     if bends and (wrong := _inertia_faults(line, expected, bodies)):
         faults.append((wrong, chain(k, rods, bodies, False)))
     errors = ", ".join(f"{100.0 * error:+.2g} %" for error in best.errors(best.axis, min(3, n)))
-    advice = f"{line.axis}: a hinge at the wall and {', '.join(f'{one:.6g}' for one in hinged[:3])} N m/rad from it on "
-    return Judged(
-        line, chain(k), chain(springs), best, text, stiffness, springs, faults, f"{advice} leave {errors}" * held
-    )
+    advice = f"{line.axis}: a hinge at the wall and {', '.join(f'{one:.6g}' for one in hinged[:3])} N m/rad from it on"
+    advice = f"{advice} leave {errors}" * held
+    return Judged(line, chain(k), chain(springs), best, text, stiffness, springs, faults, advice)
 
 
 def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str, int, float, str]:
@@ -192,6 +187,17 @@ def _square(line: Line, stiffness: float, expected: Array) -> tuple[float, str]:
     return 1.0, ""
 
 
+def _bodies_in_links(line: Line, expected: Array) -> list[tuple[int, float, float, float]]:
+    """Bodies (link, position from its joint, mass, inertia) in few links heavier than `expected`, kg."""
+    lengths, masses, centres, inertias = line.links.T
+    heavy, more, middle = np.flatnonzero(masses > 1.01 * expected), masses - expected, 0.5 * lengths
+    x = (masses * centres - expected * middle) / np.where(more, more, 1.0)
+    own = expected * (lengths**2 / 12.0 + (middle - centres) ** 2) + more * (x - centres) ** 2
+    rest = np.maximum(inertias - own, 0.0)
+    few = heavy.size <= max(1, len(masses) // 4)
+    return [(int(i), float(x[i]), float(more[i]), float(rest[i])) for i in heavy if few]
+
+
 def _inertia_faults(line: Line, expected: Array, bodies: list[Any]) -> str:
     """What is wrong with the masses, centres and inertias of the links."""
     lengths, masses, centres, inertias = line.links.T
@@ -212,6 +218,17 @@ def _inertia_faults(line: Line, expected: Array, bodies: list[Any]) -> str:
     return ", ".join(wrong)
 
 
+def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
+    """The beam from the wall of a line on, turned to the plane whose EI is nearer. Raises InputError."""
+    beam.check_features("the comparison of a file", ("section", "mass"))
+    beam = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
+    if abs((length := float(line.links[:, 0].sum())) / beam.length - 1.0) > 0.01:
+        raise InputError(f"{name}: its chain is {length:.6g} m long, the beam {beam.length:.6g} m")
+    planes, stiffness = [in_plane(beam, axis) for axis in ("bending", "width")], judge(line).stiffness
+    nearest = int(np.argmin([abs(np.log(stiffness / one.bending_stiffness)) for one in planes]))
+    return beam if line.axis == "torsion" else planes[nearest]
+
+
 def judge_file(
     path: Path, beam: Beam | None, modes: int = 5, within: float | None = None, theory: str = "euler-bernoulli",
     corrected: Path | None = None,
@@ -224,18 +241,7 @@ def judge_file(
 
     (kind, solids), judged = read(path), list[Judged]()
     for line in lines(solids, path.name):
-        own = beam
-        if beam is not None:
-            beam.check_features("the comparison of a file", ("section", "mass"))
-            own = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
-            if abs(sum(line.links[:, 0]) / own.length - 1.0) > 0.01:
-                raise InputError(
-                    f"{path.name}: its chain is {sum(line.links[:, 0]):.6g} m long, the beam {own.length:.6g} m"
-                )
-            planes, found = [in_plane(own, axis) for axis in ("bending", "width")], judge(line).stiffness
-            distance = [abs(np.log(found / one.bending_stiffness)) for one in planes]
-            own = own if line.axis == "torsion" else planes[int(np.argmin(distance))]
-        judged.append(judge(line, own, theory))
+        judged.append(judge(line, beam and _in_its_plane(line, beam, path.name), theory))
     rows, faults, joints, margins, data = list[Any](), list[Any](), list[Any](), list[Margin](), list[Any]()
     limits: dict[str, Any] = {"fine": within or FINE, "limit": within or LIMIT}
     for one in judged:
@@ -249,26 +255,20 @@ def judge_file(
             worst = int(abs(effects).argmax())
             size, where = float(abs(effects[worst])), f"at mode {worst + 1} in {axis}"
             faults.append((axis, text, effects[0], effects[-1]))
-            remedy = (
-                "add a hinge at the wall" if one.advice and text == one.rule else "set the joints, as by --corrected"
-            )
+            remedy = "add a hinge at the wall" if one.advice and text == one.rule else "set the joints below"
             remedy = "give the links m l^2/12 about l/2, no armature" if without.links != one.present.links else remedy
             margins.append(Margin(name=text, size=size, where=where, condition=f"{text} is acceptable", remedy=remedy,
                                   failure=f"{text}: {per_cent(size)} {where}", **limits))  # fmt: skip
-        margins.append(Margin(name=f"discretisation of {n} links", size=abs(one.best.errors(kind_, m)[-1]), remedy="give more links",
+        least = float(abs(one.best.errors(kind_, m)[-1]))
+        margins.append(Margin(name=f"discretisation of {n} links", size=least, remedy="give more links",
                               where=f"at mode {m} in {axis}", condition=f"{n} links are enough", **limits))  # fmt: skip
         pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]
         changes = [new / old - 1.0 if old and new else None for old, new in zip(*pairs, strict=True)]
+        changes = [change if change and abs(change) > SAME else None for change in changes]
         joints += zip(map(str, range(n)), one.line.joints, [axis] * n, *pairs, changes, strict=True)
         own, faulty = one.present.beam, [text for text, _ in one.faults]
-        about: dict[str, Any] = {
-            "axis": axis,
-            "links": n,
-            "rule": one.rule,
-            "stiffness": one.stiffness,
-            "length": own.length,
-        }
-        about |= {"mass_per_length": own.mass_per_length, "supports": own.supports, "faults": faulty}
+        about: dict[str, Any] = {"axis": axis, "links": n, "rule": one.rule, "faults": faulty, "length": own.length}
+        about |= {"stiffness": one.stiffness, "mass_per_length": own.mass_per_length, "supports": own.supports}
         data.append(about | {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after})
     warnings = [one.advice for one in judged if one.advice]
     warnings += [_write(path, kind, solids, judged, corrected)] if corrected else []
@@ -276,12 +276,11 @@ def judge_file(
     named, hz = [Column("axis"), Column("mode")], [Column(name, "Hz", ".7g") for name in ("exact", "file")]
     springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
     tables = [Table("Frequencies", [*named, *hz, *error[:2]], rows)]
-    tables += [Table("Faults, each alone, in frequency", [named[0], Column("fault"), *error[2:4]], faults)] * bool(
-        faults
-    )
-    tables += [Table("Joints", [Column("joint"), Column("name"), named[0], *springs, error[4]], joints)]
-    rules = (f"{one.line.axis}: {one.rule}, {'EI' if one.present.axis == 'bending' else 'GJ'} = {one.stiffness:.6g} N m2"
-             for one in judged)  # fmt: skip
+    if faults:
+        tables += [Table("Faults, each alone, in frequency", [named[0], Column("fault"), *error[2:4]], faults)]
+    tables += [Table("Joints", [*map(Column, ("joint", "name", "axis")), *springs, error[4]], joints)]
+    names = {"torsion": "GJ"}
+    rules = [f"{j.line.axis}: {j.rule}, {names.get(j.line.axis, 'EI')} = {j.stiffness:.6g} N m2" for j in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{sizes}; {'; '.join(rules)}."
     passed = max(float(abs(one["error"]).max()) for one in data) <= limits["fine"]
@@ -294,8 +293,8 @@ def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out
 
     new, edits, data = dict[str, float](), list[tuple[int, int, str]](), path.read_bytes()
     for one in judged:
-        for name, k in zip(one.line.joints, one.springs, strict=True):
-            if name and k:
+        for name, k, old in zip(one.line.joints, one.springs, one.line.springs, strict=True):
+            if name and abs(k - old) > SAME * k:
                 new.setdefault(name, float(k))  # a ball has one stiffness: that of bending
     text = re.sub(rb"(?s)<!--.*?-->", lambda comment: b" " * len(comment[0]), data)
     if kind != "mujoco":
@@ -319,9 +318,7 @@ def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out
             if joint in new:
                 edits.append((*place, repr(new[joint]) if own else f' stiffness="{new[joint]!r}"'))
         if not alike:
-            raise InputError(
-                f"{path.name}: its text has not all joints in their order, write it by mj_saveLastXML first"
-            )
+            raise InputError(f"{path.name}: its joints are not in its text in order, write it by mj_saveLastXML first")
     for start, end, word in sorted(edits, reverse=True):
         data = data[:start] + word.encode() + data[end:]
     with whole(out, "corrected") as part:
