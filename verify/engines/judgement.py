@@ -88,6 +88,8 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
     support: Any = "clamped" if held or wall else "pinned" if bends else "free"
     scale, shaft, expected, bodies = np.ones(n), np.empty((0, 3)), np.median(masses / lengths) * lengths, line.bodies
     if beam is not None:
+        if bends and beam.supports != (support, "free"):
+            raise InputError(f"the beam is {'-'.join(beam.supports)}, the chain {support}-free, give one like it")
         at = np.searchsorted(np.cumsum([one.length for one in beam.pieces])[:-1], 0.5 * (edges[1:] + edges[:-1]))
         shaft = shaft if bends else shafts(beam)
         values = (np.array([one.bending_stiffness for one in beam.pieces]) if bends else shaft[:, 1])[at]
