@@ -78,7 +78,10 @@ def compare(
         beam = load_scene(scenes[0], overrides).beam if scenes else None
         result = judge_file(Path(last), beam, mode or 5, limit, theory, Path(corrected) if corrected else None)
         if not any(formats.values()):
-            result = replace(result, tables=[*result.tables[:-1], shortened(result.tables[-1])])
+            joints, axes = result.tables[-1], dict.fromkeys(row[2] for row in result.tables[-1].rows)
+            parts = [replace(joints, rows=[row for row in joints.rows if row[2] == axis]) for axis in axes]
+            rows = [row for part in parts for row in shortened(part).rows]
+            result = replace(result, tables=[*result.tables[:-1], replace(joints, rows=rows)])
         shared.show(result, **formats)
         raise SystemExit(0 if result.data["passed"] else shared.GATE_FAILED)
     if bool(given) == bool(model):

@@ -86,16 +86,15 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
     (lengths, masses, _, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
     n, edges, held, wall = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0])), bool(k[0] > 0.0)
     support: Any = "clamped" if held or wall else "pinned" if bends else "free"
-    scale, shaft, expected, bodies = np.ones(n), np.empty((0, 3)), np.median(masses / lengths) * lengths, line.bodies
+    scale, expected, bodies = np.ones(n), np.median(masses / lengths) * lengths, line.bodies
     if beam is not None:
         if bends and beam.supports != (support, "free"):
             raise InputError(f"the beam is {'-'.join(beam.supports)}, the chain {support}-free, give one like it")
         at = np.searchsorted(np.cumsum([one.length for one in beam.pieces])[:-1], 0.5 * (edges[1:] + edges[:-1]))
-        shaft = shaft if bends else shafts(beam)
+        shaft = np.empty((0, 3)) if bends else shafts(beam)
         values = (np.array([one.bending_stiffness for one in beam.pieces]) if bends else shaft[:, 1])[at]
         scale, expected = values / values[0], np.array([one.mass_per_length for one in beam.pieces])[at] * lengths
-        carriers = [min(int(np.searchsorted(edges[1:-1], one.position)), n - 1) for one in beam.mass]
-        points = zip(carriers, beam.mass, strict=True)
+        points = [(int(np.searchsorted(edges[1:-1], one.position)), one) for one in beam.mass]
         bodies = [(i, one.position - edges[i], one.mass, one.rotary_inertia) for i, one in points]
     else:
         bodies = [*bodies, *_bodies_in_links(line, expected)]
@@ -132,7 +131,8 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
             armatures=tuple(armature * line.armatures[~np.isnan(springs)]),
         )  # fmt: skip
 
-    rods = np.stack([lengths, expected, 0.5 * lengths, expected * lengths**2 / 12.0 if bends else inertias], axis=1)
+    own = expected * lengths**2 / 12.0 if bends and not line.solid else inertias
+    rods = np.stack([lengths, expected, 0.5 * lengths, own], axis=1)
     faults, best = list[tuple[str, Plane]](), chain(hinged, rods, bodies, False)
     fixed = np.where(np.arange(n) < 5, ratio * springs * bases[0] / bases[spacing], k)
     if held or (wall and max(abs(fixed / k - 1.0)) > ALIKE):
@@ -145,10 +145,15 @@ def judge(line: Line, beam: Beam | None = None, theory: str = "euler-bernoulli")
         faults.append((f"stiffness {ratio:.5g} times that of the beam{named}", chain(k / ratio)))
     if bends and (wrong := _inertia_faults(line, expected, bodies)):
         faults.append((wrong, chain(k, rods, bodies, False)))
-    errors = ", ".join(f"{100.0 * error:+.2g} %" for error in best.errors(best.axis, min(3, n)))
-    advice = f"{line.axis}: a hinge at the wall and {', '.join(f'{one:.6g}' for one in hinged[:3])} N m/rad from it on"
-    advice = f"{advice} leave {errors}" * held
+    advice = _advice(line.axis, hinged, best) if held else ""
     return Judged(line, chain(k), chain(springs), best, text, stiffness, springs, faults, advice)
+
+
+def _advice(axis: str, springs: Array, best: Plane) -> str:
+    """What a hinge at the wall in a first link without one leaves."""
+    first, errors = springs[:3], 100.0 * best.errors(best.axis, min(3, len(springs)))
+    words = f"{axis}: a hinge at the wall and {', '.join(f'{one:.6g}' for one in first)} N m/rad from it on leave "
+    return words + ", ".join(f"{error:+.2g} %" for error in errors)
 
 
 def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str, int, float, str]:
@@ -175,16 +180,13 @@ def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str,
 def _square(line: Line, stiffness: float, expected: Array) -> tuple[float, str]:
     """(factor, its name) by which EI of a drawn section exceeds that of the material with its density."""
     shape, width, depth = line.section or ("", 1.0, 1.0)
-    area, second = (
-        (width * depth, width * depth**3 / 12.0) if shape == "box" else (pi * depth**2 / 4, pi * depth**4 / 64)
-    )
-    density, modulus = expected[0] / line.links[0, 0] / area, stiffness / second
-    for material in MATERIALS.values() if shape else ():
+    area, second = width * depth, width * depth**3 / 12.0
+    if shape == "round":
+        area, second = pi * depth**2 / 4.0, pi * depth**4 / 64.0
+    values = np.array([expected[0] / line.links[0, 0] / area, stiffness / second])
+    for one in MATERIALS.values() if shape else ():
         for factor, what in FACTORS.items():
-            if (
-                abs(density / material.density - 1) < 0.01
-                and abs(modulus / material.youngs_modulus / factor - 1) < 0.02
-            ):
+            if np.allclose(values, [one.density, factor * one.youngs_modulus], rtol=0.015):
                 return factor, f": {what}"
     return 1.0, ""
 
@@ -203,11 +205,10 @@ def _bodies_in_links(line: Line, expected: Array) -> list[tuple[int, float, floa
 def _inertia_faults(line: Line, expected: Array, bodies: list[Any]) -> str:
     """What is wrong with the masses, centres and inertias of the links."""
     lengths, masses, centres, inertias = line.links.T
-    (shape, _, depth), wrong = line.section or ("box", 0.0, 0.0), list[str]()
     plain = np.array([all(i != j for i, *_ in bodies) for j in range(len(masses))]) | (len(bodies) >= len(masses))
     q = float(np.median((inertias / (masses * lengths**2))[plain]))
-    rod = 1 / 12 + depth**2 / float(np.median(lengths)) ** 2 / (16.0 if shape == "round" else 12.0)
-    if not 0.98 / 12 < q < 1.02 * rod:
+    wrong = list[str]()
+    if not (0.98 / 12 < q < 1.02 / 12 or line.solid):
         words = "point masses" if q < 1e-3 else f"inertia {q:.3g} m l^2"
         wrong.append(words + " about the joint" * (abs(q - 1 / 3) < 0.01) + " in place of m l^2/12")
     if (off := plain & (abs(centres / lengths - 0.5) > 0.01)).any():
@@ -261,9 +262,10 @@ def judge_file(
             remedy = "give the links m l^2/12 about l/2, no armature" if without.links != one.present.links else remedy
             margins.append(Margin(name=text, size=size, where=where, condition=f"{text} is acceptable", remedy=remedy,
                                   failure=f"{text}: {per_cent(size)} {where}", **limits))  # fmt: skip
-        least = float(abs(one.best.errors(kind_, m)[-1]))
-        margins.append(Margin(name=f"discretisation of {n} links", size=least, remedy="give more links",
-                              where=f"at mode {m} in {axis}", condition=f"{n} links are enough", **limits))  # fmt: skip
+        least, what = float(abs(one.best.errors(kind_, m)[-1])), f"{n} links"
+        what += " with the inertia of their sections" * (one.line.solid and theory == "euler-bernoulli")
+        margins.append(Margin(name=f"discretisation by {what}", size=least, remedy="give more links",
+                              where=f"at mode {m} in {axis}", condition=f"{what} are enough", **limits))  # fmt: skip
         pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]
         changes = [new / old - 1.0 if old and new else None for old, new in zip(*pairs, strict=True)]
         changes = [change if change and abs(change) > SAME else None for change in changes]

@@ -37,7 +37,7 @@ class Move(NamedTuple):
 class Solid(NamedTuple):
     """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
 
-    `shape`: 'box' or 'round' and its sizes as vectors, rows (3, 3), m.
+    `shape`, of MJCF: 'box' or 'round' and its sizes as vectors, rows (3, 3), m.
     """
 
     name: str
@@ -55,7 +55,7 @@ class Line(NamedTuple):
 
     A first link fixed to the wall has the joint '' of stiffness NaN. `links`: length, mass, centre of mass from the
     joint, inertia about it, (N, 4). `bodies` fixed to links: (link, position from its joint, mass, inertia). `section`:
-    shape, width and thickness as drawn, or None.
+    shape, width and thickness as drawn, or None. `solid`: inertias are those of a prism, about all axes.
     """
 
     axis: Axis
@@ -65,6 +65,7 @@ class Line(NamedTuple):
     links: Array
     bodies: list[tuple[int, float, float, float]]
     section: tuple[str, float, float] | None
+    solid: bool
 
 
 def read(path: Path) -> tuple[str, list[Solid]]:
@@ -84,15 +85,7 @@ def read(path: Path) -> tuple[str, list[Solid]]:
             return root.tag, _xml(root, path.name, springs)
     except InputError:
         raise
-    except (
-        OSError,
-        ElementTree.ParseError,
-        ValueError,
-        LookupError,
-        TypeError,
-        RecursionError,
-        StopIteration,
-    ) as error:
+    except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError, StopIteration) as error:
         raise InputError(f"{path.name}: not readable, {type(error).__name__}: {one_line(str(error))}") from None
     raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
 
@@ -136,7 +129,7 @@ def _mjcf(path: Path) -> list[Solid]:
             size = size[[0, 0, 1]] if kind in axial else size
             shape = "round" if kind in axial else "box", (data.geom_xmat[g].reshape(3, 3) * size).T
             shape = shape if kind in {*axial, "BOX"} else None
-        place, up = (data.xpos[b].copy(), int(model.body_parentid[b]) - 1)
+        place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
         solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b)), shape))
     return solids
@@ -188,7 +181,7 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
     for key in order:
         at, one, (joint, parent) = place(key), links[key], above.get(key, ("", ""))
         kind, moves, inertial = joints[joint].get("type", "") if joint else "fixed", [], one.find("inertial")
-        mass, shape = float(_value(inertial, "mass/value") or _value(inertial, "mass") or 0), None
+        mass = float(_value(inertial, "mass/value") or _value(inertial, "mass") or 0)
         if kind not in ("fixed", "revolute", "continuous", "prismatic"):
             raise InputError(f"{name}: joint {shown(joint)} is of type {shown(kind)}, give hinges in its place")
         if kind != "fixed":
@@ -201,13 +194,8 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
         centre = at @ _pose(inertial)
         six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
         inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
-        for drawn in (*one.findall("visual"), *one.findall("collision")):
-            box, rod = (_value(drawn, f"geometry/{size}") for size in ("box/size", "cylinder/radius"))
-            if box or rod:
-                size = box.split() if box else [*[2.0 * float(rod)] * 2, _value(drawn, "geometry/cylinder/length")]
-                shape = "box" if box else "round", ((at @ _pose(drawn))[:3, :3] * np.array(size, dtype=float)).T
         up = order.index(parent) if parent in order else -1
-        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), shape))
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), None))
     return solids
 
 
@@ -223,9 +211,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         up |= {i: above} if one.moves else {}
     sprung = [i for i in up if any(move.stiffness > 0.0 and not move.slides for move in solids[i].moves)]
     if not sprung:
-        raise InputError(
-            f"{name}: no hinge has a stiffness, give the joints springs (in URDF by gazebo/springStiffness)"
-        )
+        raise InputError(f"{name}: no hinge has a stiffness, give springs (in URDF by gazebo/springStiffness)")
     chain = sprung[:1]
     while up[chain[0]] >= 0:
         chain.insert(0, up[chain[0]])
@@ -237,9 +223,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         raise InputError(f"{name}: {shown(solids[min(other)].name)} has springs beyond the first chain, give one chain")
     for move in (move for i in chain for move in solids[i].moves if move.bound or move.slides):
         what = f"{move.bound} acts on" if move.bound else "a slide or a free base is"
-        raise InputError(
-            f"{name}: {what} joint {shown(move.joint)}, give a chain of hinges and springs alone on a wall"
-        )
+        raise InputError(f"{name}: {what} joint {shown(move.joint)}, give a wall, hinges and springs alone")
     dust, parts = MASSLESS * max(solids[i].mass for i in chain), list[tuple[list[Move], list[Solid]]]()
     for i in chain:
         own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
@@ -263,9 +247,7 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     x, centres = (places - places[0]) @ along, np.array([one.centre for one in mains])
     off = [places - places[0] - np.outer(x, along), centres - places - np.outer((centres - places) @ along, along)]
     if not along.any() or max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * x[-1]:
-        raise InputError(
-            f"{name}: its joints and centres of mass are on no straight line, give two links or more on it"
-        )
+        raise InputError(f"{name}: its joints and centres of mass are on no straight line, give two links or more")
     masses, centre, steps = np.array([one.mass for one in mains]), (centres - places) @ along, np.diff(x)
     last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
     if (shape := mains[-1].shape) and abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
@@ -273,17 +255,17 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     across = next((one.axis for one in hinges if abs(one.axis @ along) < STRAIGHT), None)
     turned = [along] if across is None else [across, np.cross(along, across), along]
     if any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
-        raise InputError(f"{name}: its hinges are not about perpendicular axes, its own among them, turn them")
-    found = []
+        raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
+    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in mains])
+    apart = np.array([np.trace(one.inertia) for one in mains]) - prism - 2.0 * spins
+    found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
     for axis, about in zip(AXES[-len(turned) :], turned, strict=True):
         own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
         if not any(move.stiffness for moves in own for move in moves):
             continue
         for j, moves in enumerate(own[1:], 1):
             if len(moves) != 1 or not moves[0].stiffness:
-                raise InputError(
-                    f"{name}: {shown(mains[j].name)} has no hinge with a stiffness about the axis of {axis}"
-                )
+                raise InputError(f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         armatures = np.array([sum(move.armature for move in moves) for moves in own])
         inertias = np.array([about @ one.inertia @ about for one in mains])
@@ -297,5 +279,7 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             width, depth = (float(np.abs(drawn[1] @ one).sum()) for one in (about, np.cross(about, along)))
             section = drawn[0], width, depth
         joints, links = [moves[0].joint if moves else "" for moves in own], [np.append(steps, last), masses, centre]
-        found.append(Line(axis, joints, springs, armatures, np.stack([*links, inertias], axis=1), bodies, section))
+        found.append(
+            Line(axis, joints, springs, armatures, np.stack([*links, inertias], axis=1), bodies, section, solid)
+        )
     return found
