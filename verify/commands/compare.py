@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands import shared
+from verify.commands.chain import judge_chain
 from verify.options import THEORIES
 
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".asc"}
@@ -65,27 +66,13 @@ def compare(
     from verify.scene.load import load_scene
     from verify.validation import Relative
 
+    if Path([scene, *given][-1]).suffix.lower() in CHAINS:
+        return judge_chain([scene, *given], overrides, mode or 5, within, theory, corrected, formats)
+    if bool(given) == bool(model):
+        raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     limit = None if within is None else typed(within, Relative, "within")
     if limit is not None and not (isinstance(limit, float | int) and limit > 0.0):
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
-    *scenes, last = scene, *given
-    if Path(last).suffix.lower() in CHAINS:
-        from dataclasses import replace
-
-        from verify.commands.chain import shortened
-        from verify.engines.judgement import judge_file
-
-        beam = load_scene(scenes[0], overrides).beam if scenes else None
-        result = judge_file(Path(last), beam, mode or 5, limit, theory, Path(corrected) if corrected else None)
-        if not any(formats.values()):
-            joints, axes = result.tables[-1], dict.fromkeys(row[2] for row in result.tables[-1].rows)
-            parts = [replace(joints, rows=[row for row in joints.rows if row[2] == axis]) for axis in axes]
-            rows = [row for part in parts for row in shortened(part).rows]
-            result = replace(result, tables=[*result.tables[:-1], replace(joints, rows=rows)])
-        shared.show(result, **formats)
-        raise SystemExit(0 if result.data["passed"] else shared.GATE_FAILED)
-    if bool(given) == bool(model):
-        raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     loaded = load_scene(scene, overrides)
     options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory)
     numbers = [_number(word) for word in given]
