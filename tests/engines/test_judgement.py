@@ -140,6 +140,12 @@ def test_what_is_no_chain_is_one_sentence(tmp_path, body, sentence, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
+def test_joints_behind_bodies_are_not_written(tmp_path):
+    text = re.sub(r"(<joint[^>]*/>)(<geom[^>]*/>)(<body.*</body>)</body>$", r"\2\3\1</body>", PAIR.format(""))
+    with pytest.raises(InputError, match="not in its text in order"):
+        judged(tmp_path, f'<mujoco><option><flag contact="disable"/></option><worldbody>{text}</worldbody></mujoco>')
+
+
 def test_command_and_files_without_springs_or_with_other_supports(tmp_path, capsys):
     path = tmp_path / "beam.urdf"
     write(describe(STEEL, 14, wall="half"), path)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -303,15 +304,17 @@ def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out
     text = re.sub(rb"(?s)<!--.*?-->", lambda comment: b" " * len(comment[0]), data)
     if kind != "mujoco":
         tag, field, spring = ("joint", "name", "spring_") if kind == "sdf" else ("gazebo", "reference", "spring")
-        ahead, behind = rf"(?s)<{tag}\s[^>]*{field}\s*=\s*[\"']", rf"[\"'].*?<{spring}[sS]tiffness>([^<]*)"
+        ahead, after = rf"(?s)<{tag}\s[^>]*{field}\s*=\s*[\"']", rf"[\"'].*?<{spring}[sS]tiffness>([^<]*)"
         for name, k in new.items():
-            if spot := re.search((ahead + re.escape(name) + behind).encode(), text):
+            if spot := re.search((ahead + re.escape(name) + after).encode(), text):
                 edits.append((*spot.span(1), repr(k)))
     else:
         tags = [tag for tag in re.finditer(rb"(?s)<(?:free)?joint\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*", text)
                 if text.rfind(b"<worldbody", 0, tag.start()) > text.rfind(b"</worldbody", 0, tag.start())]  # fmt: skip
         compiled = {move.joint: move.stiffness for one in solids for move in one.moves}
-        alike = len(tags) == len(compiled)
+        bodies = [[one.tag for one in body] for body in ElementTree.fromstring(data).iter("body")]
+        behind = any("joint" in names[names.index("body") :] for names in bodies if "body" in names)
+        alike = len(tags) == len(compiled) and not behind
         for found, (joint, present) in zip(tags, compiled.items(), strict=False):
             named, own = (
                 re.search(rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)", found[0]) for word in (b"name", b"stiffness")
