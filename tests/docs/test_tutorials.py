@@ -73,8 +73,10 @@ def ran(line, capsys, monkeypatch):
     return status, err if status == 2 else out
 
 
-@pytest.mark.parametrize("page", [ROOT / "README.md", *TUTORIALS], ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [ROOT / "README.md", ROOT / "docs/engines.md", *TUTORIALS], ids=lambda page: page.stem)
 def test_commands_of_a_tutorial_print_what_it_shows(page, tmp_path, monkeypatch, capsys):
+    if page.stem == "engines":
+        pytest.importorskip("mujoco")
     monkeypatch.chdir(tmp_path)
     text, status = page.read_text("utf-8"), 0
     for name, body in re.findall(r"^:caption: (\S+)\n\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):

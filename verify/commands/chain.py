@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
+from verify.commands.shared import GATE_FAILED, BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.errors import InputError, printable
 
 if TYPE_CHECKING:
@@ -67,6 +67,32 @@ def chain(
     show(result, **formats)
     if wrote:
         click.echo(printable(wrote), err=not brief)
+
+
+def judge_chain(
+    words: list[str], overrides: tuple[str, ...], modes: int, within: str | None, theory: str, corrected: str | None,
+    formats: dict[str, bool],
+) -> None:  # fmt: skip
+    """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""
+    from dataclasses import replace
+
+    from verify.commands.choose import relative_error
+    from verify.engines.judgement import judge_file
+    from verify.scene.load import load_scene
+
+    if len(words) > 2:
+        raise InputError(f"{words[-1]}: give one file, with one scene in front of it or none")
+    beam = load_scene(words[0], overrides).beam if len(words) > 1 else None
+    out, limit = Path(corrected) if corrected else None, relative_error(within) if within else None
+    result = judge_file(Path(words[-1]), beam, modes, limit, theory, out)
+    if not any(formats.values()):
+        joints, axes = result.tables[-1], dict.fromkeys(row[2] for row in result.tables[-1].rows)
+        parts = [replace(joints, rows=[row for row in joints.rows if row[2] == axis]) for axis in axes]
+        rows = [row for part in parts for row in _shortened(part).rows]
+        result = replace(result, tables=[*result.tables[:-1], replace(joints, rows=rows)])
+    show(result, **formats)
+    if not result.data["passed"]:
+        raise SystemExit(GATE_FAILED)
 
 
 def _fewest(beam: "Beam", mode: int, error: float, wall: str, in_space: bool) -> int:

@@ -5,12 +5,15 @@ from pathlib import Path
 import click
 
 from verify.commands import shared
+from verify.commands.chain import judge_chain
 from verify.options import THEORIES
 
 UNITS = ("Hz", "kHz", "mHz", "rad/s", "1/min", "Hz/(2 pi)", "rad2/s2", "s", "ms")
 """As in `compare.reading.UNITS`: rad2/s2 are squares of omega, s and ms periods."""
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
+CHAINS = {".xml", ".mjcf", ".sdf", ".urdf"}
+"""Suffixes of chains of rigid bodies, with a scene in front or without."""
 
 
 @click.command(cls=shared.BeamCommand)
@@ -29,6 +32,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 @click.option(
     "--theory", type=click.Choice(THEORIES), default=THEORIES[0], show_default=True, help="Of the exact beam."
 )
+@click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
 @shared.charts_option
 @shared.format_options
 def compare(
@@ -43,6 +47,7 @@ def compare(
     mode: int | None,
     within: str,
     theory: str,
+    corrected: str | None,
     charts: str | None,
     **formats: bool,
 ) -> None:
@@ -50,6 +55,8 @@ def compare(
 
     FILE is a list of frequencies or a solver's output (.csv, .txt, .tsv, .dat, .f06, or - for standard input), measured
     modes (.uff, .unv), or a mesh with mode shapes. Exit status 1 where the list has a fault or an error is too large.
+
+    FILE may be a chain of rigid bodies, with or without SCENE: .xml (MJCF), .sdf, .urdf (see docs/engines.md).
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
@@ -61,6 +68,8 @@ def compare(
     from verify.scene.load import load_scene
     from verify.validation import Relative
 
+    if Path([scene, *given][-1]).suffix.lower() in CHAINS:
+        return judge_chain([scene, *given], overrides, mode or 5, within, theory, corrected, formats)
     if bool(given) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     limit = typed(within, Relative, "within")

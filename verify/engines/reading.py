@@ -1,0 +1,285 @@
+"""MJCF, SDF and URDF files as bodies and joints at rest, and the straight chain of rigid links in them.
+
+MJCF is compiled by MuJoCo, which resolves defaults, includes and the inertias of geoms. SDF and URDF are read by the
+standard library; the springs of URDF are those of Gazebo's extension.
+"""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.engines.description import AXES, Axis
+from verify.errors import InputError, one_line, shown
+
+STRAIGHT = 1e-3
+"""Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
+MASSLESS = 1e-8
+"""Mass of a body that counts as none, over the largest: formats demand one between two hinges at one place."""
+
+
+class Move(NamedTuple):
+    """A degree of freedom at a place, m, about or along an axis in the world; `bound`: what else acts on it."""
+
+    joint: str
+    slides: bool
+    at: Array
+    axis: Array
+    stiffness: float
+    armature: float = 0.0
+    bound: str = ""
+
+
+class Solid(NamedTuple):
+    """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
+
+    `shape`, of MJCF: 'box' or 'round' and its sizes as vectors, rows (3, 3), m.
+    """
+
+    name: str
+    parent: int
+    origin: Array
+    mass: float
+    centre: Array
+    inertia: Array
+    moves: tuple[Move, ...]
+    shape: tuple[str, Array] | None
+
+
+class Line(NamedTuple):
+    """The chain about one axis, N joints with a link beyond each. SI.
+
+    A first link fixed to the wall has the joint '' of stiffness NaN. `links`: length, mass, centre of mass from the
+    joint, inertia about it, (N, 4). `bodies` fixed to links: (link, position from its joint, mass, inertia). `section`:
+    shape, width and thickness as drawn, or None. `solid`: inertias are those of a prism, about all axes.
+    """
+
+    axis: Axis
+    joints: list[str]
+    springs: Array
+    armatures: Array
+    links: Array
+    bodies: list[tuple[int, float, float, float]]
+    section: tuple[str, float, float] | None
+    solid: bool
+
+
+def read(path: Path) -> tuple[str, list[Solid]]:
+    """(root element: mujoco, sdf or robot; bodies, each after its parent). Raises InputError."""
+    try:
+        root = ElementTree.parse(path).getroot()
+        if root.tag == "mujoco":
+            return root.tag, _mjcf(path)
+        beside = path.with_name(path.name + ".json")
+        other = json.loads(beside.read_text("utf-8")) if beside.exists() else {}
+        if other.get("springs") or other.get("supports", ["", "free"])[1] != "free":
+            raise InputError(f"{path.name}: springs to the ground and supports of the far end are not judged, free it")
+        if root.tag == "sdf":
+            return root.tag, _xml(next(root.iter("model")), path.name, None)
+        if root.tag == "robot":
+            springs = {one.get("reference", ""): one.findtext("springStiffness") for one in root.findall("gazebo")}
+            return root.tag, _xml(root, path.name, springs)
+    except InputError:
+        raise
+    except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError, StopIteration) as error:
+        raise InputError(f"{path.name}: not readable, {type(error).__name__}: {one_line(str(error))}") from None
+    raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
+
+
+def _mjcf(path: Path) -> list[Solid]:
+    """The bodies at the angles where the springs have no moment; a ball is three hinges, as for small motion."""
+    try:
+        import mujoco
+    except ImportError:
+        raise InputError(f"{path.name}: MJCF is compiled by MuJoCo, install it: pip install mujoco") from None
+    model = mujoco.MjModel.from_xml_path(str(path.resolve()))
+    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    data = mujoco.MjData(model)
+    data.qpos[:] = model.qpos_spring
+    mujoco.mj_forward(model, data)
+    springs, bound = np.reshape(model.jnt_stiffness, (model.njnt, -1)), dict[int, str]()
+    kinds = ("an equality", "dry friction", "dry friction", "a limit", "a limit", *["a contact"] * 9)
+    for kind, row in zip(data.efc_type, np.reshape(data.efc_J, (-1, model.nv)), strict=False):
+        bound |= {int(dof): kinds[kind] for dof in np.flatnonzero(row)}
+    for at, n, spring in zip(model.tendon_adr, model.tendon_num, model.tendon_stiffness, strict=True):
+        bound |= {int(model.jnt_dofadr[i]): "a tendon" for i in model.wrap_objid[at : at + n] if np.any(spring)}
+    for i, bias in enumerate(model.actuator_biasprm):
+        if bias[1] and model.actuator_trntype[i] == 0:
+            bound[int(model.jnt_dofadr[model.actuator_trnid[i, 0]])] = "an actuator with a stiffness"
+
+    def moves(body: int) -> Iterator[Move]:
+        for j in range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body])):
+            kind, dof = int(model.jnt_type[j]), int(model.jnt_dofadr[j])
+            for i, axis in enumerate([data.xaxis[j]] if kind > 1 else data.xmat[body].reshape(3, 3).T):
+                spring, armature = float(springs[j, 0]), float(model.dof_armature[dof + i])
+                name, at, slides = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), kind in (0, 2)
+                yield Move(name, slides, at, axis.copy(), spring, armature, bound.get(dof + i, ""))
+
+    solids, axial = [], {"CAPSULE", "CYLINDER"}
+    for b in range(1, model.nbody):
+        own, shape = data.ximat[b].reshape(3, 3), None
+        inertia = (own * model.body_inertia[b]) @ own.T
+        if model.body_geomnum[b]:
+            g = int(model.body_geomadr[b])
+            kind, size = mujoco.mjtGeom(model.geom_type[g]).name[7:], 2.0 * model.geom_size[g]
+            size = size[[0, 0, 1]] if kind in axial else size
+            shape = "round" if kind in axial else "box", (data.geom_xmat[g].reshape(3, 3) * size).T
+            shape = shape if kind in {*axial, "BOX"} else None
+        place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
+        name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
+        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b)), shape))
+    return solids
+
+
+def _value(one: ElementTree.Element | None, path: str) -> str:
+    """An attribute (URDF) or the text of an element (SDF), '' where missing."""
+    head, _, last = path.rpartition("/")
+    at = one.find(head) if one is not None and head else one
+    return "" if at is None else at.get(last) or (at.findtext(last) or "").strip()
+
+
+def _pose(one: ElementTree.Element | None) -> Array:
+    """The transformation (4, 4) of an element's origin (URDF) or pose (SDF): x y z, roll pitch yaw."""
+    words = _value(one, "pose") or f"{_value(one, 'origin/xyz') or '0 0 0'} {_value(one, 'origin/rpy')}"
+    x, y, z, roll, pitch, yaw = [*map(float, words.split()), 0.0, 0.0, 0.0][:6]
+    pose = np.eye(4)
+    for angle, i, k in ((yaw, 0, 1), (pitch, 2, 0), (roll, 1, 2)):
+        turn, c, s = np.eye(4), np.cos(angle), np.sin(angle)
+        turn[[i, k, i, k], [i, k, k, i]] = c, c, -s, s
+        pose = pose @ turn
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] | None) -> list[Solid]:
+    """The links of a model of SDF, or of URDF with `springs` of its joints."""
+    mark = "" if springs is None else "joint "  # in URDF a joint may have the name of a link
+    links = {one.get("name", ""): one for one in model.findall("link")}
+    joints = {mark + one.get("name", ""): one for one in model.findall("joint")}
+    frames = {one.get("name", ""): one for one in model.findall("frame")} | joints | links
+    ends = {key: [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
+            for key, one in joints.items()}  # fmt: skip
+    above = {child: (key, parent) for key, (parent, child) in ends.items()}
+    if len(above) < len(ends):
+        raise InputError(f"{name}: a link is the child of two joints: closed loops are not read, open them")
+    places: dict[str, Array] = dict.fromkeys(("", "__model__", "world"), np.eye(4))
+
+    def place(frame: str) -> Array:
+        if frame not in places:
+            base = ends[frame][springs is None] if frame in joints else frames[frame].get("attached_to", "")
+            base = above.get(frame, ("",))[0] if springs is not None and frame in links else base
+            places[frame] = place(_value(frames[frame], "pose/relative_to") or base) @ _pose(frames[frame])
+        return places[frame]
+
+    order, solids = list[str](), list[Solid]()
+    while fresh := [key for key in links if key not in order and above.get(key, ("", "world"))[1] in ("world", *order)]:
+        order += fresh
+    for key in order:
+        at, one, (joint, parent) = place(key), links[key], above.get(key, ("", ""))
+        kind, moves, inertial = joints[joint].get("type", "") if joint else "fixed", [], one.find("inertial")
+        mass = float(_value(inertial, "mass/value") or _value(inertial, "mass") or 0)
+        if kind not in ("fixed", "revolute", "continuous", "prismatic"):
+            raise InputError(f"{name}: joint {shown(joint)} is of type {shown(kind)}, give hinges in its place")
+        if kind != "fixed":
+            if not mass:
+                raise InputError(f"{name}: link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
+            axis, turn, word = joints[joint].find("axis"), place(joint), joint[len(mark) :]
+            about = turn[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
+            own = _value(axis, "dynamics/spring_stiffness") if springs is None else springs.get(word)
+            moves = [Move(word, kind == "prismatic", turn[:3, 3], about, float(own or 0.0))]
+        centre = at @ _pose(inertial)
+        six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
+        inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
+        up = order.index(parent) if parent in order else -1
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), None))
+    return solids
+
+
+def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
+    """The hinges and bodies, the link first, of each rigid part of the chain with springs, from the wall on.
+
+    A first link fixed to the wall has no hinges. Raises InputError for branches and for what else acts on it.
+    """
+    owner, up = list[int](), dict[int, int]()
+    for i, one in enumerate(solids):
+        above = owner[one.parent] if one.parent >= 0 else -1
+        owner.append(i if one.moves else above)
+        up |= {i: above} if one.moves else {}
+    sprung = [i for i in up if any(move.stiffness > 0.0 and not move.slides for move in solids[i].moves)]
+    if not sprung:
+        raise InputError(f"{name}: no hinge has a stiffness, give springs (in URDF by gazebo/springStiffness)")
+    chain = sprung[:1]
+    while up[chain[0]] >= 0:
+        chain.insert(0, up[chain[0]])
+    while below := [i for i in up if up[i] == chain[-1]]:
+        if len(below) > 1:
+            raise InputError(f"{name}: {shown(solids[chain[-1]].name)} carries {len(below)} bodies: the chain branches")
+        chain += below
+    if other := set(sprung) - set(chain):
+        raise InputError(f"{name}: {shown(solids[min(other)].name)} has springs beyond the first chain, give one chain")
+    for move in (move for i in chain for move in solids[i].moves if move.bound or move.slides):
+        what = f"{move.bound} acts on" if move.bound else "a slide or a free base is"
+        raise InputError(f"{name}: {what} joint {shown(move.joint)}, give a wall, hinges and springs alone")
+    dust, parts = MASSLESS * max(solids[i].mass for i in chain), list[tuple[list[Move], list[Solid]]]()
+    for i in chain:
+        own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
+        before = parts.pop() if parts and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6) else ([], [])
+        others = [one for one in (*members[1:], *before[1]) if one.mass > dust]
+        parts.append((before[0] + own, [members[0], *others]))
+    if len(parts) > 1 and (base := solids[chain[0]].parent) >= 0:
+        ahead, first = (parts[i][0][-1].at for i in (1, 0))
+        reach, step = (np.linalg.norm(one) for one in (first - solids[base].origin, ahead - first))
+        if reach and abs(solids[base].mass / reach / (parts[0][1][0].mass / step) - 1.0) < 0.05:
+            parts.insert(0, ([], [solids[base]]))
+    return parts
+
+
+def lines(solids: list[Solid], name: str) -> list[Line]:
+    """The chain about each axis of its hinges. Raises InputError for what is no straight chain."""
+    parts = _chain(solids, name)
+    mains, hinges = [members[0] for _, members in parts], [move for moves, _ in parts for move in moves]
+    places = np.array([moves[-1].at if moves else members[0].origin for moves, members in parts])
+    along = (places[-1] - places[0]) / (np.linalg.norm(places[-1] - places[0]) or 1.0)
+    x, centres = (places - places[0]) @ along, np.array([one.centre for one in mains])
+    off = [places - places[0] - np.outer(x, along), centres - places - np.outer((centres - places) @ along, along)]
+    if not along.any() or max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * x[-1]:
+        raise InputError(f"{name}: its joints and centres of mass are on no straight line, give two links or more")
+    masses, centre, steps = np.array([one.mass for one in mains]), (centres - places) @ along, np.diff(x)
+    last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
+    if (shape := mains[-1].shape) and abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
+        last = float(np.abs(shape[1] @ along).max())  # a body of the end moves the centre of mass
+    across = next((one.axis for one in hinges if abs(one.axis @ along) < STRAIGHT), None)
+    turned = [along] if across is None else [across, np.cross(along, across), along]
+    if any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
+        raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
+    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in mains])
+    apart = np.array([np.trace(one.inertia) for one in mains]) - prism - 2.0 * spins
+    found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
+    for axis, about in zip(AXES[-len(turned) :], turned, strict=True):
+        own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
+        if not any(move.stiffness for moves in own for move in moves):
+            continue
+        for j, moves in enumerate(own[1:], 1):
+            if len(moves) != 1 or not moves[0].stiffness:
+                raise InputError(f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}")
+        springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
+        armatures = np.array([sum(move.armature for move in moves) for moves in own])
+        inertias = np.array([about @ one.inertia @ about for one in mains])
+        bodies = [
+            (j, float((one.centre - places[j]) @ along), one.mass, float(about @ one.inertia @ about))
+            for j, (_, members) in enumerate(parts)
+            for one in members[1:]
+        ]
+        section = None
+        if drawn := mains[-2].shape:
+            width, depth = (float(np.abs(drawn[1] @ one).sum()) for one in (about, np.cross(about, along)))
+            section = drawn[0], width, depth
+        joints, links = [moves[0].joint if moves else "" for moves in own], [np.append(steps, last), masses, centre]
+        found.append(
+            Line(axis, joints, springs, armatures, np.stack([*links, inertias], axis=1), bodies, section, solid)
+        )
+    return found
