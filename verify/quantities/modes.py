@@ -140,7 +140,7 @@ def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None =
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
 def bracket(cache: "SolutionCache", options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
-    """Segments below, fem above the exact frequency of a uniform beam: no clamped end, axial force or attachments."""
+    """Segments below, fem above the exact frequency of a bare uniform beam; clamped ends with wall = half alone."""
     return cache.bracket(mode, count, options.settings)
 
 
