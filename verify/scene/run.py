@@ -42,7 +42,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     skipped: tuple[PlanRow, ...]
     """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
-    """Implausible units."""
+    """Implausible units and gates."""
     margins: "tuple[Margin, ...]" = ()
     """Linear theory under the drive and under the weight of the slider."""
     seconds: float
@@ -94,7 +94,7 @@ def run_scene(
     """
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES
-    from verify.scene.warnings import unit_warnings
+    from verify.scene.warnings import scene_warnings
     from verify.studies.base import studies_of
 
     start = perf_counter()
@@ -116,7 +116,7 @@ def run_scene(
         gates=tuple(gates),
         results=results,
         skipped=tuple(row for row in rows if not row.runs),
-        warnings=unit_warnings(loaded),
+        warnings=scene_warnings(loaded),
         margins=_margins(loaded, cache),
         seconds=perf_counter() - start,
     )
