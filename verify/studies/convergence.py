@@ -29,8 +29,9 @@ Counts: TypeAlias = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(min_l
 Row: TypeAlias = dict[str, Any]
 STYLES = ("-o", "--s", ":^", "-.d", "-v")  # line and marker of each mode
 NOTES = [
-    "Order: from the size before. GCI: grid convergence index of this size and the two before, the uncertainty that a "
-    "user without an exact solution would state; extrapolated: error of Richardson's value from the same three.",
+    "Order: from the size before. GCI: grid convergence index of this size and the two before, where all three are in "
+    "the asymptotic range; factor of safety 1.25, observed order, at most the theoretical one. It is the uncertainty "
+    "that a user without an exact solution would state. Extrapolated: error of Richardson's value from the same three.",
     "In range: the order at this size and at all larger ones is within 0.5 of the theoretical order (of the last "
     "observed order where theory gives none): the asymptotic range.",
     "Time: warm solve of all modes, assembly included, median of repeats.",
@@ -135,6 +136,8 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                         finer["asymptotic"] = within = within and abs(observed - expected) <= ORDER_SPREAD
                     elif two[0] * two[1] < 0.0 and min(map(abs, two)) >= ORDER_FLOOR:  # the error changes its sign
                         finer["asymptotic"] = within = False
+                for last, finer in pairwise(rows[-len(self.counts) :]):  # three sizes in range: two orders
+                    finer["gci"] = finer["gci"] if last["asymptotic"] and finer["asymptotic"] else None
         return rows
 
     def _printed_joints(self, beam: "Beam") -> list[str]:
