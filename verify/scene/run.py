@@ -61,8 +61,9 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def gates_in_words(self) -> str:
         """'all 27 gates passed', '2 of 27 gates failed', 'no gate ran'; with the number that `--set` skips."""
         judged = sum(gate.passed is not None for gate in self.gates)
-        text = f"all {judged} gates passed" if judged else "no gate ran" if self.gates else "the scene has no gates"
-        text = f"{len(self.failed)} of {judged} gates failed" if self.failed else text
+        every = f"all {judged} gates" if judged > 1 else "1 gate"
+        text = f"{every} passed" if judged else "no gate ran" if self.gates else "the scene has no gates"
+        text = f"{len(self.failed)} of {judged} gate{'s' * (judged > 1)} failed" if self.failed else text
         skipped = len(self.gates) - judged
         return f"{text} ({skipped} skipped: --set changes the values that they are stated for)" if skipped else text
 
