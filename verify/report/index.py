@@ -47,8 +47,7 @@ def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     counts = [f"{levels.count(level)} {level}" for level in (CANNOT, *LEVELS) if level in levels]
     bad, n = sum(line["passed"] is not True for line in lines), len(lines)
     passed, gates = (sum(line["gates"][i] for line in lines) for i in (0, 1))
-    all_passed = f"all {passed} gates passed" if passed > 1 else "1 gate passed"
-    good = f"{n} scenes, {all_passed if passed else 'no gate ran'}"
+    good = f"{n} scenes, " + (f"all {passed} gates passed" if passed else "no gate ran")
     good += f", --set skips {gates - passed}" * (gates > passed)
     return Result(
         summary=(f"{bad} of {n} scenes failed" if bad else good) + f". Verdicts: {', '.join(counts)}.",

@@ -17,7 +17,6 @@ MAX_WIDTH = 5.0  # of a strip over its length
 MAX_MASS = 1e8  # kg, above any bridge's; a beam in millimetres read as metres has 1e9 times its mass
 LONG = 5.0  # m; no beam in millimetres is shorter than this when read as metres
 SMALL_DEFLECTION = 0.1  # over the beam's length
-NORMS = ("shape_error", "curvature_error")  # errors without a sign
 ELEMENTS = 50  # of that sag, which is exact at the nodes of any number
 
 
@@ -29,7 +28,7 @@ def scene_warnings(scene: Scene) -> tuple[str, ...]:
         f"gate {gate.id}: at_most alone accepts any negative value: give at_least too, or expect and within"
         for gate in scene.gate
         if gate.at_most is not None and gate.at_least is None
-        if gate.quantity.endswith("error") and not gate.quantity.endswith(NORMS)
+        if gate.quantity.endswith("error") and not gate.quantity.endswith(("shape_error", "curvature_error"))  # norms
     )
     return (*found, *_lengths(beam), *one_sided)
 
