@@ -73,12 +73,13 @@ class GateItem(pytest.Item):
 
         result = run_gate(self.gate, self.scene, self.cache)
         band = expected(self.gate)
+        unit = "" if result.unit == "1" else f" {result.unit}"
         values = {"measured": result.value, "expected": band, "unit": result.unit}
         values["fraction"] = "" if result.fraction is None else f"{result.fraction:.6g}"
         values["seconds"] = f"{result.seconds:.6g}"
         self.user_properties += [(name, str(value)) for name, value in values.items()]
         if not result.passed:
-            raise GateFailedError(f"gate {result.id}: {result.reason} (expected {band} {result.unit}; {self.gate.why})")
+            raise GateFailedError(f"gate {result.id}: {result.reason} (expected {band}{unit}; {self.gate.why})")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """The gate's sentence instead of a traceback into this file."""

@@ -25,7 +25,7 @@ def here(tmp_path, monkeypatch):
 def test_run_writes_page_and_data(capsys):
     assert status_of(["run", "bare.toml"]) == 0
     out = capsys.readouterr().out
-    assert "All 1 gates passed" in out
+    assert "1 gate passed" in out
     assert "report: reports/bare.html" in out
     (folder,) = Path("reports/bare").iterdir()
     data = json.loads((folder / "run.json").read_text())

@@ -11,7 +11,7 @@ from verify.scene.load import STARTER, packaged_scenes, scene_from, tables_of, t
 from verify.scene.model import Claim, Scene
 from verify.scene.run import skipped_gates
 from verify.scene.schema import scene_schema, sections
-from verify.scene.warnings import static_sag, unit_warnings
+from verify.scene.warnings import scene_warnings, static_sag
 
 # --- Loading ---
 
@@ -46,7 +46,7 @@ def test_packaged_scene_loads(name):
     assert scene.gate
     assert scene.title
     assert all(gate.reference for gate in scene.gate) or name == str(STARTER)
-    assert unit_warnings(scene) == ()
+    assert scene_warnings(scene) == ()
     assert scene_from(tables_of(name)) == scene
 
 
@@ -159,8 +159,15 @@ def test_other_units_are_warned_about(tmp_path, old, new, words):
     text = SCENE.replace(old, new)
     if words == "above that of any solid":
         text = text.replace("113e9", "113e12")
-    (warning,) = unit_warnings(scene_of(tmp_path, text))
+    (warning,) = scene_warnings(scene_of(tmp_path, text))
     assert words in warning
+
+
+def test_gate_on_a_signed_error_without_a_lower_limit_is_warned_about(tmp_path):
+    gate = '[[gate]]\nid = "e"\nquantity = "mode.frequency_error"\nwhy = "w"\nat_most = 0.01\n'
+    text = SCENE + gate + 'arguments = { model = "segment", mode = 2, count = 9 }\n'
+    assert ["accepts any negative" in one for one in scene_warnings(scene_of(tmp_path, text))] == [True]
+    assert scene_warnings(scene_of(tmp_path, text + "at_least = -0.01\n")) == ()
 
 
 def test_large_structures_are_not_warned_about():
@@ -177,7 +184,7 @@ def test_large_structures_are_not_warned_about():
     bridge = Beam(length=80.0, bending_stiffness=5e10, mass_per_length=8000.0)
     assert 1.0 < static_sag(blade) < 4.0
     assert static_sag(bridge) == pytest.approx(5.0 / 384.0 * 8000.0 * 9.81 * 80.0**4 / 5e10, rel=1e-10)
-    assert [unit_warnings(Scene(name="s", beam=beam)) for beam in (blade, bridge)] == [(), ()]
+    assert [scene_warnings(Scene(name="s", beam=beam)) for beam in (blade, bridge)] == [(), ()]
 
 
 def test_sag_of_a_stepped_cantilever_with_a_tip_mass():

@@ -77,6 +77,7 @@ def test_orders_outside_the_asymptotic_range_are_marked(run, renders):
     marks = {row["model"]: row["in range"] for row in rows_of(result.tables[0], N=80)}
     assert marks == {"segments": False, "segments, wall half": True, "Hermite elements": True}
     assert "segments -1.879e-05 % (order 6.44, 5.46: not asymptotic)" in result.summary
+    assert [row["model"] for row in rows_of(result.tables[0], N=80) if row["GCI"] is None] == ["segments"]
     assert any("order not converged" in warning for warning in result.warnings)
     table = run("steel-cantilever", Convergence(modes=(3,), counts=(10, 20, 40, 320, 640))).tables[0]
     assert [row["in range"] for row in rows_of(table, model="segments")] == [None, False, False, False, True]

@@ -17,10 +17,10 @@ def plan(scene: str, overrides: tuple[str, ...], **formats: bool) -> None:
     from verify.report.result import Column, Result, Table
     from verify.scene.load import load_scene
     from verify.scene.run import plan as plan_scene
-    from verify.scene.warnings import unit_warnings
+    from verify.scene.warnings import scene_warnings
 
     rows = [(row.what, row.kind, row.runs, row.why) for row in plan_scene(scene, overrides)]
     table = Table("", [Column("what"), Column("kind"), Column("runs"), Column("quantity, or why skipped")], rows)
     skipped = sum(not row[2] for row in rows)
     summary = f"{len(rows) - skipped} parts run, {skipped} are skipped."
-    show(Result(summary, [table], warnings=unit_warnings(load_scene(scene, overrides))), **formats)
+    show(Result(summary, [table], warnings=scene_warnings(load_scene(scene, overrides))), **formats)

@@ -42,7 +42,7 @@ class BeamCommand(click.Command):
         return super().parse_args(ctx, args)
 
 
-_SET = "Override a value of the scene: beam.length=0.4, gate.ID.within=1%."
+_SET = "Override a value of the scene: beam.length=0.4, gate.ID.within=0.01 (in the quantity's unit)."
 overrides_option = click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help=_SET)
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
 csv_option = click.option("--csv", "as_csv", is_flag=True, help="Print the first table as CSV, in SI units.")

@@ -40,7 +40,7 @@ class BeamModel(ABC):
     sized: ClassVar[bool] = True
     """Whether the model is discrete."""
     bounds: ClassVar[Literal["below", "above"] | None] = None
-    """Side of the exact frequencies on which its own lie, for uniform beams without a clamped end."""
+    """Side of the exact frequencies on which its own lie, for uniform beams of equal parts without a clamped end."""
     fewest: ClassVar[int] = 1
     """Smallest number of parts."""
     library: ClassVar[str] = ""

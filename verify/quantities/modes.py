@@ -33,7 +33,7 @@ def frequency(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
 
 @quantity("mode.frequency_error", unit="1", reads=BEAM)
 def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
-    """Signed frequency error relative to the exact beam of the same theory; model = analytic: to Euler-Bernoulli."""
+    """Signed error against the exact frequency of the same theory; model = analytic: theory over Euler-Bernoulli."""
     if of.count is not None:
         return cache.frequency_error(of.model, of.count, of.mode, of.settings)
     exact = cache.exact_hz(of.mode)
@@ -140,7 +140,7 @@ def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None =
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
 def bracket(cache: "SolutionCache", options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
-    """Segments below, fem above the exact frequency of a uniform beam: no clamped end, axial force or attachments."""
+    """Segments below, fem above the exact frequency of a bare uniform beam; clamped ends with wall = half alone."""
     return cache.bracket(mode, count, options.settings)
 
 

@@ -3,6 +3,7 @@
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -69,10 +70,11 @@ def run_page(run: "RunResult", command: str = "") -> str:
     limits = (Column(name, format=".3g", percent=True) for name in ("trusted up to", "not above"))
     columns = [Column("level"), Column("margin"), *limits, Column("condition"), Column("remedy")]
     rows: list[Any] = []
-    for one in run.verdict.margins:
+    for one in (margin for margin in run.verdict.margins if margin.name != "gates"):  # they have a table
         texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
         texts = ["" if one.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
-        rows.append((one.level, one.text, *map(plain, (one.fine, one.limit) if one.is_error else (None, None)), *texts))
+        relative = one.is_error and isfinite(one.size)
+        rows.append((one.level, one.text, *map(plain, (one.fine, one.limit) if relative else (None, None)), *texts))
     reasons = [Table("Margins", columns, rows[:WORST]), Table(REST, columns, rows[WORST:])]
     gates = gates_table(run)
     skipped = Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])

@@ -25,7 +25,8 @@ def gates_sentence(run: "RunResult") -> str:
     """'All 18 gates passed, the worst is first-mode with 65.8 % of its tolerance.', or failures and skips."""
     text, used = run.gates_in_words, [(one.fraction, one.id) for one in run.gates if one.fraction is not None]
     if used and run.passed:
-        text += f", the worst is {max(used)[1]} with {100.0 * max(used)[0]:.3g} % of its tolerance"
+        most, name = max(used)
+        text += f", {'the worst is ' * (len(used) > 1)}{name} with {100.0 * most:.3g} % of its tolerance"
     return f"{text[:1].upper()}{text[1:]}."
 
 

@@ -42,7 +42,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     skipped: tuple[PlanRow, ...]
     """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
-    """Implausible units."""
+    """Implausible units and gates."""
     margins: "tuple[Margin, ...]" = ()
     """Linear theory under the drive and under the weight of the slider."""
     seconds: float
@@ -61,8 +61,9 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def gates_in_words(self) -> str:
         """'all 27 gates passed', '2 of 27 gates failed', 'no gate ran'; with the number that `--set` skips."""
         judged = sum(gate.passed is not None for gate in self.gates)
-        text = f"all {judged} gates passed" if judged else "no gate ran" if self.gates else "the scene has no gates"
-        text = f"{len(self.failed)} of {judged} gates failed" if self.failed else text
+        every = f"all {judged} gates" if judged > 1 else "1 gate"
+        text = f"{every} passed" if judged else "no gate ran" if self.gates else "the scene has no gates"
+        text = f"{len(self.failed)} of {judged} gate{'s' * (judged > 1)} failed" if self.failed else text
         skipped = len(self.gates) - judged
         return f"{text} ({skipped} skipped: --set changes the values that they are stated for)" if skipped else text
 
@@ -94,7 +95,7 @@ def run_scene(
     """
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES
-    from verify.scene.warnings import unit_warnings
+    from verify.scene.warnings import scene_warnings
     from verify.studies.base import studies_of
 
     start = perf_counter()
@@ -116,7 +117,7 @@ def run_scene(
         gates=tuple(gates),
         results=results,
         skipped=tuple(row for row in rows if not row.runs),
-        warnings=unit_warnings(loaded),
+        warnings=scene_warnings(loaded),
         margins=_margins(loaded, cache),
         seconds=perf_counter() - start,
     )

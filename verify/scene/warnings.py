@@ -1,4 +1,4 @@
-"""Plausibility warnings: values that look like another unit."""
+"""Plausibility warnings: values that look like another unit, gates that accept any negative error."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -20,11 +20,17 @@ SMALL_DEFLECTION = 0.1  # over the beam's length
 ELEMENTS = 50  # of that sag, which is exact at the nodes of any number
 
 
-def unit_warnings(scene: Scene) -> tuple[str, ...]:
-    """A sentence for each value that looks like another unit."""
+def scene_warnings(scene: Scene) -> tuple[str, ...]:
+    """A sentence for each value that looks like another unit, and for each gate without a limit of negative errors."""
     beam = scene.beam
     found = dict.fromkeys(one for piece in beam.pieces for one in _material(piece))
-    return (*found, *_lengths(beam))
+    one_sided = (
+        f"gate {gate.id}: at_most alone accepts any negative value: give at_least too, or expect and within"
+        for gate in scene.gate
+        if gate.at_most is not None and gate.at_least is None
+        if gate.quantity.endswith("error") and not gate.quantity.endswith(("shape_error", "curvature_error"))  # norms
+    )
+    return (*found, *_lengths(beam), *one_sided)
 
 
 def _material(piece: "Piece") -> Iterator[str]:
