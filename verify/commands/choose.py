@@ -49,6 +49,8 @@ def choose(
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
     columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
     notes = [f"{one.variant.title}: {one.size.known_by}" for one in choices]
+    notes += ["error law: by the discrete dispersion and the walls of a uniform beam (docs/theory.md)"]
+    notes += ["lower modes beyond it: modes below this one with errors beyond the limit at this N"]
     result = Result(
         f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
         [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
