@@ -15,7 +15,6 @@ from verify.analysis.variants import Rules
 from verify.errors import InputError
 from verify.linear.modes import Modes
 from verify.linear.registry import MODELS
-from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass
 from verify.scene.load import load_scene
@@ -253,9 +252,8 @@ def test_the_sufficient_size_is_that_of_an_enumeration(titanium_strip, model, su
 
 def test_the_size_holds_for_every_larger_one_where_errors_alternate_with_the_parity_of_n():
     """A stepped chain with printed joints: 71 links are within 0.1 %, 72 and 74 are not."""
-    half = Section(length=0.5)
-    beam = Beam(length=1.0, width=0.04, thickness=0.012, youngs_modulus=210e9, density=7850.0,
-                    supports=("clamped", "free"), section=(half, replace(half, thickness=0.008)))  # fmt: skip
+    beam = load_scene("beam: 1 m x 40 x 12 mm steel, clamped-free").beam
+    beam = replace(beam, section=(Section(length=0.5), Section(length=0.5, thickness=0.008)))
     bench, settings = SolutionCache(beam), {"joints": "printed", "wall": "half"}
     hertz = [MODELS["segment"].build(beam, n, **settings).modes(5).frequencies_hz[4] for n in range(60, 91)]
     beyond = [abs(one / bench.exact_hz(5) - 1.0) > 1e-3 for one in hertz]

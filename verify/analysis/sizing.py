@@ -20,10 +20,9 @@ LARGEST_ALTERNATIVE = 500
 """Largest size with settings other than the defaults, or five times the size with the defaults."""
 LAW_FROM = 60
 """Size from which on the error law replaces the scan (measured: within a third of its terms from 20 parts on)."""
-EVERY, FINE, COARSE = 60, 1.05, 1.5
-"""Size up to which a scan tries every size; larger ones are 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %."""
-WINDOW = 20
-"""Consecutive sizes within the limit: errors of stepped chains alternate with the places of steps in their links."""
+EVERY, FINE, COARSE, WINDOW = 60, 1.05, 1.5, 20
+"""Size up to which a scan tries every size; larger ones are 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %.
+Number of consecutive sizes to be within the limit: errors alternate with the places of steps within links."""
 LOWER_MODES = 100  # highest mode below which all lower modes are checked
 ROUNDING = 1e-12  # smallest error above rounding
 
@@ -129,11 +128,9 @@ def _scan(within: Within, first: int, up_to: int) -> tuple[int, int, str]:
     size = count = _between(within, last, min(n for n in good if n > last))
     while size < count + WINDOW:
         size, count = size + 1, count if within(size) else size + 1
-    known_by = f"every N from {count} to {size - 1} was solved"
-    if (largest := max(sizes)) >= size:
-        known_by += f", larger ones up to {largest} in steps of {5 if largest < LARGEST_WITHOUT_LAW else 50} %"
+    more = f", {sum(n >= size for n in sizes)} larger ones up to {max(sizes)}" if max(sizes) >= size else ""
     dip = _between(within, max((n for n in sizes if n < good[0]), default=first - 1), good[0])
-    return count, dip, known_by
+    return count, dip, f"every N from {count} to {size - 1} was solved{more}"
 
 
 def _between(within: Within, low: int, high: int) -> int:
