@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from verify.bench.work_precision import STAR_NOTE, Row, ratio_cells
+
 DOCS = Path(__file__).parents[1] / "docs"
 MARKER = "<!-- results: written by python -m benchmarks.results -->\n"
 """What stands below it in a page is replaced."""
@@ -43,14 +45,16 @@ def bench_tables() -> str:
         lines += ["| set | method | order | finest size: error, time | ratio at 1e-2 | 1e-3 | 1e-4 | 1e-5 |"]
         lines += ["|---|---|--:|---|--:|--:|--:|--:|"]
         for question in data["questions"]:
+            rows = [Row(**one) for one in question["rows"]]
             for method, ratios in question["ratios"].items():
                 row = [one for one in question["rows"] if one["method"] == method][-1]
                 size = f"{row['size_name']} {row['size']:.3g}: " if row["size_name"] else ""
                 finest = f"{size}{row['error']:.1e}, {1e3 * row['seconds']:.3g} ms"
-                cells = (question["id"], method, number(row["order"], ".2f"), finest, *map(number, ratios))
+                marked = (cell or "" for cell in ratio_cells(method, ratios, rows, ".2g"))
+                cells = (question["id"], method, number(row["order"], ".2f"), finest, *marked)
                 lines.append(f"| {' | '.join(cells)} |")
         known = (f"{one['id']}: {one['title']}; reference {one['reference']}" for one in data["questions"])
-        lines += ["", *(f"- {one}" for one in known)]
+        lines += ["", "\\" + STAR_NOTE, "", *(f"- {one}" for one in known)]
     return "\n".join(lines) + "\n"
 
 

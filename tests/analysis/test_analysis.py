@@ -14,6 +14,8 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import Rules
 from verify.errors import InputError
 from verify.linear.modes import Modes
+from verify.linear.registry import MODELS
+from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass
 from verify.scene.load import load_scene
 
@@ -246,6 +248,17 @@ def test_the_sufficient_size_is_that_of_an_enumeration(titanium_strip, model, su
             assert (found.count, found.smaller, found.mode) == expected, error
             compared += 1
     assert compared >= 3
+
+
+def test_the_size_holds_for_every_larger_one_where_errors_alternate_with_the_parity_of_n():
+    """A stepped chain with printed joints: 71 links are within 0.1 %, 72 and 74 are not."""
+    beam = load_scene("beam: 1 m x 40 x 12 mm steel, clamped-free").beam
+    beam = replace(beam, section=(Section(length=0.5), Section(length=0.5, thickness=0.008)))
+    bench, settings = SolutionCache(beam), {"joints": "printed", "wall": "half"}
+    hertz = [MODELS["segment"].build(beam, n, **settings).modes(5).frequencies_hz[4] for n in range(60, 91)]
+    beyond = [abs(one / bench.exact_hz(5) - 1.0) > 1e-3 for one in hertz]
+    found = sizing.sufficient_size(bench, "segment", 5, 1e-3, tuple(settings.items()))
+    assert (found.smaller, found.count) == (60 + beyond.index(False), 91 - beyond[::-1].index(True)) == (71, 75)
 
 
 def test_the_mode_of_the_largest_size_is_named_and_may_not_be_the_highest():

@@ -75,6 +75,7 @@ def test_ratio_compares_equal_errors(capsys):
     assert data["ratios"]["second"][1] == pytest.approx(5e-4 * 10**1.5 / 1e-2, rel=1e-9)
     assert data["ratios"]["fourth"] == [1.0, 1.0, 1.0, 1.0]
     assert data["ratios"]["second"][3] is None
+    assert [cell and cell.endswith("*") for cell in found.tables[1].rows[1][2:]] == [True, True, None, None]
 
 
 @pytest.mark.parametrize(

@@ -315,4 +315,5 @@ def test_a_failed_gate_and_a_stopped_slider_are_never_green(small_run, full_run)
     assert run.verdict.headline == "Not to be trusted: the slider left the beam after 3 ms."
     assert 'class="verdict not-trusted"' in run_page(run)
     assert run_data(run)["verdict"]["level"] == run_data(run)["results"]["motion"]["verdict"]["level"] == "not trusted"
-    assert msgspec.structs.replace(small_run, gates=(), results={}).verdict.level == "not trusted"
+    empty = msgspec.structs.replace(small_run, gates=(), results={})
+    assert (empty.verdict.level, printed(empty, 200).count("Not to be trusted")) == ("not trusted", 1)

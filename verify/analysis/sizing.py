@@ -20,8 +20,9 @@ LARGEST_ALTERNATIVE = 500
 """Largest size with settings other than the defaults, or five times the size with the defaults."""
 LAW_FROM = 60
 """Size from which on the error law replaces the scan (measured: within a third of its terms from 20 parts on)."""
-EVERY, FINE, COARSE = 60, 1.05, 1.5
-"""Size up to which a scan tries every size; larger ones are 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %."""
+EVERY, FINE, COARSE, WINDOW = 60, 1.05, 1.5, 20
+"""Size up to which a scan tries every size; larger ones are 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %.
+Number of consecutive sizes to be within the limit: errors alternate with the places of steps within links."""
 LOWER_MODES = 100  # highest mode below which all lower modes are checked
 ROUNDING = 1e-12  # smallest error above rounding
 
@@ -37,7 +38,7 @@ class Sufficient(msgspec.Struct, frozen=True, kw_only=True):
 
     count: int  # the error is within the limit for this and all larger sizes, by the argument `known_by`
     mode: int  # the mode that requires it
-    smaller: int | None = None  # the smallest size within the limit, if a larger one is not
+    smaller: int | None = None  # the smallest size tried that is within the limit, if a larger one is not
     known_by: str
 
 
@@ -61,8 +62,8 @@ def sufficient_size(
     """The size from which on the computed frequency error of `mode`, or of all modes of a range, is within `error`.
 
     For a uniform beam from `LAW_FROM` on by the error law, with neighbouring sizes solved; for pinned and guided ends
-    the discrete dispersion proves it. In other cases by a scan up to twice the last size beyond the limit, and
-    bisection. Raises InputError if no size up to `largest` is within the limit.
+    the discrete dispersion proves it. In other cases by a scan up to twice the last size beyond the limit, bisection,
+    and `WINDOW` consecutive sizes. Raises InputError if no size up to `largest` is within the limit.
     """
     if not error >= ROUNDING:
         raise InputError(f"error = {error!r} is within rounding: give {ROUNDING:g} or more")
@@ -89,7 +90,7 @@ def sufficient_size(
         check_allowed(count)
         return all(abs(expected_error(model, beam, one, count)) <= error for one in modes)
 
-    guess, dip = 0, None
+    guess = dip = 0
     has_guess = model in LAWS and beam.uniform and not settings
     if has_guess:
         # errors fall monotonically beyond 300 parts per clamped end, and for elements below mu = 2.98
@@ -106,18 +107,17 @@ def sufficient_size(
         count = _between(within, low, high)
         known_by = PROVEN if sine_fits(beam.supports) else BY_LAW
     else:
-        count, dip, last = _scan(within, smallest, max(guess, smallest + 4))
-        known_by = f"sizes up to {last} were solved, beyond {EVERY} 5 % apart"
+        count, dip, known_by = _scan(within, smallest, max(guess, smallest + 4))
     errors = {one: cache.error_or_reason(model, count - 1, one, settings)[0] for one in modes} if count > 1 else {}
     worst = max(modes, key=lambda one: (abs(off) if (off := errors.get(one)) is not None else float("inf"), one))
-    smaller = dip if dip is not None and dip < count - 1 and within(dip) else None
+    smaller = dip if 0 < dip < count - 1 and within(dip) else None
     return Sufficient(count=count, mode=worst, smaller=smaller, known_by=known_by)
 
 
-def _scan(within: Within, first: int, up_to: int) -> tuple[int, int | None, int]:
-    """(sufficient size, smallest size within the limit if smaller, largest size tried).
+def _scan(within: Within, first: int, up_to: int) -> tuple[int, int, str]:
+    """(sufficient size, smallest size tried that is within the limit, sizes solved in words).
 
-    Sizes up to `up_to`, or twice the last size beyond the limit.
+    Sizes up to `up_to`, or twice the last size beyond the limit; next to the sufficient size a full window.
     """
     sizes, last, size = dict[int, bool](), first - 1, first
     while size <= max(2 * last, up_to):
@@ -125,10 +125,12 @@ def _scan(within: Within, first: int, up_to: int) -> tuple[int, int | None, int]
         last = last if sizes[size] else size
         size = size + 1 if size < EVERY else ceil((FINE if size < LARGEST_WITHOUT_LAW else COARSE) * size)
     good = [n for n in sizes if sizes[n]]
-    count = _between(within, last, min(n for n in good if n > last))
-    if (dip := min(good)) > last:
-        return count, None, max(sizes)
-    return count, _between(within, max((n for n in sizes if n < dip), default=dip - 1), dip), max(sizes)
+    size = count = _between(within, last, min(n for n in good if n > last))
+    while size < count + WINDOW:
+        size, count = size + 1, count if within(size) else size + 1
+    more = f", {sum(n >= size for n in sizes)} larger ones up to {max(sizes)}" if max(sizes) >= size else ""
+    dip = _between(within, max((n for n in sizes if n < good[0]), default=first - 1), good[0])
+    return count, dip, f"every N from {count} to {size - 1} was solved{more}"
 
 
 def _between(within: Within, low: int, high: int) -> int:

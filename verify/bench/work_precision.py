@@ -145,12 +145,21 @@ def ratios(question: Question, rows: Sequence[Row]) -> dict[str, list[float | No
     return {name: [ratio(line, error) for error in ERRORS] for name, line in lines.items()}
 
 
+def ratio_cells(method: str, values: Sequence[float | None], rows: Sequence[Row], form: str) -> list[str | None]:
+    """Ratios of a method at `ERRORS` as text, starred where it or the first method is within at its coarsest size."""
+    lines = [of for name, of in by_method(rows).items() if name in (method, rows[0].method) and of[0].size_name]
+    least = min((max(row.error for row in line) for line in lines), default=1.0)
+    stars = ["*" * (method != rows[0].method and least <= error) for error in ERRORS]
+    return [None if value is None else f"{value:{form}}{star}" for value, star in zip(values, stars, strict=True)]
+
+
 COLUMNS = [Column("set"), Column("method"), Column("size"), Column("error", format=".2g")]
 COLUMNS += [Column("order", format=".2f"), Column("time", "s", format=".3g", prefix=True)]
 COLUMNS += [Column("spread", percent=True, format=".0f")]
 REFERENCE_COLUMNS = [*map(Column, ("set", "quantity", "reference")), Column("uncertainty", format=".1g")]
 RATIO_COLUMNS = (Column("set"), Column("method"), *(Column(f"at {error:g}", format=".3g") for error in ERRORS))
-RATIO_NOTE = "Time of a method over that of the first of its set at the same error, by logarithmic interpolation."
+STAR_NOTE = "* This method or the first one is within the error at its coarsest size already, whose time it has here."
+RATIO_NOTES = ["Time over that of the first method of the set at equal error, by logarithmic interpolation.", STAR_NOTE]
 
 
 def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
@@ -158,9 +167,9 @@ def result(measured: Sequence[tuple[Question, Sequence[Row]]]) -> Result:
     sized = [(q, row, row.size_name and f"{row.size_name} = {row.size:.3g}") for q, own in measured for row in own]
     rows = [(q.id, row.method, size, row.error, row.order, row.seconds, row.spread) for q, row, size in sized]
     compared = {q.id: ratios(q, rows_of) for q, rows_of in measured}
-    times = [(title, method, *own) for title, each in compared.items() for method, own in each.items()]
+    times = [(q.id, m, *ratio_cells(m, own, of, ".3g")) for q, of in measured for m, own in compared[q.id].items()]
     references = [(q.id, q.title, q.reference, q.uncertainty) for q, _ in measured]
-    tables = [Table("Time over error", COLUMNS, rows), Table("Time ratio", RATIO_COLUMNS, times, [RATIO_NOTE])]
+    tables = [Table("Time over error", COLUMNS, rows), Table("Time ratio", RATIO_COLUMNS, times, RATIO_NOTES)]
     tables.append(Table("References", REFERENCE_COLUMNS, references))
     data = {
         "machine": {"processor": processor(), **environment()},
@@ -193,7 +202,5 @@ def _figure(question: Question, rows: Sequence[Row]) -> Figure:
 
 def processor() -> str:
     """Name of the processor."""
-    info = Path("/proc/cpuinfo")
-    lines = info.read_text("utf-8").splitlines() if info.exists() else []
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor()
+    lines = info.read_text("utf-8").splitlines() if (info := Path("/proc/cpuinfo")).exists() else []
+    return next((line.partition(":")[2].strip() for line in lines if "model name" in line), platform.processor())

@@ -49,6 +49,7 @@ def choose(
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
     columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
     notes = [f"{one.variant.title}: {one.size.known_by}" for one in choices]
+    notes += ["error law: expected error, see docs/theory.md", "lower modes beyond it: errors above the limit at N"]
     result = Result(
         f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
         [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
@@ -62,10 +63,8 @@ def _modes(text: str) -> int | range:
     from verify.convert import typed
 
     modes = typed(text, tuple[int, ...], "mode")
-    if not all(isinstance(mode, int) and mode > 0 for mode in modes):
-        raise InputError(f"mode = {text!r}: give a mode number from 1, or a range as 1-12")
-    if modes != list(range(modes[0], modes[-1] + 1)):
-        raise InputError(f"mode = {text!r}: give one mode, or all of a range as 1-12")
+    if not all(isinstance(mode, int) and mode > 0 for mode in modes) or modes != [*range(modes[0], modes[-1] + 1)]:
+        raise InputError(f"mode = {text!r}: give one mode, or all of a range as 1-12, numbered from 1")
     return modes[0] if len(modes) == 1 else range(modes[0], modes[-1] + 1)
 
 

@@ -18,12 +18,13 @@ LONG = 30
 def print_run(run: "RunResult", console: "Console", saved: "Saved | None" = None) -> None:
     """Print a run: its verdict first, and at the end again with the gates, where a terminal stops."""
     console.print(run.scene.title or run.scene.name, style="bold")
-    print_verdict(run.verdict, console, brief=True)
+    gates, skipped = gates_in_short(run), [one for one in run.gates if one.passed is None]
+    if run.results or gates.rows:
+        print_verdict(run.verdict, console, brief=True)
     for name, result in run.results.items():
         console.print()
         console.print(study_title(run, name), style="bold")
         result.print(console, LONG)
-    gates, skipped = gates_in_short(run), [one for one in run.gates if one.passed is None]
     if gates.rows:
         console.print()
         gates.print(console)

@@ -77,7 +77,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         if self.failed:
             margins.append(void("gates", f"{self.gates_in_words}, {', '.join(one.id for one in self.failed)}"))
         elif not (judged or self.results):
-            margins.append(void("the run", "no study and no gate ran, nothing was computed"))
+            margins.append(void("the run", "no study and no gate ran", "add a gate or a study, see docs/your-beam.md"))
         found = verdict_of(margins)
         if found.level != "trusted" or any(margin.is_error for margin in margins) or not judged:
             return found

@@ -141,7 +141,8 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
         size = (known["model"], known.get("count")) if known.get("model") in MODELS else (EXACT, None)
         at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
         with suppress(InputError):
-            found += beam_margins(cache, [size], **at, settings=settings)
+            if not name.endswith(("order", ".count_needed")):  # which frequency errors of beam theory do not change
+                found += beam_margins(cache, [size], **at, settings=settings)
         found += figure_margins(name, arguments, scene, cache, settings)
     runs = [*cache.motions.values(), *(one.run for one in cache.motors.values() if hasattr(one, "run"))]
     if scene.slider is not None and (sliding := [run for run in runs if run.coupling is not None]):
