@@ -158,15 +158,11 @@ def sufficient_count(
 
 
 def against_exact(what: str, model: str, value: float, exact: float) -> Margin:
-    """Difference of a result from the exact beam's: large near a resonance even at a small frequency error.
-
-    Up to 100 % the exact beam answers; beyond it the sign or the order of magnitude is wrong.
-    """
+    """Difference from the exact beam, which answers up to 100 %: large near a resonance at a small frequency error."""
     size = abs(value / exact - 1.0) if exact else 0.0 if value == exact else inf
-    off = f"{what} of {model} is off by {per_cent(size)}"
-    return Margin(name=f"{what} of {model}", size=size, limit=inf if size <= 1.0 else 1.0,
-                  condition=f"the exact beam answers: {off}", failure=f"{off} of the exact beam's",
-                  remedy=f"give more than {model}")  # fmt: skip
+    off, limit = f"{what} of {model} is off by {per_cent(size)}", inf if size <= 1.0 else 1.0
+    return Margin(name=f"{what} of {model}", size=size, limit=limit, condition=f"the exact beam answers: {off}",
+                  failure=f"{off} of the exact beam's", remedy=f"give more than {model}")  # fmt: skip
 
 
 def marked(title: str, margins: Iterable[Margin]) -> str:

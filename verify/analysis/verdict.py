@@ -5,7 +5,6 @@ from math import isfinite
 from typing import Any, Literal, TypeAlias
 
 import msgspec
-from msgspec.structs import replace
 
 Level: TypeAlias = Literal["trusted", "conditional", "not trusted"]
 COLOURS: dict[Level, str] = {"trusted": "green", "conditional": "yellow", "not trusted": "red"}
@@ -14,8 +13,7 @@ LEVELS: tuple[Level, ...] = tuple(COLOURS)
 FINE, LIMIT = 0.01, 0.10
 """Relative errors up to which a result is trusted, and trusted under a condition."""
 LESS, OPEN = "press it less, or stiffen the beam", "model its contact by [slider.contact]"
-MORE = f"press it more, or {OPEN}"
-"""Remedies of sag and of lift-off, which contradict each other, and what remains of the second with the first."""
+MORE = f"press it more, or {OPEN}"  # contradicts LESS: OPEN remains
 
 
 class Margin(msgspec.Struct, frozen=True, kw_only=True):
@@ -52,15 +50,9 @@ class Margin(msgspec.Struct, frozen=True, kw_only=True):
         """The size in words: 'discretisation of 49 segments 0.43 % at mode 22', 'lift-off 152 times its limit'."""
         if not isfinite(self.size):
             return self.failure or f"{self.name} without a value {self.where}".rstrip()
-        inside = self.fine < self.size <= self.limit
-        bound, words = (self.fine, "what is trusted") if inside else (self.limit, "its limit")
+        bound, words = (self.fine, "what is trusted") if self.level == "conditional" else (self.limit, "its limit")
         size = per_cent(self.size) if self.is_error else f"{three_digits(self.size / bound)} times {words}"
         return " ".join(filter(None, (self.name, size if self.size else "", self.where)))
-
-    @property
-    def effect(self) -> str:
-        """Text; beyond the limit of a fraction its failure: 'the preload bends the beam by 84 mm'."""
-        return self.failure if self.failure and not self.is_error and self.level == "not trusted" else self.text
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -75,7 +67,8 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def others(self) -> str:
         """Further margins beyond `fine`, of each name the worst: 'also: one-way coupling 2 %, shear 1.1 %'."""
-        worst = {one.name: one.effect for one in reversed(self.margins) if one.level != "trusted"}
+        off = [one for one in reversed(self.margins) if one.level != "trusted"]
+        worst = {m.name: m.text if m.is_error or m.level == "conditional" else m.failure or m.text for m in off}
         texts = [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
         return f"also: {', '.join(texts)}" if texts else ""
 
@@ -91,7 +84,7 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
     sized = (one for one in worst_of.values() if one.size or one.level != "trusted")
     ordered = sorted(sized, key=_badness, reverse=True)
     if any(one.remedy == LESS and one.level == "not trusted" for one in ordered):
-        ordered = [replace(one, remedy=OPEN) if one.remedy == MORE else one for one in ordered]
+        ordered = [msgspec.structs.replace(one, remedy=OPEN) if one.remedy == MORE else one for one in ordered]
     if not ordered:
         return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
     worst, largest = ordered[0], max(ordered, key=lambda one: one.is_error * one.size)

@@ -152,7 +152,7 @@ def readings(scene: "Scene") -> "Table":
     """
     from verify.dynamics.simulate import simulate
 
-    own, hard = scene.slider, "two-way coupling with hard contact, give slider.contact.stiffness"
+    own = scene.slider
     assert own is not None
     point = replace(own, contact=None, foot=(), external_force=0.0, preload_stiffness=0.0)
     opening = replace(point, kinematics="tangential", normal="bilateral", line="spline", contact=Contact())
@@ -171,8 +171,8 @@ def readings(scene: "Scene") -> "Table":
             worst = found.margins[0].text if found.margins else ""
             rows.append((name, assumption, duration, run.mean_speed, found.level, worst))
         except InputError as error:
-            unsuited = slider is opening and own.coupling == "two-way"
-            rows.append((name, assumption, duration, None, "not computed", hard if unsuited else str(error)))
+            hard = "two-way coupling with hard contact" if slider is opening and own.coupling == "two-way" else ""
+            rows.append((name, assumption, duration, None, "not computed", hard or str(error)))
     columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
     valid = ", ".join(row[0] for row in rows if row[3] is not None and row[4] != "not trusted")
     note = f"Valid by its own margins: {valid or 'none'}. A mean over the start is not the speed of a motor."

@@ -102,8 +102,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         columns += [si("crest speed there", "m/s", "+.5g")]
         notes = [
             "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: "
-            "of the surface at the rms amplitude, against the wave. Right: at the model's own frequency of least "
-            "reflection.",
+            "of the surface at the rms amplitude, against the wave. Right: at its own frequency of least reflection.",
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
@@ -167,7 +166,7 @@ def _cells(one: dict[str, float] | None) -> tuple[float | None, ...]:
     return tuple(one.values()) if one else (None,) * 4
 
 
-def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, towards: str) -> "Table":
+def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> "Table":
     """The scene's drive, the best of equal amplitudes, and the best ratio, for waves towards the same end."""
     from verify.waves.operating_point import lead_deg
 
@@ -178,8 +177,7 @@ def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, towards: str) -
         ("best at equal amplitudes", 1.0, best.equal_phase_deg, best.equal_standing_wave_ratio),
         ("best ratio", best.ratio, best.phase_deg, best.standing_wave_ratio),
     ]
-    notes = [f"Second over first {case.kind}; exact beam, wave towards {towards} as the scene's."]
-    notes += [f"{best.note}."] if best.note else []
+    notes = [f"Second over first {case.kind}; exact beam, wave towards {end}.", f"{best.note}."][: 1 + bool(best.note)]
     return Table("Two actuators without reflection", [*columns, Column("SWR", format=".5g")], rows, notes)
 
 
