@@ -91,7 +91,7 @@ def test_readme_is_short_and_has_two_commands_of_setting_up():
     text = (ROOT / "README.md").read_text("utf-8")
     assert len(text.splitlines()) <= 100
     assert re.findall(r"^```sh\n(.*)\n```$", text, re.MULTILINE) == [
-        "pip install . && verify run",
+        "pip install . && verify scenes init my.toml && verify run my.toml",
         "pip install '.[test]' && pytest",
     ]
     assert all((ROOT / link).exists() for link in re.findall(r"\]\(([^):#]+)[^)]*\)", text))

@@ -49,8 +49,9 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
             else:
                 inside.append(f"{name} is not a known key: {near_name(str(key), tuple(fields))}")
         if not set(data) - set(fields):  # else a missing key may be the misspelt one
-            missing = (key for key, field in fields.items() if field.required and key not in data)
-            inside += [f"{f'{where}.{key}'.lstrip('.')} is missing: give it a value" for key in missing]
+            missing = {k: type_name(field.type) for k, field in fields.items() if field.required and k not in data}
+            gives = {key: f"one of {kind}" if " | " in kind else "it a value" for key, kind in missing.items()}
+            inside += [f"{f'{where}.{key}'.lstrip('.')} is missing: give {give}" for key, give in gives.items()]
     elif lists is not None and isinstance(data, list | tuple):
         for i, item in enumerate(data):
             named = isinstance(item, dict) and isinstance(item.get("id"), str) and item["id"]

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from verify import Beam
 from verify.analysis.margins import (
+    against_exact,
     beam_margins,
     linearity_margins,
     marked,
@@ -17,7 +18,7 @@ from verify.analysis.margins import (
     sufficient_count,
 )
 from verify.analysis.solution_cache import SolutionCache
-from verify.analysis.verdict import Margin, verdict_of, void
+from verify.analysis.verdict import MORE, Margin, verdict_of, void
 from verify.linear.registry import MODELS
 from verify.problem.beam import PointForce
 from verify.quantities.base import evaluate
@@ -89,6 +90,20 @@ def test_a_preload_that_bends_a_cantilever_is_in_the_headline():
     assert verdict_of([sag]).headline.startswith(
         f"Not to be trusted: the preload bends the beam by {1e3 * tip:.0f} mm, {100 * tip / 0.3:.0f} % of its length"
     )
+
+
+def test_a_bent_beam_leads_and_its_slider_is_not_pressed_more():
+    lift = Margin(name="lift-off", size=1e4, limit=1.0, is_error=False, failure="it lifts off", remedy=MORE)
+    scene = brass("clamped", "clamped")
+    found = verdict_of([lift, *sag_margins(SolutionCache(scene.beam), scene.slider)])
+    assert found.margins[0].name.endswith("the preload")
+    assert "press it more" not in str(found.to_dict())
+    assert verdict_of([lift]).margins[0].remedy == MORE
+
+
+def test_a_model_of_the_wrong_sign_is_not_trusted():
+    levels = [against_exact("speed", "49 segments", value, -2.0).level for value in (-2.01, -3.9, 1.0)]
+    assert levels == ["trusted", "conditional", "not trusted"]
 
 
 # --- Margins ---

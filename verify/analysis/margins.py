@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
 from verify.analysis.variants import Variant
-from verify.analysis.verdict import FINE, Margin, per_cent, three_digits, void
+from verify.analysis.verdict import FINE, LESS, MORE, Margin, per_cent, three_digits, void
 from verify.errors import InputError
 from verify.exact.closed_forms import theory_ratio, wavenumber_length
 from verify.exact.error_laws import LAWS, error_at
@@ -64,7 +64,8 @@ def beam_margins(
         if mode:
             with suppress(InputError):
                 size = abs(cache.exact_hz(mode, "timoshenko") / cache.exact_hz(mode) - 1.0)
-        found.append(Margin(name=name, size=size, where=where, remedy="use theory = 'timoshenko'"))
+        tune = "retune the drive by wave.best_frequency theory=timoshenko, or use a thinner beam"
+        found.append(Margin(name=name, size=size, where=where, remedy="use theory = 'timoshenko'" if mode else tune))
     width = max((one.width for one in (beam, *beam.section) if one.width), default=0.0)
     if width and beam.thickness and width >= FLATNESS * beam.thickness:  # a strip
         size, half = stiffening(0.5 * k * width, beam.poissons_ratio), pi / k
@@ -157,10 +158,11 @@ def sufficient_count(
 
 
 def against_exact(what: str, model: str, value: float, exact: float) -> Margin:
-    """Difference of a result from the exact beam's: large near a resonance even at a small frequency error."""
+    """Difference from the exact beam, which answers up to 100 %: large near a resonance at a small frequency error."""
     size = abs(value / exact - 1.0) if exact else 0.0 if value == exact else inf
-    return Margin(name=f"{what} of {model}", size=size, limit=inf,
-                  condition=f"the exact beam answers: {what} of {model} is off by {per_cent(size)}")  # fmt: skip
+    off, limit = f"{what} of {model} is off by {per_cent(size)}", inf if size <= 1.0 else 1.0
+    return Margin(name=f"{what} of {model}", size=size, limit=limit, condition=f"the exact beam answers: {off}",
+                  failure=f"{off} of the exact beam's", remedy=f"give more than {model}")  # fmt: skip
 
 
 def marked(title: str, margins: Iterable[Margin]) -> str:
@@ -191,7 +193,7 @@ def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static:
     failure = f"{bends}, {per_cent(float(w.max()) / beam.length)} of its length"
     found = [Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
                     limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
-                    remedy=remedy, is_error=False)]  # fmt: skip
+                    remedy=remedy, is_error=False, leads=True)]  # fmt: skip
     known = all(piece.youngs_modulus and piece.area for piece in beam.pieces)
     if known and slope and all(FIXED[support].deflection for support in beam.supports):
         axial = beam.length / sum(piece.length / piece.axial_stiffness for piece in beam.pieces)
@@ -201,8 +203,8 @@ def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static:
         c = 2.0 / (3.0 * ratio) ** 0.5 * sinh(asinh(1.5 * (3.0 * ratio) ** 0.5) / 3.0)
         size = ratio * c**2 if static else (1.0 + 0.75 * ratio) ** 0.5 - 1.0
         effect = f"{bends}, {per_cent(size)} {'too much' if static else 'in frequency'}"
-        found.append(Margin(name="stretching under " + what, size=size, limit=1.0, is_error=False, remedy=remedy,
-                            condition=f"an end may slide along the beam (otherwise {effect})",
+        found.append(Margin(name="stretching under " + what, size=size, limit=1.0, is_error=False, leads=True,
+                            remedy=remedy, condition=f"an end may slide along the beam (otherwise {effect})",
                             failure=f"{effect} unless an end slides along it"))  # fmt: skip
     return found
 
@@ -227,8 +229,8 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
         still = MODELS[EXACT].build(beam).harmonic(loads, STILL * cache.exact_hz(1))
     except InputError:
         return []
-    what, remedy = "the preload" if slider.preload else "the slider's weight", "press it less, or stiffen the beam"
-    found = linearity_margins(what, still, remedy, static=True)
+    what = "the preload" if slider.preload else "the slider's weight"
+    found = linearity_margins(what, still, LESS, static=True)
     if amplitude and slider.coupling == "one-way":
         bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
         found.append(Margin(name="sag under a foot relative to the wave's amplitude", size=float(bent) / amplitude,
@@ -248,7 +250,7 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
         falls = f"the slider lifts off: the surface falls away with {three_digits(margins.lift_off)} times the "
         falls += "acceleration that weight and preload give it"
         found.append(Margin(name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, failure=falls, is_error=False,
-                            remedy="press it more, or model its contact by [slider.contact]"))  # fmt: skip
+                            remedy=MORE))  # fmt: skip
     if coupling is not None and not (coupling.two_way and slider.normal == "bilateral"):
         size = max(coupling.normal_size, 0.0 if coupling.two_way else coupling.friction_size or 0.0)
         much = f"by {per_cent(size)}" if size < inf else "where the drive does not move it"

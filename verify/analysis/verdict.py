@@ -12,6 +12,8 @@ COLOURS: dict[Level, str] = {"trusted": "green", "conditional": "yellow", "not t
 LEVELS: tuple[Level, ...] = tuple(COLOURS)
 FINE, LIMIT = 0.01, 0.10
 """Relative errors up to which a result is trusted, and trusted under a condition."""
+LESS, OPEN = "press it less, or stiffen the beam", "model its contact by [slider.contact]"
+MORE = f"press it more, or {OPEN}"  # contradicts LESS: OPEN remains
 
 
 class Margin(msgspec.Struct, frozen=True, kw_only=True):
@@ -35,6 +37,8 @@ class Margin(msgspec.Struct, frozen=True, kw_only=True):
     """What to change: 'give 60 segments or more'."""
     is_error: bool = True
     """Whether the size is an error of the result, which 'trusted to' names; otherwise a fraction of a limit."""
+    leads: bool = False
+    """Whether it voids the others where it is not trusted, and precedes them whatever their size."""
 
     @property
     def level(self) -> Level:
@@ -46,7 +50,8 @@ class Margin(msgspec.Struct, frozen=True, kw_only=True):
         """The size in words: 'discretisation of 49 segments 0.43 % at mode 22', 'lift-off 152 times its limit'."""
         if not isfinite(self.size):
             return self.failure or f"{self.name} without a value {self.where}".rstrip()
-        size = per_cent(self.size) if self.is_error else f"{three_digits(self.size / self.limit)} times its limit"
+        bound, words = (self.fine, "what is trusted") if self.level == "conditional" else (self.limit, "its limit")
+        size = per_cent(self.size) if self.is_error else f"{three_digits(self.size / bound)} times {words}"
         return " ".join(filter(None, (self.name, size if self.size else "", self.where)))
 
 
@@ -61,8 +66,9 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def others(self) -> str:
-        """Further margins that are not trusted, of each name the worst: 'also: one-way coupling 2 %, shear 1.1 %'."""
-        worst = {one.name: one.text for one in reversed(self.margins) if one.level != "trusted"}
+        """Further margins beyond `fine`, of each name the worst: 'also: one-way coupling 2 %, shear 1.1 %'."""
+        off = [one for one in reversed(self.margins) if one.level != "trusted"]
+        worst = {m.name: m.text if m.is_error or m.level == "conditional" else m.failure or m.text for m in off}
         texts = [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
         return f"also: {', '.join(texts)}" if texts else ""
 
@@ -77,6 +83,8 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
     worst_of = {(one.name, one.where): one for one in sorted(margins, key=_badness)}
     sized = (one for one in worst_of.values() if one.size or one.level != "trusted")
     ordered = sorted(sized, key=_badness, reverse=True)
+    if any(one.remedy == LESS and one.level == "not trusted" for one in ordered):
+        ordered = [msgspec.structs.replace(one, remedy=OPEN) if one.remedy == MORE else one for one in ordered]
     if not ordered:
         return Verdict(level="trusted", headline="Trusted: no assumption leaves an error.")
     worst, largest = ordered[0], max(ordered, key=lambda one: one.is_error * one.size)
@@ -96,9 +104,9 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
     return Verdict(level=worst.level, headline=headline, margins=tuple(ordered))
 
 
-def void(name: str, failure: str, remedy: str = "") -> Margin:
+def void(name: str, failure: str, remedy: str = "", *, leads: bool = False) -> Margin:
     """The margin of a result that does not exist: not converged, diverged, left the beam."""
-    return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy)
+    return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy, leads=leads)
 
 
 def three_digits(value: float) -> str:
@@ -114,6 +122,6 @@ def per_cent(ratio: float) -> str:
     return f"{float(f'{value:.2g}'):.0f} %" if 100.0 <= value < 1e5 else f"{value:.2g} %"
 
 
-def _badness(margin: Margin) -> tuple[int, float]:
+def _badness(margin: Margin) -> tuple[int, bool, float]:
     share = margin.size / margin.limit if margin.size == margin.size else float("inf")
-    return LEVELS.index(margin.level), share
+    return LEVELS.index(margin.level), margin.leads and margin.level == "not trusted", share

@@ -33,10 +33,15 @@ def run_study(
     """Run a study with the scene's section, or its defaults, and 'key=value' options, and show its result."""
     from verify.analysis.solution_cache import SolutionCache
     from verify.convert import convert
-    from verify.scene.load import load_scene
+    from verify.errors import InputError
+    from verify.scene.load import load_scene, type_at
     from verify.studies.base import STUDIES, studies_of
 
-    STUDIES.named(name)
+    known = STUDIES.named(name).__struct_fields__
+    for key, _, text in (option.partition("=") for option in options):
+        home = next((f"{one}.{key}" for one in ("beam", "drive", "slider") if type_at(f"{one}.{key}") is not None), "")
+        if home and key not in known:
+            raise InputError(f"{name}.{key} is not a known key: give --set {home}={text}")
     loaded = load_scene(scene, (*overrides, *(f"{name}.{option}" for option in options)))
     study = dict(studies_of(loaded)).get(name) or convert({}, STUDIES[name], name)
     study.check(loaded)

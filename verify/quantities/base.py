@@ -165,7 +165,8 @@ def parse_arguments(name: str, words: Iterable[str]) -> dict[str, Any]:
             raise InputError(f"{key} = {text!r} repeats an argument: give it once")
         kind = chosen.types.get(key)
         if kind is None:
-            raise InputError(f"{key} is not a known key: {near_name(key, tuple(chosen.types))}")
+            other = f"give --set {key}={text}" if "." in key else near_name(key, tuple(chosen.types))
+            raise InputError(f"{key} is not a known key: {other}")
         arguments[key] = typed(text, kind, key)
     chosen.bind(arguments)
     return arguments

@@ -75,7 +75,8 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
         judged = any(gate.passed is not None for gate in self.gates)
         if self.failed:
-            margins.append(void("gates", f"{self.gates_in_words}, {', '.join(one.id for one in self.failed)}"))
+            failed = ", ".join(one.id for one in self.failed)
+            margins.append(void("gates", f"{self.gates_in_words}, {failed}", leads=True))
         elif not (judged or self.results):
             margins.append(void("the run", "no study and no gate ran", "add a gate or a study, see docs/your-beam.md"))
         found = verdict_of(margins)

@@ -171,9 +171,10 @@ def readings(scene: "Scene") -> "Table":
             worst = found.margins[0].text if found.margins else ""
             rows.append((name, assumption, duration, run.mean_speed, found.level, worst))
         except InputError as error:
-            rows.append((name, assumption, duration, None, "not trusted", str(error)))
+            hard = "two-way coupling with hard contact" if slider is opening and own.coupling == "two-way" else ""
+            rows.append((name, assumption, duration, None, "not computed", hard or str(error)))
     columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
-    valid = ", ".join(row[0] for row in rows if row[4] != "not trusted")
+    valid = ", ".join(row[0] for row in rows if row[3] is not None and row[4] != "not trusted")
     note = f"Valid by its own margins: {valid or 'none'}. A mean over the start is not the speed of a motor."
     return Table("Speed of the slider", [*columns, Column("verdict"), Column("worst margin")], rows, [note])
 

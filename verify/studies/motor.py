@@ -38,8 +38,8 @@ CHARTS = {
     "foot over one period of the drive, at standstill."),
 }  # fmt: skip
 NOTES = (
-    "Crest speed: amplitude of the tangential surface velocity. No-load speed: prescribed, with zero mean force, of a "
-    "heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run.",
+    "Crest speed: amplitude of the tangential surface velocity at the slider. No-load speed: prescribed, with zero "
+    "mean force, of a heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run.",
     "Largest power and best efficiency: over the prescribed speeds. Friction and dashpot power: of the free run.",
     "Fractions: last quarter of the free run. Start, stop, reversal: time constants of means over a sliding period.",
 )

@@ -93,15 +93,16 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for model in models:
             fields[model] = driven(replace(exact, model=MODELS[model].build(scene.beam, n)), cache)
         other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
-        ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact)
+        direction = -1 if rows[0]["drive"]["crest_speed"] > 0.0 else 1  # crests move against the wave
+        ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact, direction=direction)
 
         columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
         columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
         columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
         columns += [si("crest speed there", "m/s", "+.5g")]
         notes = [
-            "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest "
-            "speed: of the surface, against the wave. Right: at the model's own frequency of least reflection.",
+            "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: "
+            "of the surface at the rms amplitude, against the wave. Right: at its own frequency of least reflection.",
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
@@ -125,7 +126,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
             tables=[
                 Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
-                _drives(best, exact, exact_swr),
+                _drives(best, exact, exact_swr, "+x" if direction > 0 else "-x"),
             ],
             figures=[
                 Figure("wave-envelopes", envelope, ENVELOPES, draw_envelopes),
@@ -165,8 +166,8 @@ def _cells(one: dict[str, float] | None) -> tuple[float | None, ...]:
     return tuple(one.values()) if one else (None,) * 4
 
 
-def _drives(best: "BestDrive", case: "DrivenCase", ratio: float) -> "Table":
-    """The scene's drive, the best of equal amplitudes, and the best ratio, at the scene's frequency."""
+def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> "Table":
+    """The scene's drive, the best of equal amplitudes, and the best ratio, for waves towards the same end."""
     from verify.waves.operating_point import lead_deg
 
     first, second = (force.amplitude for force in case.forces)
@@ -176,7 +177,7 @@ def _drives(best: "BestDrive", case: "DrivenCase", ratio: float) -> "Table":
         ("best at equal amplitudes", 1.0, best.equal_phase_deg, best.equal_standing_wave_ratio),
         ("best ratio", best.ratio, best.phase_deg, best.standing_wave_ratio),
     ]
-    notes = [f"Second over first {case.kind}; exact beam, wave towards +x.", *([f"{best.note}."] if best.note else [])]
+    notes = [f"Second over first {case.kind}; exact beam, wave towards {end}.", f"{best.note}."][: 1 + bool(best.note)]
     return Table("Two actuators without reflection", [*columns, Column("SWR", format=".5g")], rows, notes)
 
 
