@@ -11,6 +11,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.base import SAMPLES, Chain, Run
+from verify.engines.description import small_motion_hz
 from verify.engines.writers import mjcf
 from verify.errors import one_line
 
@@ -26,12 +27,9 @@ class Mujoco:
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
         mass = np.zeros((model.nv, model.nv))
-        try:
-            mujoco.mj_fullM(model, data, mass)
-        except TypeError:  # before version 4
-            mujoco.mj_fullM(model, mass, data.qM)
-        stiffness = np.asarray(model.jnt_stiffness).reshape(model.nv, -1)[:, 0]
-        return tree_frequencies(mass, np.array(data.efc_J).reshape(-1, model.nv)[0], np.array(stiffness))
+        mujoco.mj_fullM(model, data, mass)
+        stiffness = np.diag(np.reshape(model.jnt_stiffness, (model.nv, -1))[:, 0])
+        return small_motion_hz(mass, stiffness, np.reshape(data.efc_J, (-1, model.nv)))
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
         """Motion by the engine's Runge-Kutta method."""
@@ -65,20 +63,6 @@ class Mujoco:
             mujoco.set_mjcb_control(None)
             mujoco.set_mju_user_warning(before)
         return run_up_to(steps)
-
-
-def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
-    """Natural frequencies (n - 1,), Hz, ascending, of a tree over joint angles with constrained far end.
-
-    `mass` (n, n), `closure` (n,) derivative of the far end's height by the angles, `stiffness` (n,). The largest
-    eigenvalues of the inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
-    """
-    from scipy.linalg import eigh
-
-    basis = np.vstack([-closure[1:] / closure[0], np.eye(len(closure) - 1)])
-    root = 1.0 / np.sqrt(stiffness[1:])
-    values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
-    return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
 
 
 def _loads(chain: Chain) -> Any:

@@ -4,7 +4,6 @@ MJCF is compiled by MuJoCo, which resolves defaults, includes and the inertias o
 standard library; the springs of URDF are those of Gazebo's extension.
 """
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -18,8 +17,6 @@ from verify.errors import InputError, one_line, shown
 
 STRAIGHT = 1e-3
 """Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
-MASSLESS = 1e-8
-"""Mass of a body that counts as none, over the largest: formats demand one between two hinges at one place."""
 
 
 class Move(NamedTuple):
@@ -30,7 +27,6 @@ class Move(NamedTuple):
     at: Array
     axis: Array
     stiffness: float
-    armature: float = 0.0
     bound: str = ""
 
 
@@ -54,17 +50,15 @@ class Line(NamedTuple):
     """The chain about one axis, N joints with a link beyond each. SI.
 
     A first link fixed to the wall has the joint '' of stiffness NaN. `links`: length, mass, centre of mass from the
-    joint, inertia about it, (N, 4). `bodies` fixed to links: (link, position from its joint, mass, inertia). `section`:
-    shape, width and thickness as drawn, or None. `solid`: inertias are those of a prism, about all axes.
+    joint, inertia about it, (N, 4), with the bodies fixed to them. `diameter`: of a section drawn round, or 0. `solid`:
+    inertias are those of a prism, about all axes.
     """
 
     axis: Axis
     joints: list[str]
     springs: Array
-    armatures: Array
     links: Array
-    bodies: list[tuple[int, float, float, float]]
-    section: tuple[str, float, float] | None
+    diameter: float
     solid: bool
 
 
@@ -74,10 +68,6 @@ def read(path: Path) -> tuple[str, list[Solid]]:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
             return root.tag, _mjcf(path)
-        beside = path.with_name(path.name + ".json")
-        other = json.loads(beside.read_text("utf-8")) if beside.exists() else {}
-        if other.get("springs") or other.get("supports", ["", "free"])[1] != "free":
-            raise InputError(f"{path.name}: springs to the ground and supports of the far end are not judged, free it")
         if root.tag == "sdf":
             return root.tag, _xml(next(root.iter("model")), path.name, None)
         if root.tag == "robot":
@@ -101,7 +91,8 @@ def _mjcf(path: Path) -> list[Solid]:
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos_spring
     mujoco.mj_forward(model, data)
-    springs, bound = np.reshape(model.jnt_stiffness, (model.njnt, -1)), dict[int, str]()
+    springs = np.reshape(model.jnt_stiffness, (model.njnt, -1))
+    bound = {int(dof): "an armature" for dof in np.flatnonzero(model.dof_armature)}
     kinds = ("an equality", "dry friction", "dry friction", "a limit", "a limit", *["a contact"] * 9)
     for kind, row in zip(data.efc_type, np.reshape(data.efc_J, (-1, model.nv)), strict=False):
         bound |= {int(dof): kinds[kind] for dof in np.flatnonzero(row)}
@@ -115,9 +106,8 @@ def _mjcf(path: Path) -> list[Solid]:
         for j in range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body])):
             kind, dof = int(model.jnt_type[j]), int(model.jnt_dofadr[j])
             for i, axis in enumerate([data.xaxis[j]] if kind > 1 else data.xmat[body].reshape(3, 3).T):
-                spring, armature = float(springs[j, 0]), float(model.dof_armature[dof + i])
                 name, at, slides = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), kind in (0, 2)
-                yield Move(name, slides, at, axis.copy(), spring, armature, bound.get(dof + i, ""))
+                yield Move(name, slides, at, axis.copy(), float(springs[j, 0]), bound.get(dof + i, ""))
 
     solids, axial = [], {"CAPSULE", "CYLINDER"}
     for b in range(1, model.nbody):
@@ -224,12 +214,11 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
     for move in (move for i in chain for move in solids[i].moves if move.bound or move.slides):
         what = f"{move.bound} acts on" if move.bound else "a slide or a free base is"
         raise InputError(f"{name}: {what} joint {shown(move.joint)}, give a wall, hinges and springs alone")
-    dust, parts = MASSLESS * max(solids[i].mass for i in chain), list[tuple[list[Move], list[Solid]]]()
+    parts = list[tuple[list[Move], list[Solid]]]()
     for i in chain:
         own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
         before = parts.pop() if parts and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6) else ([], [])
-        others = [one for one in (*members[1:], *before[1]) if one.mass > dust]
-        parts.append((before[0] + own, [members[0], *others]))
+        parts.append((before[0] + own, members + before[1]))
     if len(parts) > 1 and (base := solids[chain[0]].parent) >= 0:
         ahead, first = (parts[i][0][-1].at for i in (1, 0))
         reach, step = (np.linalg.norm(one) for one in (first - solids[base].origin, ahead - first))
@@ -259,6 +248,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in mains])
     apart = np.array([np.trace(one.inertia) for one in mains]) - prism - 2.0 * spins
     found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
+    whole = [_joined(members) for _, members in parts]
+    heavy = [np.array([one.mass for one in whole]), np.array([one.centre for one in whole] - places) @ along]
     for axis, about in zip(AXES[-len(turned) :], turned, strict=True):
         own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
         if not any(move.stiffness for moves in own for move in moves):
@@ -267,19 +258,20 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             if len(moves) != 1 or not moves[0].stiffness:
                 raise InputError(f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
-        armatures = np.array([sum(move.armature for move in moves) for moves in own])
-        inertias = np.array([about @ one.inertia @ about for one in mains])
-        bodies = [
-            (j, float((one.centre - places[j]) @ along), one.mass, float(about @ one.inertia @ about))
-            for j, (_, members) in enumerate(parts)
-            for one in members[1:]
-        ]
-        section = None
-        if drawn := mains[-2].shape:
-            width, depth = (float(np.abs(drawn[1] @ one).sum()) for one in (about, np.cross(about, along)))
-            section = drawn[0], width, depth
-        joints, links = [moves[0].joint if moves else "" for moves in own], [np.append(steps, last), masses, centre]
-        found.append(
-            Line(axis, joints, springs, armatures, np.stack([*links, inertias], axis=1), bodies, section, solid)
-        )
+        links = [np.append(steps, last), *heavy, np.array([about @ one.inertia @ about for one in whole])]
+        drawn = mains[-2].shape
+        diameter = float(np.abs(drawn[1] @ turned[0]).sum()) if drawn and drawn[0] == "round" else 0.0
+        joints = [moves[0].joint if moves else "" for moves in own]
+        found.append(Line(axis, joints, springs, np.stack(links, axis=1), diameter, solid))
     return found
+
+
+def _joined(members: list[Solid]) -> Solid:
+    """One body of those that move together, of the name of the first."""
+    mass = sum(one.mass for one in members)
+    centre = np.sum([one.mass * one.centre for one in members], axis=0) / mass
+    inertia = np.zeros((3, 3))
+    for one in members:
+        arm = one.centre - centre
+        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return members[0]._replace(mass=mass, centre=centre, inertia=inertia)
