@@ -28,8 +28,7 @@ RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid
 @click.option("--wall", default="gregory", show_default=True, metavar="RULE", help="Joints at a clamped end.")
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
-@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, .py, .json or .csv.")
-@click.option("--engine", metavar="NAME", help="exudyn or pinocchio, for a .py file.")
+@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, exudyn.py, pinocchio.py, .json, .csv.")
 @format_options
 def chain(
     scene: str,
@@ -41,7 +40,6 @@ def chain(
     in_space: bool,
     damping: str,
     path: str | None,
-    engine: str | None,
     **formats: bool,
 ) -> None:
     """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
@@ -56,14 +54,12 @@ def chain(
     from verify.scene.load import load_scene
     from verify.validation import Relative
 
-    if engine and not path:
-        raise InputError(f"engine = {engine!r} is for a file: give --to FILE.py")
     ratio, beam = typed(damping, Relative, "damping"), load_scene(scene, overrides).beam
     if count is None:
         count = _fewest(beam, mode, relative_error(error), wall, in_space)
     described, brief = describe(beam, count, wall=wall, in_space=in_space, damping=ratio), not any(formats.values())
     result = _result(described, mode, brief=brief)
-    wrote = write(described, Path(path), engine) if path else ""
+    wrote = write(described, Path(path)) if path else ""
     show(result, **formats)
     if wrote:
         click.echo(printable(wrote), err=not brief)
@@ -86,10 +82,7 @@ def judge_chain(
     out, limit = Path(corrected) if corrected else None, relative_error(within) if within else None
     result = judge_file(Path(words[-1]), beam, modes, limit, theory, out)
     if not any(formats.values()):
-        joints, axes = result.tables[-1], dict.fromkeys(row[2] for row in result.tables[-1].rows)
-        parts = [replace(joints, rows=[row for row in joints.rows if row[2] == axis]) for axis in axes]
-        rows = [row for part in parts for row in _shortened(part).rows]
-        result = replace(result, tables=[*result.tables[:-1], replace(joints, rows=rows)])
+        result = replace(result, tables=[result.tables[0], *map(_shortened, result.tables[1:])])
     show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(GATE_FAILED)
@@ -149,15 +142,12 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
 
 
 def _shortened(table: "Table") -> "Table":
-    """The first rows, the last, and in between a row for each run of joints that differ in position alone."""
+    """The first rows and the last, and a row with what those in between have in common."""
     from dataclasses import replace
 
-    rows, start = list(map(tuple, table.rows)), FIRST
-    alike = [[f"{value:.9g}" if isinstance(value, float) else value for value in row[2:]] for row in rows]
-    runs = [(str(row[0]), *row[1:]) for row in rows[:FIRST]]
-    for j in range(FIRST + 1, len(rows) + 1):
-        if j >= len(rows) - 1 or alike[j] != alike[start]:
-            first = (str(start), rows[start][1]) if j == start + 1 else (f"{start} to {j - 1}", None)
-            runs.append((*first, *rows[start][2:]))
-            start = j
-    return replace(table, rows=runs)
+    rows = [(str(row[0]), *row[1:]) for row in table.rows]
+    inner = list(zip(*rows[FIRST:-1], strict=True))[1:]
+    alike = [values[0] if len({f"{v:.9g}" if isinstance(v, float) else v for v in values}) == 1 else None
+             for values in inner]  # fmt: skip
+    between = [(f"{FIRST} to {len(rows) - 2}", *alike)] if len(rows) > FIRST + 2 else rows[FIRST:-1]
+    return replace(table, rows=[*rows[:FIRST], *between, *rows[-1:]] if len(rows) > FIRST else rows)

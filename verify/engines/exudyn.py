@@ -26,7 +26,7 @@ class Exudyn:
         system.Assemble()
         with redirect_stdout(StringIO()):
             hertz, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
-        return np.sort(np.asarray(hertz, dtype=float))[-(chain.n - 1) :]
+        return np.sort(np.asarray(hertz, dtype=float))[1 - chain.rigid.count :]
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
         """Motion by the trapezoidal rule."""
@@ -34,8 +34,8 @@ class Exudyn:
         from exudyn import utilities as items
 
         system, bodies = assemble(chain)
-        middle, at = chain.locate(0.5 * chain.length)
-        position, place = exu.OutputVariableType.Position, [at - chain.link / 2, 0.0, 0.0]
+        middle, at = chain.locate(0.5 * chain.rigid.beam.length)
+        position, place = exu.OutputVariableType.Position, [at - chain.rigid.links[0].centre, 0.0, 0.0]
         sensor = system.AddSensor(
             items.SensorBody(
                 bodyNumber=bodies[middle],
@@ -63,12 +63,13 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
     import exudyn as exu
     from exudyn import utilities as items
 
-    half = chain.link / 2
+    links, joints = chain.rigid.links, chain.rigid.joints
+    half = links[0].centre
     system = exu.SystemContainer().AddSystem()
     ground = system.AddObject(items.ObjectGround())
-    middles = [[(i + 0.5) * chain.link, 0.0, 0.0] for i in range(chain.n)]
+    middles = [[link.start + half, 0.0, 0.0] for link in links]
     nodes = [system.AddNode(items.NodeRigidBody2D(referenceCoordinates=place)) for place in middles]
-    body = {"mass": chain.mass, "inertia": chain.inertia}
+    body = {"mass": links[0].mass, "inertia": links[0].inertia[1]}
     bodies = [system.AddObject(items.ObjectRigidBody2D(nodeNumber=node, **body)) for node in nodes]
 
     def point(body: int, x: float) -> int:
@@ -76,12 +77,13 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
 
     turns = [system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2)) for node in nodes]
     system.AddObject(items.RevoluteJoint2D(markerNumbers=[point(ground, 0.0), point(bodies[0], -half)]))
-    for i in range(chain.n - 1):
+    for i, joint in enumerate(joints[1:-1]):
+        stiffness = joint.hinges[0].stiffness
         ends = [point(bodies[i], half), point(bodies[i + 1], -half)]
         system.AddObject(items.RevoluteJoint2D(markerNumbers=ends))
-        system.AddObject(items.CoordinateSpringDamper(markerNumbers=turns[i : i + 2], stiffness=chain.spring))
+        system.AddObject(items.CoordinateSpringDamper(markerNumbers=turns[i : i + 2], stiffness=stiffness))
     tip = system.AddMarker(items.MarkerBodyRigid(bodyNumber=bodies[-1], localPosition=[half, 0.0, 0.0]))
-    far = system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[chain.length, 0.0, 0.0]))
+    far = system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[joints[-1].position, 0.0, 0.0]))
     system.AddObject(items.GenericJoint(markerNumbers=[far, tip], constrainedAxes=[0, 1, 0, 0, 0, 0]))
     for k, force in enumerate(chain.forces):
         link, at = chain.locate(force.position)

@@ -202,7 +202,11 @@ def judge_file(
     (kind, solids), judged = read(path), list[Judged]()
     for line in lines(solids, path.name):
         judged.append(judge(line, beam and _in_its_plane(line, beam, path.name), theory))
-    rows, joints, margins, data = list[Any](), list[Any](), list[Margin](), list[Any]()
+    error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected", "change")]
+    hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
+    springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
+    rows, margins, data = list[Any](), list[Margin](), list[Any]()
+    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error[:2]], rows)]
     limits: dict[str, Any] = {"fine": within or FINE, "limit": within or LIMIT}
     for one in judged:
         n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.axis, modes)
@@ -212,7 +216,8 @@ def judge_file(
         pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]
         changes = [new / old - 1.0 if old and new else None for old, new in zip(*pairs, strict=True)]
         changes = [change if change and abs(change) > SAME else None for change in changes]
-        joints += zip(map(str, range(n)), one.line.joints, [axis] * n, *pairs, changes, strict=True)
+        each = list(zip(range(n), one.line.joints, *pairs, changes, strict=True))
+        tables.append(Table(f"Joints in {axis}", [Column("joint"), Column("name"), *springs, error[2]], each))
         text, worst, what = "; ".join(one.faults), int(abs(errors).argmax()), f"{n} links with correct joints"
         size, where = float(abs(errors[worst])), f"at mode {worst + 1} in {axis}"
         remedy = "set the joints below" if any(changes) else "give the links m l^2/12 about l/2"
@@ -227,11 +232,6 @@ def judge_file(
         data.append(about | {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after})
     warnings = [one.advice for one in judged if one.advice]
     warnings += [_write(path, kind, solids, judged, corrected)] if corrected else []
-    error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected", "change")]
-    hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
-    springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
-    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error[:2]], rows),
-              Table("Joints", [*map(Column, ("joint", "name", "axis")), *springs, error[2]], joints)]  # fmt: skip
     names = {"torsion": "GJ"}
     rules = [f"{j.line.axis}: {j.rule}, {names.get(j.line.axis, 'EI')} = {j.stiffness:.6g} N m2" for j in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"

@@ -36,8 +36,8 @@ class Mujoco:
         import mujoco
 
         h = end / steps
-        middle, at = chain.locate(0.5 * chain.length)
-        reach = np.append(np.full(middle, chain.link), at)
+        middle, at = chain.locate(0.5 * chain.rigid.beam.length)
+        reach = np.append([link.length for link in chain.rigid.links[:middle]], at)
         samples: list[tuple[float, float]] = []
 
         def run_up_to(k: int, failure: str = "") -> Run:
@@ -67,7 +67,8 @@ class Mujoco:
 
 def _loads(chain: Chain) -> Any:
     """The control callback."""
-    places = [(link + 1, at - chain.link / 2) for link, at in (chain.locate(force.position) for force in chain.forces)]
+    half, at = chain.rigid.links[0].centre, [chain.locate(force.position) for force in chain.forces]
+    places = [(link + 1, x - half) for link, x in at]
     bodies = sorted({body for body, _ in places})
 
     def control(model: Any, data: Any) -> None:

@@ -245,11 +245,11 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     turned = [along] if across is None else [across, np.cross(along, across), along]
     if any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
         raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
-    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in mains])
-    apart = np.array([np.trace(one.inertia) for one in mains]) - prism - 2.0 * spins
-    found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
     whole = [_joined(members) for _, members in parts]
-    heavy = [np.array([one.mass for one in whole]), np.array([one.centre for one in whole] - places) @ along]
+    masses, centre = np.array([one.mass for one in whole]), np.array([one.centre for one in whole] - places) @ along
+    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in whole])
+    apart = np.array([np.trace(one.inertia) for one in whole]) - prism - 2.0 * spins
+    found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
     for axis, about in zip(AXES[-len(turned) :], turned, strict=True):
         own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
         if not any(move.stiffness for moves in own for move in moves):
@@ -258,7 +258,7 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             if len(moves) != 1 or not moves[0].stiffness:
                 raise InputError(f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
-        links = [np.append(steps, last), *heavy, np.array([about @ one.inertia @ about for one in whole])]
+        links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         drawn = mains[-2].shape
         diameter = float(np.abs(drawn[1] @ turned[0]).sum()) if drawn and drawn[0] == "round" else 0.0
         joints = [moves[0].joint if moves else "" for moves in own]

@@ -21,7 +21,6 @@ DEEPEST = 496
 MASSLESS = 1e-10
 """Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
 MODES = 3
-SCRIPTS = ("exudyn", "pinocchio")
 _MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
 _MJCF_BODY = (
     '\n<inertial pos="{centre!r} 0 0" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
@@ -216,33 +215,32 @@ def data(chain: RigidChain) -> dict[str, object]:
 
 
 _WRITERS: dict[str, Callable[[RigidChain], str]] = {
-    "xml": mjcf,
-    "sdf": lambda chain: robot(chain, _SDF),
-    "urdf": lambda chain: robot(chain, _URDF),
-    "json": lambda chain: to_json(data(chain)),
-    "csv": lambda chain: table(chain).csv(),
+    ".xml": mjcf,
+    ".sdf": lambda chain: robot(chain, _SDF),
+    ".urdf": lambda chain: robot(chain, _URDF),
+    "exudyn.py": lambda chain: script(chain, "exudyn"),
+    "pinocchio.py": lambda chain: script(chain, "pinocchio"),
+    ".json": lambda chain: to_json(data(chain)),
+    ".csv": lambda chain: table(chain).csv(),
 }
 
 
-def write(chain: RigidChain, path: Path, engine: str | None = None) -> str:
-    """Write a chain to a file by its suffix, whole or not at all; returns a sentence on what was written.
+def write(chain: RigidChain, path: Path) -> str:
+    """Write a chain to a file by the end of its name, whole or not at all; returns a sentence on what was written.
 
-    .xml MJCF, .sdf, .urdf, .json, .csv, .py for `engine` exudyn or pinocchio. The stiffnesses of a URDF are also in a
-    JSON file next to it. Raises InputError.
+    .xml is MJCF. The stiffnesses of a URDF are also in a JSON file next to it. Raises InputError.
     """
-    kind = path.suffix.lower().removeprefix(".")
-    if kind not in (*_WRITERS, "py"):
-        raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give .{', .'.join(_WRITERS)} or .py")
+    kind = next((end for end in _WRITERS if path.name.lower().endswith(end)), None)
+    if kind is None:
+        raise InputError(f"to = {shown(str(path))}: its end is no file type, give {', '.join(_WRITERS)}")
     if chain.wall == "rigid":
         raise InputError("wall = 'rigid': a first link fixed to the wall is for comparison, give another wall")
-    if (kind == "py") != (engine is not None) or (engine and engine not in SCRIPTS):
-        raise InputError(f"engine = {engine!r}: for a .py file give {' or '.join(SCRIPTS)}, for others none")
-    if kind in ("sdf", "urdf") and chain.closed:
-        text = "has no support of the far end and no spring to the ground, write .xml or .py"
-        raise InputError(f"to = {shown(str(path))}: {kind.upper()} {text}")
+    if kind in (".sdf", ".urdf") and chain.closed:
+        text = "has no support of the far end and no spring to the ground, write .xml, exudyn.py or pinocchio.py"
+        raise InputError(f"to = {shown(str(path))}: {kind[1:].upper()} {text}")
     writable_folder(path.parent, "to")
-    write_whole(path, script(chain, engine) if engine else _WRITERS[kind](chain), "to")
-    if kind != "urdf":
+    write_whole(path, _WRITERS[kind](chain), "to")
+    if kind != ".urdf":
         return f"wrote {path}"
     beside = path.with_name(path.name + ".json")
     write_whole(beside, to_json(data(chain)), "to")
