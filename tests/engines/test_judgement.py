@@ -10,8 +10,8 @@ from msgspec.structs import replace
 
 from verify import Beam
 from verify.cli import status_of
-from verify.engines.description import describe
-from verify.engines.judgement import RULES, judge, judge_file
+from verify.engines.description import RULES, describe
+from verify.engines.judgement import judge, judge_file
 from verify.engines.reading import lines, read
 from verify.engines.writers import mjcf, write
 from verify.errors import InputError

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FIRST = 4
 """Joints that the terminal always shows."""
-RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed"}
+COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
 
 
@@ -110,15 +110,13 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
     from verify.analysis.margins import beam_margins
     from verify.analysis.solution_cache import SolutionCache
     from verify.analysis.verdict import Margin
-    from verify.engines.description import describe
+    from verify.engines.description import RULES, describe
     from verify.engines.writers import data, table
     from verify.report.result import Column, Result, Table
 
-    walls, n = (RULES if "clamped" in chain.beam.supports else {}), chain.count
+    walls, n = (COMPARED if "clamped" in chain.beam.supports else ()), chain.count
     others = {
-        title: describe(chain.beam, n, wall=wall, in_space=chain.in_space)
-        for wall, title in walls.items()
-        if wall != chain.wall
+        RULES[wall]: describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls if wall != chain.wall
     }
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
@@ -133,7 +131,7 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
         name = f"discretisation of {n} links in {axis}"
         margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
                            condition=f"{n} links are enough in {axis}")]  # fmt: skip
-    rule = f", {RULES.get(chain.wall, chain.wall)} at the wall" if walls else ""
+    rule = f", {RULES[chain.wall]} at the wall" if walls else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.beam.mass or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")

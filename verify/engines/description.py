@@ -23,7 +23,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
-from verify.options import WALLS
+from verify.options import Theory
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
@@ -32,7 +32,9 @@ from verify.validation import check_choice, check_integer, check_number, check_t
 Axis = Literal["bending", "width", "torsion"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
-CHAIN_WALLS = (*(wall for wall in WALLS if wall != "welded"), "rigid")
+RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed",
+         "third-order": "weights 5/12, 13/12", "five-joint": "five-joint weights"}  # fmt: skip
+"""Joints at a clamped end."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 
@@ -67,14 +69,13 @@ class Link(msgspec.Struct, frozen=True):
 
 
 class Spring(msgspec.Struct, frozen=True):
-    """A spring from a link to the ground, N/m along z and N m/rad about y, with dashpots, N s/m and N m s."""
+    """A spring and dashpot from a link to the ground: along z, N/m and N s/m, or `rotational` about y, N m and N m s."""
 
     position: float
     link: int
+    rotational: bool
     stiffness: float
-    rotational: float
-    damping: float = 0.0
-    rotational_damping: float = 0.0
+    damping: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +84,7 @@ class RigidChain:
 
     `beam` runs from joint 0 on; `mirrored`: joint 0 is at the right end of the scene's beam. `wall`: rule of the joints
     at a clamped end. `damping`: ratio of the first mode about every axis; that of others is in proportion to frequency.
+    `theory`: of the exact beam. `shaft`: `shafts` in torsion if not by the beam's sections.
     """
 
     beam: Beam
@@ -93,6 +95,8 @@ class RigidChain:
     damping: float = 0.0
     in_space: bool = False
     mirrored: bool = False
+    theory: Theory = "euler-bernoulli"
+    shaft: Array | None = None
 
     @property
     def count(self) -> int:
@@ -160,10 +164,7 @@ class RigidChain:
         """(name, row over the unknowns, stiffness, damping) of springs to the ground and of joint N."""
         for i, one in enumerate(self.springs if axis == "bending" else ()):
             across, turned = self.rows(axis, [one.link], [one.position])
-            if one.stiffness:
-                yield f"spring{i}", across[0], one.stiffness, one.damping
-            if one.rotational:
-                yield f"spring{i}_rotational", turned[0], one.rotational, one.rotational_damping
+            yield f"spring{i}", (turned if one.rotational else across)[0], one.stiffness, one.damping
         if (far := self.joints[-1].hinge(axis)) and far.stiffness:
             row = self.rows(axis, [self.count - 1], [self.joints[-1].position])[1][0]
             yield f"joint{self.count}_{axis}", row, far.stiffness, far.damping
@@ -173,14 +174,15 @@ class RigidChain:
         return _frequencies(self, axis)[:n_modes]
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
-        """Frequencies of the exact beam, (n_modes,), Hz; in space with the rotary inertia of its sections."""
+        """Frequencies of the exact beam by `theory`, or of the exact shaft, (n_modes,), Hz."""
         if axis == "torsion":
             left, right = (support != "free" for support in self.beam.supports)
             bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
-            return torsion_hz(shafts(self.beam), (left, right), n_modes, bodies)
+            shaft = shafts(self.beam) if self.shaft is None else self.shaft
+            return torsion_hz(shaft, (left, right), n_modes, bodies)
         from verify.analytic_modes import ExactModel
 
-        exact = ExactModel(in_plane(self.beam, axis), "rayleigh" if self.in_space else "euler-bernoulli")
+        exact = ExactModel(in_plane(self.beam, axis), self.theory)
         return np.array([exact.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
     def errors(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
@@ -217,14 +219,14 @@ def describe(
 ) -> RigidChain:
     """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
 
-    `wall`: joints at a clamped end, one of `CHAIN_WALLS`; "rigid" fixes the first link to the wall. `damping`:
+    `wall`: joints at a clamped end, one of `RULES`; "rigid" fixes the first link to the wall. `damping`:
     damping ratio of the first mode about every axis. Joint 0 is at the end with the stronger support.
     """
     from verify.segment_model import SegmentModel
 
     check_type("beam", beam, Beam)
     beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
-    check_choice("wall", wall, CHAIN_WALLS)
+    check_choice("wall", wall, tuple(RULES))
     check_integer("count", count, 2, MOST_LINKS)
     check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
     first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)
@@ -284,15 +286,17 @@ def describe(
         joints=tuple(Joint(x, () if j in fixed else hinges[j]) for j, x in enumerate(nodes)),
         links=tuple(Link(x, length, mass, centre, tuple(inertia)) for x, length, mass, centre, inertia in links),
         springs=tuple(
-            Spring(s.position, link, share * s.stiffness, share * k, across * share * s.stiffness, across * share * k)
-            for s in beam.spring
-            for k in [0.0 if any(s.position == b.position for b in behind) else s.rotational]
-            for link, share in _shares(chain, s.position, k)
-            if s.stiffness or k
+            Spring(one.position, link, rotational, share * k, across * share * k)
+            for one in beam.spring
+            for turning in [0.0 if any(one.position == b.position for b in behind) else one.rotational]
+            for link, share in _shares(chain, one.position, turning)
+            for rotational, k in ((False, one.stiffness), (True, turning))
+            if k
         ),
         damping=damping,
         in_space=in_space,
         mirrored=mirrored,
+        theory="rayleigh" if in_space else "euler-bernoulli",
     )
 
 

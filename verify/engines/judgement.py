@@ -5,7 +5,6 @@ is the one by which all its joints have the same EI. Without a beam next to it, 
 """
 
 import re
-from collections.abc import Callable
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,10 +14,10 @@ import numpy as np
 
 from verify.analysis.verdict import FINE, LIMIT, Margin, per_cent
 from verify.arrays import Array
-from verify.engines.description import Axis, Hinge, Joint, Link, RigidChain, in_plane
+from verify.engines.description import RULES, Axis, Hinge, Joint, Link, RigidChain, in_plane
 from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
-from verify.exact.torsion import shafts, torsion_hz
+from verify.exact.torsion import shafts
 from verify.problem.beam import Beam
 from verify.problem.materials import MATERIALS
 from verify.problem.point_attachments import PointMass
@@ -30,9 +29,7 @@ if TYPE_CHECKING:
 
 HELD = (np.nan, 23 / 12, 7 / 12)
 """Factors w behind a first link fixed to the wall, order 3 (Press et al., Numerical Recipes, open extended formula)."""
-RULES = {"gregory": "Gregory's joints", "half": "2EI/l", "full": "EI/l", "third-order": "weights 5/12, 13/12",
-         "five-joint": "five-joint weights", "rigid": "first link fixed",
-         "held": "first link fixed, adapted joints,"}  # fmt: skip
+ADAPTED = "first link fixed, adapted joints,"
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 SQUARE = 16 / (3 * pi)
 """Second moment of area of a square over that of the circle in it."""
@@ -41,17 +38,15 @@ ALIKE, SAME = 2e-3, 1e-9
 
 
 class Judged(NamedTuple):
-    """A chain as it is and with correct joints. `axis`: "torsion", or "bending" in either plane.
+    """A chain as it is and with correct joints, about `axis`: "torsion", or "bending" in either plane.
 
-    `exact`: frequencies (n,), Hz, of its beam or shaft by their number. `stiffness`: EI or GJ, N m^2. `springs`:
-    correct ones, N m/rad. `advice`: a better wall than a first link fixed to it, or ''.
+    `stiffness`: EI or GJ, N m^2. `springs`: correct ones, N m/rad. `advice`: a better wall than a fixed link, or ''.
     """
 
     line: Line
     axis: Axis
     present: RigidChain
     correct: RigidChain
-    exact: Callable[[int], Array]
     rule: str
     stiffness: float
     springs: Array
@@ -64,13 +59,13 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     (lengths, masses, _, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
     n, edges, held = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0]))
     support: Any = "clamped" if held or k[0] > 0.0 else "pinned" if bends else "free"
-    scale, expected = np.ones(n), np.median(masses / lengths) * lengths
+    shaft, scale, expected = None, np.ones(n), np.median(masses / lengths) * lengths
     if beam is not None:
         if bends and beam.supports != (support, "free"):
             raise InputError(f"the beam is {'-'.join(beam.supports)}, the chain {support}-free, give one like it")
         at = np.searchsorted(np.cumsum([one.length for one in beam.pieces])[:-1], 0.5 * (edges[1:] + edges[:-1]))
-        shaft = np.empty((0, 3)) if bends else shafts(beam)
-        values = (np.array([one.bending_stiffness for one in beam.pieces]) if bends else shaft[:, 1])[at]
+        bending = [one.bending_stiffness for one in beam.pieces]
+        values = (np.array(bending) if bends else shafts(beam)[:, 1])[at]
         scale, expected = values / values[0], np.array([one.mass_per_length for one in beam.pieces])[at] * lengths
     soft = lengths / scale
     bases = [0.5 * (np.append(soft[0], soft[:-1]) + soft)]
@@ -88,20 +83,12 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
         beam = _meant(line, expected, support, reference)
         shaft = np.array([[beam.length, reference, np.median(inertias / lengths)]])
 
-    def exact(n_modes: int) -> Array:
-        from verify.analytic_modes import ExactModel
-
-        if not bends:
-            bodies = [(one.position, one.rotary_inertia) for one in beam.mass]
-            return torsion_hz(shaft, (support == "clamped", False), n_modes, bodies)
-        model = ExactModel(beam, theory)
-        return np.array([model.frequency_hz(mode) for mode in range(1, n_modes + 1)])
-
     def chain(springs: Array) -> RigidChain:
         hinges = [() if np.isnan(one) else (Hinge(axis, float(one)),) for one in [*springs, 0.0]]
         rows = zip(edges.tolist(), line.links.tolist(), strict=False)
         links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
-        return RigidChain(beam, rule, tuple(map(Joint, edges.tolist(), hinges)), links)
+        joints = tuple(map(Joint, edges.tolist(), hinges))
+        return RigidChain(beam, rule, joints, links, theory=theory, shaft=shaft)
 
     axis: Axis = "bending" if bends else "torsion"
     where = "at the wall" if support == "clamped" else f"{support} end"
@@ -111,7 +98,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     first = ", ".join(f"{one:.6g}" for one in hinged[:3])
     advice = f"{line.axis}: better than a fixed link is a hinge at the wall, with {first} N m/rad from it on"
     text = f"{rule} {where}" if support == "clamped" else where
-    return Judged(line, axis, chain(k), chain(springs), exact, text, stiffness, springs, faults, advice * held)
+    return Judged(line, axis, chain(k), chain(springs), text, stiffness, springs, faults, advice * held)
 
 
 def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str]:
@@ -156,12 +143,13 @@ def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str,
     """(rule at the wall, spacing, EI or GJ): the first ones by which all joints have the same EI."""
     held = bool(np.isnan(k[0]))
     names = [name for name in WALLS if name != "welded" and (bends or name in ("half", "full"))]
-    names = ["rigid", "held"] if held else names if support == "clamped" else ["full"]
-    rows = [HELD if name == "held" else 1.0 + np.array(WALLS.get(name, ())) for name in names]
+    names = ["rigid", ADAPTED] if held else names if support == "clamped" else ["full"]
+    rows = [HELD if name == ADAPTED else 1.0 + np.array(WALLS.get(name, ())) for name in names]
     fits = [(k * base * np.append(row, np.ones(len(k)))[: len(k)])[k > 0.0] for base in bases for row in rows]
     spreads = [round(float(fit.std() / fit.mean()), 6) for fit in fits]
     best = int(np.argmin(spreads))
-    text, spacing, stiffness = RULES[names[best % len(names)]], best // len(names), float(np.median(fits[best]))
+    name, spacing, stiffness = names[best % len(names)], best // len(names), float(np.median(fits[best]))
+    text = RULES.get(name, name)
     if spreads[best] > ALIKE:
         inner = (k * bases[0])[1:]
         spacing, stiffness, text = 0, float(np.median(inner)), "irregular joints"
@@ -210,7 +198,7 @@ def judge_file(
     limits: dict[str, Any] = {"fine": within or FINE, "limit": within or LIMIT}
     for one in judged:
         n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.axis, modes)
-        m, exact = len(hertz), one.exact(len(hertz))
+        m, exact = len(hertz), one.present.exact_hz(one.axis, len(hertz))
         errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(one.axis, m) / exact - 1.0
         rows += zip([axis] * m, range(1, m + 1), exact, hertz, errors, after, strict=True)
         pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]

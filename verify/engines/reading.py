@@ -33,7 +33,7 @@ class Move(NamedTuple):
 class Solid(NamedTuple):
     """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
 
-    `shape`, of MJCF: 'box' or 'round' and its sizes as vectors, rows (3, 3), m.
+    `diameter`: of its first geom in MJCF if that is round, else 0.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Solid(NamedTuple):
     centre: Array
     inertia: Array
     moves: tuple[Move, ...]
-    shape: tuple[str, Array] | None
+    diameter: float = 0.0
 
 
 class Line(NamedTuple):
@@ -109,19 +109,15 @@ def _mjcf(path: Path) -> list[Solid]:
                 name, at, slides = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), kind in (0, 2)
                 yield Move(name, slides, at, axis.copy(), float(springs[j, 0]), bound.get(dof + i, ""))
 
-    solids, axial = [], {"CAPSULE", "CYLINDER"}
+    solids = []
     for b in range(1, model.nbody):
-        own, shape = data.ximat[b].reshape(3, 3), None
+        own, g, diameter = data.ximat[b].reshape(3, 3), int(model.body_geomadr[b]), 0.0
         inertia = (own * model.body_inertia[b]) @ own.T
-        if model.body_geomnum[b]:
-            g = int(model.body_geomadr[b])
-            kind, size = mujoco.mjtGeom(model.geom_type[g]).name[7:], 2.0 * model.geom_size[g]
-            size = size[[0, 0, 1]] if kind in axial else size
-            shape = "round" if kind in axial else "box", (data.geom_xmat[g].reshape(3, 3) * size).T
-            shape = shape if kind in {*axial, "BOX"} else None
+        if g >= 0 and mujoco.mjtGeom(model.geom_type[g]).name in ("mjGEOM_CAPSULE", "mjGEOM_CYLINDER"):
+            diameter = 2.0 * float(model.geom_size[g][0])
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
-        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b)), shape))
+        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b)), diameter))
     return solids
 
 
@@ -185,7 +181,7 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
         six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
         inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
         up = order.index(parent) if parent in order else -1
-        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), None))
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves)))
     return solids
 
 
@@ -239,8 +235,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         raise InputError(f"{name}: its joints and centres of mass are on no straight line, give two links or more")
     masses, centre, steps = np.array([one.mass for one in mains]), (centres - places) @ along, np.diff(x)
     last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
-    if (shape := mains[-1].shape) and abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
-        last = float(np.abs(shape[1] @ along).max())  # a body of the end moves the centre of mass
+    if abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
+        last = float(steps[-1])  # a body of the end moves the centre of mass
     across = next((one.axis for one in hinges if abs(one.axis @ along) < STRAIGHT), None)
     turned = [along] if across is None else [across, np.cross(along, across), along]
     if any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
@@ -259,10 +255,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
                 raise InputError(f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
-        drawn = mains[-2].shape
-        diameter = float(np.abs(drawn[1] @ turned[0]).sum()) if drawn and drawn[0] == "round" else 0.0
         joints = [moves[0].joint if moves else "" for moves in own]
-        found.append(Line(axis, joints, springs, np.stack(links, axis=1), diameter, solid))
+        found.append(Line(axis, joints, springs, np.stack(links, axis=1), mains[-2].diameter, solid))
     return found
 
 

@@ -163,8 +163,7 @@ def script(chain: RigidChain, engine: str) -> str:
         values = [one[key] for key in ("offset", "stiffness", "damping", "mass", "centre", "inertia")]
         rows += f"    {(one['name'], kind, *values)!r},\n"
     bodies = {one["link"]: i for i, one in enumerate(moves)}
-    each = [(s.link, s.position, 2, s.stiffness, s.damping) for s in chain.springs]
-    each += [(s.link, s.position, 4, s.rotational, s.rotational_damping) for s in chain.springs]
+    each = [(s.link, s.position, 4 if s.rotational else 2, s.stiffness, s.damping) for s in chain.springs]
     end, about = chain.joints[-1], {"torsion": 3, "bending": 4, "width": 5}
     each += [(chain.count - 1, end.position, about[h.axis], h.stiffness, h.damping) for h in end.hinges]
     for link, x, i, *pair in each:
