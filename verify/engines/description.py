@@ -69,7 +69,7 @@ class Link(msgspec.Struct, frozen=True):
 
 
 class Spring(msgspec.Struct, frozen=True):
-    """A spring and dashpot from a link to the ground: along z, N/m and N s/m, or `rotational` about y, N m and N m s."""
+    """A spring, N/m, and a dashpot, N s/m, from a link to the ground along z, or `rotational` about y, N m, N m s."""
 
     position: float
     link: int

@@ -19,7 +19,6 @@ from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
 from verify.exact.torsion import shafts
 from verify.problem.beam import Beam
-from verify.problem.materials import MATERIALS
 from verify.problem.point_attachments import PointMass
 from verify.problem.supports import FIXED
 from verify.segments.walls import WALLS, wall_factors
@@ -72,8 +71,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     if np.ptp(lengths) > 1e-4 * lengths.mean():
         bases += [np.full(n, lengths.mean()), lengths, np.append(lengths[0], lengths[:-1])]
     rule, spacing, stiffness = _rule(k, bases, support, bends)
-    square = beam is None and bends and _square(line.diameter, stiffness, expected[0] / lengths[0])
-    reference = float(values[0]) if beam is not None else stiffness / (SQUARE if square else 1.0)
+    reference = stiffness if beam is None else float(values[0])
     even = bends and np.ptp(soft[:3]) < 1e-4 * soft[0]
     best = "gregory" if even else "half"
     hinged = reference / bases[0] / wall_factors((support, "free"), n, best)[:-1]
@@ -156,14 +154,6 @@ def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str,
         if inner.std() < ALIKE * stiffness:
             text = f"{k[0] * bases[0][0] / stiffness:.4g} EI/l"
     return text if bends else text.replace("EI", "GJ"), spacing, stiffness
-
-
-def _square(diameter: float, stiffness: float, mass_per_length: float) -> bool:
-    """Whether a round section is of a known material by its density, and EI is that of the square around it."""
-    if not diameter:
-        return False
-    values = np.array([4.0 * mass_per_length / (pi * diameter**2), 12.0 * stiffness / diameter**4])
-    return any(np.allclose(values, [one.density, one.youngs_modulus], rtol=0.015) for one in MATERIALS.values())
 
 
 def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:

@@ -31,10 +31,7 @@ class Move(NamedTuple):
 
 
 class Solid(NamedTuple):
-    """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
-
-    `diameter`: of its first geom in MJCF if that is round, else 0.
-    """
+    """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3)."""
 
     name: str
     parent: int
@@ -43,22 +40,19 @@ class Solid(NamedTuple):
     centre: Array
     inertia: Array
     moves: tuple[Move, ...]
-    diameter: float = 0.0
 
 
 class Line(NamedTuple):
     """The chain about one axis, N joints with a link beyond each. SI.
 
-    A first link fixed to the wall has the joint '' of stiffness NaN. `links`: length, mass, centre of mass from the
-    joint, inertia about it, (N, 4), with the bodies fixed to them. `diameter`: of a section drawn round, or 0. `solid`:
-    inertias are those of a prism, about all axes.
+    A first link fixed to the wall has the joint '' of stiffness NaN. `links`, with the bodies fixed to them: length,
+    mass, centre of mass from the joint, inertia about it, (N, 4). `solid`: inertias are those of prisms.
     """
 
     axis: Axis
     joints: list[str]
     springs: Array
     links: Array
-    diameter: float
     solid: bool
 
 
@@ -111,13 +105,11 @@ def _mjcf(path: Path) -> list[Solid]:
 
     solids = []
     for b in range(1, model.nbody):
-        own, g, diameter = data.ximat[b].reshape(3, 3), int(model.body_geomadr[b]), 0.0
+        own = data.ximat[b].reshape(3, 3)
         inertia = (own * model.body_inertia[b]) @ own.T
-        if g >= 0 and mujoco.mjtGeom(model.geom_type[g]).name in ("mjGEOM_CAPSULE", "mjGEOM_CYLINDER"):
-            diameter = 2.0 * float(model.geom_size[g][0])
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
-        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b)), diameter))
+        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b))))
     return solids
 
 
@@ -256,7 +248,7 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         joints = [moves[0].joint if moves else "" for moves in own]
-        found.append(Line(axis, joints, springs, np.stack(links, axis=1), mains[-2].diameter, solid))
+        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid))
     return found
 
 
