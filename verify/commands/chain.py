@@ -66,7 +66,7 @@ def chain(
 
 
 def judge_chain(
-    words: list[str], overrides: tuple[str, ...], modes: int, within: str | None, theory: str, corrected: str | None,
+    words: list[str], overrides: tuple[str, ...], modes: int, within: str, theory: str, corrected: str | None,
     formats: dict[str, bool],
 ) -> None:  # fmt: skip
     """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""
@@ -79,8 +79,8 @@ def judge_chain(
     if len(words) > 2:
         raise InputError(f"{words[-1]}: give one file, with one scene in front of it or none")
     beam = load_scene(words[0], overrides).beam if len(words) > 1 else None
-    out, limit = Path(corrected) if corrected else None, relative_error(within) if within else None
-    result = judge_file(Path(words[-1]), beam, modes, limit, theory, out)
+    out = Path(corrected) if corrected else None
+    result = judge_file(Path(words[-1]), beam, modes, relative_error(within), theory, out)
     if not any(formats.values()):
         result = replace(result, tables=[result.tables[0], *map(_shortened, result.tables[1:])])
     show(result, **formats)

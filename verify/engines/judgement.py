@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from verify.analysis.verdict import FINE, LIMIT, Margin, per_cent
+from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.arrays import Array
 from verify.engines.description import RULES, Axis, Hinge, Joint, Link, RigidChain, in_plane
 from verify.engines.reading import Line, Solid, lines, read
@@ -168,10 +168,10 @@ def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
 
 
 def judge_file(
-    path: Path, beam: Beam | None, modes: int = 5, within: float | None = None, theory: str = "euler-bernoulli",
+    path: Path, beam: Beam | None, modes: int = 5, within: float = FINE, theory: str = "euler-bernoulli",
     corrected: Path | None = None,
 ) -> "Result":  # fmt: skip
-    """The result of the chain in a file, acceptance in `data["passed"]`: all errors are `within`, by default 1 %.
+    """The result of the chain in a file, acceptance in `data["passed"]`: all errors are `within`.
 
     `corrected`: file to write, with correct stiffnesses. Raises InputError for a file that is not such a chain.
     """
@@ -185,7 +185,7 @@ def judge_file(
     springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
     rows, margins, data = list[Any](), list[Margin](), list[Any]()
     tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error[:2]], rows)]
-    limits: dict[str, Any] = {"fine": within or FINE, "limit": within or LIMIT}
+    limits: dict[str, Any] = {"fine": within, "limit": within}
     for one in judged:
         n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.axis, modes)
         m, exact = len(hertz), one.present.exact_hz(one.axis, len(hertz))
@@ -200,10 +200,10 @@ def judge_file(
         size, where = float(abs(errors[worst])), f"at mode {worst + 1} in {axis}"
         remedy = "set the joints below" if any(changes) else "give the links m l^2/12 about l/2"
         if text:
-            margins.append(Margin(name=text, size=size, where=where, condition=f"{text} is acceptable", remedy=remedy,
-                                  failure=f"{text}: {per_cent(size)} {where}", **limits))  # fmt: skip
-        margins.append(Margin(name=what, size=float(abs(after[-1])), where=f"at mode {m} in {axis}",
-                              condition=f"{what} are enough", remedy="give more links", **limits))  # fmt: skip
+            failure = f"{text}: {per_cent(size)} {where}"
+            margins.append(Margin(name=text, size=size, where=where, remedy=remedy, failure=failure, **limits))
+        size, where = float(abs(after[-1])), f"at mode {m} in {axis}"
+        margins.append(Margin(name=what, size=size, where=where, remedy="give more links", **limits))
         own = one.present.beam
         about: dict[str, Any] = {"axis": axis, "links": n, "rule": one.rule, "faults": one.faults, "length": own.length}
         about |= {"stiffness": one.stiffness, "mass_per_length": own.mass_per_length, "supports": own.supports}
@@ -214,7 +214,7 @@ def judge_file(
     rules = [f"{j.line.axis}: {j.rule}, {names.get(j.line.axis, 'EI')} = {j.stiffness:.6g} N m2" for j in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{sizes}; {'; '.join(rules)}."
-    passed = max(float(abs(one["error"]).max()) for one in data) <= limits["fine"]
+    passed = max(float(abs(one["error"]).max()) for one in data) <= within
     return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": data})
 
 
