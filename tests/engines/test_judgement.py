@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.engines.test_chain_files import PHRASE, STEEL, mujoco_hz
 from verify import Beam
 from verify.cli import status_of
 from verify.engines.description import RULES, describe
@@ -15,23 +16,9 @@ from verify.engines.reading import lines, read
 from verify.engines.writers import mjcf, write
 from verify.errors import InputError
 
-mujoco = pytest.importorskip("mujoco")
+pytest.importorskip("mujoco")
 DATA = Path(__file__).parent / "data"
-ENDS = "clamped", "free"
-STEEL = Beam(length=1.0, width=0.04, thickness=0.008, youngs_modulus=210e9, density=7850.0, supports=ENDS)
 STIFFNESS = re.compile(r"([sS]tiffness[\">=]+)[-+.\de]+")
-
-
-def engine_hz(path, n):
-    """Frequencies by MuJoCo's mass matrix, (n,), Hz."""
-    from scipy.linalg import eigh
-
-    model = mujoco.MjModel.from_xml_path(str(path))
-    data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
-    mujoco.mj_forward(model, data)
-    mujoco.mj_fullM(model, data, mass)
-    springs = np.diag(np.reshape(model.jnt_stiffness, (model.nv, -1))[:, 0])
-    return np.sqrt(1.0 / eigh(mass, springs, eigvals_only=True)[::-1][:n]) / (2 * np.pi)
 
 
 def judged(tmp_path, text):
@@ -56,8 +43,8 @@ def test_rule_at_the_wall_is_named_and_corrected_to_the_best_chain(tmp_path, wal
     assert again.data["chains"][0]["frequencies_hz"] == pytest.approx(best.frequencies_hz(n_modes=5), rel=1e-9)
     assert STIFFNESS.sub(r"\1", out.read_text()) == STIFFNESS.sub(r"\1", path.read_text())
     if suffix == "xml":
-        assert engine_hz(path, 5) == pytest.approx(found["frequencies_hz"], rel=1e-9)
-        assert engine_hz(out, 5) == pytest.approx(best.frequencies_hz(n_modes=5), rel=1e-9)
+        assert mujoco_hz(path)[:5] == pytest.approx(found["frequencies_hz"], rel=1e-9)
+        assert mujoco_hz(out)[:5] == pytest.approx(best.frequencies_hz(n_modes=5), rel=1e-9)
 
 
 def test_first_link_fixed_and_its_adapted_joints(tmp_path):
@@ -66,7 +53,7 @@ def test_first_link_fixed_and_its_adapted_joints(tmp_path):
     assert found["faults"] == ["first link fixed at the wall"]
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((0.0768, 1.04e-3), rel=0.02)
     assert "13380.3, 4300.8, 5235.76 N m/rad" in warnings[0]
-    assert engine_hz(out, 1)[0] / found["exact_hz"][0] - 1 == pytest.approx(found["corrected_error"][0], rel=1e-6)
+    assert mujoco_hz(out)[0] / found["exact_hz"][0] - 1 == pytest.approx(found["corrected_error"][0], rel=1e-6)
 
 
 def test_both_planes_and_torsion(tmp_path):
@@ -76,7 +63,7 @@ def test_both_planes_and_torsion(tmp_path):
     assert (width.stiffness / bending.stiffness, torsion.rule) == (pytest.approx(25.0), "2GJ/l at the wall")
     judge_file(path, STEEL, corrected=tmp_path / "out.xml")
     own = np.sort(np.concatenate([chain.frequencies_hz(axis, 3) for axis in chain.axes]))
-    assert engine_hz(tmp_path / "out.xml", 5) == pytest.approx(own[:5], rel=1e-9)
+    assert mujoco_hz(tmp_path / "out.xml")[:5] == pytest.approx(own[:5], rel=1e-9)
 
 
 @pytest.mark.parametrize(("place", "factor", "fault"), [
@@ -103,7 +90,8 @@ def test_default_class_and_tip_mass(tmp_path):
 
 
 def test_public_models():
-    round_bar = Beam(length=0.5, shape="round", diameter=0.01, youngs_modulus=70e9, density=2700.0, supports=ENDS)
+    round_bar = Beam(length=0.5, shape="round", diameter=0.01, youngs_modulus=70e9, density=2700.0,
+                     supports=("clamped", "free"))  # fmt: skip
     beams = {"rod.xml": round_bar, "hose.xml": None, "tether.sdf": None}
     rod, hose, tether = (judge_file(DATA / name, beam).data["chains"] for name, beam in beams.items())
     square = "stiffness 1.6977 times that of the beam: a square section's for a round one"
@@ -153,7 +141,7 @@ def test_joints_behind_bodies_are_not_written(tmp_path):
 def test_command_and_files_without_springs(tmp_path, capsys):
     path = tmp_path / "beam.urdf"
     write(describe(STEEL, 14, wall="half"), path)
-    assert status_of(["compare", "--beam", "1 m x 40 x 8 mm steel, clamped-free", str(path), "--json"]) == 1
+    assert status_of(["compare", "--beam", PHRASE, str(path), "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["chains"][0]["rule"] == "2EI/l at the wall"
     path.write_text(re.sub("<gazebo.*?</gazebo>", "", path.read_text()))
     assert status_of(["compare", str(path)]) == 2
