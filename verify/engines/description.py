@@ -114,26 +114,18 @@ class RigidChain:
         left, right = (FIXED[support].deflection for support in self.beam.supports)
         return left, right
 
-    def hinges(self, axis: Axis) -> list[tuple[int, Hinge]]:
-        """(joint, hinge) of all hinges about an axis in front of a link."""
-        each = [(j, joint.hinge(axis)) for j, joint in enumerate(self.joints[:-1])]
-        return [(j, hinge) for j, hinge in each if hinge]
-
-    def slides(self, axis: Axis) -> bool:
-        """Whether the first unknown is the deflection of joint 0."""
-        return axis != "torsion" and not self.supported[0]
+    def unknowns(self, axis: Axis) -> list[tuple[str, int, float]]:
+        """(name, joint, stiffness): the deflection of joint 0 where that is free, then hinges in front of links."""
+        slide = [] if self.supported[0] or axis == "torsion" else [(f"slide_{axis}", 0, 0.0)]
+        every = [(j, joint.hinge(axis)) for j, joint in enumerate(self.joints[:-1])]
+        return slide + [(f"joint{j}_{axis}", j, hinge.stiffness) for j, hinge in every if hinge]
 
     def rows(self, axis: Axis, links: Any, x: Any) -> tuple[Array, Array]:
-        """(deflections, rotations) of points x (m) of links by the unknowns, (p, n) each.
-
-        Unknowns: the deflection of joint 0 where that is free, then the angles of `hinges`.
-        """
-        joints = np.array([j for j, _ in self.hinges(axis)], dtype=int)
-        places = np.array([self.joints[j].position for j in joints])
-        turned = (joints <= np.asarray(links)[:, None]).astype(float)
-        across = turned * (np.asarray(x)[:, None] - places)
-        first = np.full((len(turned), int(self.slides(axis))), 1.0)
-        return np.hstack([first, across]), np.hstack([0.0 * first, turned])
+        """(deflections, rotations) of points x (m) of links by the `unknowns`, (p, n) each."""
+        names, joints, _ = zip(*self.unknowns(axis), strict=True)
+        slides = np.array([name.startswith("slide") for name in names])
+        turned = (np.array(joints) <= np.asarray(links)[:, None]) * (1.0 - slides)
+        return turned * (np.asarray(x)[:, None] - [self.joints[j].position for j in joints]) + slides, turned
 
     def constraints(self, axis: Axis) -> Array:
         """Rows over the unknowns that the supports of the far end make zero, (0 to 2, n)."""
@@ -143,14 +135,14 @@ class RigidChain:
         return np.vstack([across[:0], *rows])
 
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
-        """(mass, stiffness) over the unknowns of `rows`, without the constraints, (n, n)."""
+        """(mass, stiffness) over the `unknowns`, without the constraints, (n, n)."""
         about = {"bending": 1, "width": 2, "torsion": 0}[axis]
         x, masses, inertias = np.array([(one.start + one.centre, one.mass, one.inertia[about]) for one in self.links]).T
         across, turned = self.rows(axis, range(self.count), x)
         mass = (turned.T * inertias) @ turned
         if axis != "torsion":
             mass += (across.T * masses) @ across
-        stiffness = np.diag([0.0] * self.slides(axis) + [hinge.stiffness for _, hinge in self.hinges(axis)])
+        stiffness = np.diag([spring for *_, spring in self.unknowns(axis)])
         for _, row, spring, _ in self.grounded(axis):
             stiffness += spring * np.outer(row, row)
         return mass, stiffness

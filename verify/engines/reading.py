@@ -15,15 +15,15 @@ from verify.arrays import Array
 from verify.engines.description import AXES, Axis
 from verify.errors import InputError, one_line, shown
 
+SLIDE = "a slide or a free base"
 STRAIGHT = 1e-3
 """Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
 
 
 class Move(NamedTuple):
-    """A degree of freedom at a place, m, about or along an axis in the world; `bound`: what else acts on it."""
+    """A hinge at a place, m, about an axis in the world; `bound`: what it has besides, or a slide in its place."""
 
     joint: str
-    slides: bool
     at: Array
     axis: Array
     stiffness: float
@@ -100,8 +100,8 @@ def _mjcf(path: Path) -> list[Solid]:
         for j in range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body])):
             kind, dof = int(model.jnt_type[j]), int(model.jnt_dofadr[j])
             for i, axis in enumerate([data.xaxis[j]] if kind > 1 else data.xmat[body].reshape(3, 3).T):
-                name, at, slides = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), kind in (0, 2)
-                yield Move(name, slides, at, axis.copy(), float(springs[j, 0]), bound.get(dof + i, ""))
+                name, at, slide = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), SLIDE * (kind in (0, 2))
+                yield Move(name, at, axis.copy(), float(springs[j, 0]), bound.get(dof + i, slide))
 
     solids = []
     for b in range(1, model.nbody):
@@ -168,7 +168,7 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
             axis, turn, word = joints[joint].find("axis"), place(joint), joint[len(mark) :]
             about = turn[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
             own = _value(axis, "dynamics/spring_stiffness") if springs is None else springs.get(word)
-            moves = [Move(word, kind == "prismatic", turn[:3, 3], about, float(own or 0.0))]
+            moves = [Move(word, turn[:3, 3], about, float(own or 0.0), SLIDE * (kind == "prismatic"))]
         centre = at @ _pose(inertial)
         six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
         inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
@@ -187,7 +187,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         above = owner[one.parent] if one.parent >= 0 else -1
         owner.append(i if one.moves else above)
         up |= {i: above} if one.moves else {}
-    sprung = [i for i in up if any(move.stiffness > 0.0 and not move.slides for move in solids[i].moves)]
+    sprung = [i for i in up if any(move.stiffness > 0.0 for move in solids[i].moves)]
     if not sprung:
         raise InputError(f"{name}: no hinge has a stiffness, give springs (in URDF by gazebo/springStiffness)")
     chain = sprung[:1]
@@ -199,9 +199,8 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         chain += below
     if other := set(sprung) - set(chain):
         raise InputError(f"{name}: {shown(solids[min(other)].name)} has springs beyond the first chain, give one chain")
-    for move in (move for i in chain for move in solids[i].moves if move.bound or move.slides):
-        what = f"{move.bound} acts on" if move.bound else "a slide or a free base is"
-        raise InputError(f"{name}: {what} joint {shown(move.joint)}, give a wall, hinges and springs alone")
+    for move in (move for i in chain for move in solids[i].moves if move.bound):
+        raise InputError(f"{name}: joint {shown(move.joint)} has {move.bound}, give a wall, hinges and springs alone")
     parts = list[tuple[list[Move], list[Solid]]]()
     for i in chain:
         own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]

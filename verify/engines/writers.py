@@ -123,8 +123,8 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
         begun = not one["last"]
 
     def tendon(name: str, axis: Axis, row: Array, values: str = "") -> str:
-        names = [f"slide_{axis}"] * chain.slides(axis) + [f"joint{j}_{axis}" for j, _ in chain.hinges(axis)]
-        coefs = "".join(f'<joint joint="{n}" coef="{c!r}"/>' for n, c in zip(names, row.tolist(), strict=True) if c)
+        each = zip(chain.unknowns(axis), row.tolist(), strict=True)
+        coefs = "".join(f'<joint joint="{joint}" coef="{coef!r}"/>' for (joint, *_), coef in each if coef)
         return f'<fixed name="{name}"{values}>{coefs}</fixed>\n'
 
     tendons, equalities, closed, rule = "", "", "", "implicitfast" if chain.damping else "RK4"
