@@ -29,7 +29,7 @@ class Exudyn:
         return np.sort(np.asarray(hertz, dtype=float))[1 - chain.rigid.count :]
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
-        """Motion by the trapezoidal rule."""
+        """Motion by the trapezoidal rule: modified Newton, sparse matrices, sensors at `SAMPLES` times."""
         import exudyn as exu
         from exudyn import utilities as items
 
@@ -46,11 +46,21 @@ class Exudyn:
             )
         )
         system.Assemble()
+        settings = exu.SimulationSettings()
+        settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = steps, end
+        settings.timeIntegration.verboseMode = 0
+        newton = settings.timeIntegration.newton
+        newton.useModifiedNewton = True
+        newton.relativeTolerance, newton.absoluteTolerance = TOLERANCE, 1e-12
+        newton.numericalDifferentiation.minimumCoordinateSize = 1
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = end / min(SAMPLES, steps)
         failure = ""
         with redirect_stdout(StringIO()):
             try:
                 rule = exu.DynamicSolverType.TrapezoidalIndex2
-                system.SolveDynamic(_settings(steps, end), solverType=rule, showHints=False)
+                system.SolveDynamic(settings, solverType=rule, showHints=False)
             except exu.SolverError as error:
                 failure = f"it raised {str(error) or 'an error'!r}"
         times, _, deflection, _ = np.array(system.GetSensorStoredData(sensor)).reshape(-1, 4)[1:].T
@@ -95,20 +105,3 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
         vector = items.LoadForceVector(markerNumber=marker, loadVector=[0.0, 1.0, 0.0], loadVectorUserFunction=load)
         system.AddLoad(vector)
     return system, bodies
-
-
-def _settings(steps: int, end: float) -> Any:
-    """Settings: modified Newton, sparse matrices, sensors at `SAMPLES` times."""
-    import exudyn as exu
-
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = steps, end
-    settings.timeIntegration.verboseMode = 0
-    newton = settings.timeIntegration.newton
-    newton.useModifiedNewton = True
-    newton.relativeTolerance, newton.absoluteTolerance = TOLERANCE, 1e-12
-    newton.numericalDifferentiation.minimumCoordinateSize = 1
-    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = end / min(SAMPLES, steps)
-    return settings
