@@ -70,8 +70,8 @@ def as_mjcf(chain, path):
 def by_script(engine):
     def run(chain, path):
         pytest.importorskip(engine)
-        write(chain, path / f"{engine}.py")
-        names = runpy.run_path(str(path / f"{engine}.py"))
+        write(chain, path / f"beam_{engine}.py")
+        names = runpy.run_path(str(path / f"beam_{engine}.py"))
         values = np.asarray(names["frequencies_hz"](names["build"]()))
         return values[values > 0.02]
 
@@ -193,9 +193,9 @@ def test_dashpots_give_the_damping_ratio():
     assert ratios == pytest.approx(0.013 * np.sqrt(values / values[0]), rel=1e-9)
 
 
-@pytest.mark.parametrize("kind", ["xml", "sdf", "urdf", "exudyn.py", "pinocchio.py", "json", "csv"])
+@pytest.mark.parametrize("kind", [".xml", ".sdf", ".urdf", "_exudyn.py", "_pinocchio.py", ".json", ".csv"])
 def test_every_file_has_the_dashpots(kind, tmp_path):
-    chain, path = describe(GRIPPER, 12, in_space=True, damping=0.013), tmp_path / f"beam.{kind}"
+    chain, path = describe(GRIPPER, 12, in_space=True, damping=0.013), tmp_path / f"beam{kind}"
     write(chain, path)
     text = path.read_text()
     assert all(repr(hinge.damping) in text for joint in chain.joints[:-1] for hinge in joint.hinges)

@@ -217,8 +217,8 @@ _WRITERS: dict[str, Callable[[RigidChain], str]] = {
     ".xml": mjcf,
     ".sdf": lambda chain: robot(chain, _SDF),
     ".urdf": lambda chain: robot(chain, _URDF),
-    "exudyn.py": lambda chain: script(chain, "exudyn"),
-    "pinocchio.py": lambda chain: script(chain, "pinocchio"),
+    "_exudyn.py": lambda chain: script(chain, "exudyn"),
+    "_pinocchio.py": lambda chain: script(chain, "pinocchio"),
     ".json": lambda chain: to_json(data(chain)),
     ".csv": lambda chain: table(chain).csv(),
 }
@@ -235,7 +235,7 @@ def write(chain: RigidChain, path: Path) -> str:
     if chain.wall == "rigid":
         raise InputError("wall = 'rigid': a first link fixed to the wall is for comparison, give another wall")
     if kind in (".sdf", ".urdf") and chain.closed:
-        text = "has no support of the far end and no spring to the ground, write .xml, exudyn.py or pinocchio.py"
+        text = "has no support of the far end and no spring to the ground, write .xml, _exudyn.py or _pinocchio.py"
         raise InputError(f"to = {shown(str(path))}: {kind[1:].upper()} {text}")
     writable_folder(path.parent, "to")
     write_whole(path, _WRITERS[kind](chain), "to")
