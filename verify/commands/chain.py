@@ -28,7 +28,7 @@ COMPARED = "gregory", "half", "full", "rigid"
 @click.option("--wall", default="gregory", show_default=True, metavar="RULE", help="Joints at a clamped end.")
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
-@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, NAME_exudyn.py, NAME_pinocchio.py, .json, .csv.")
+@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
 @format_options
 def chain(
     scene: str,
