@@ -84,7 +84,7 @@ class RigidChain:
 
     `beam` runs from joint 0 on; `mirrored`: joint 0 is at the right end of the scene's beam. `wall`: rule of the joints
     at a clamped end. `damping`: ratio of the first mode about every axis; that of others is in proportion to frequency.
-    `theory`: of the exact beam. `shaft`: `shafts` in torsion if not by the beam's sections.
+    `theory`: of the exact beam.
     """
 
     beam: Beam
@@ -96,7 +96,6 @@ class RigidChain:
     in_space: bool = False
     mirrored: bool = False
     theory: Theory = "euler-bernoulli"
-    shaft: Array | None = None
 
     @property
     def count(self) -> int:
@@ -166,12 +165,11 @@ class RigidChain:
         return _frequencies(self, axis)[:n_modes]
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
-        """Frequencies of the exact beam by `theory`, or of the exact shaft, (n_modes,), Hz."""
+        """Frequencies of the exact beam by `theory`, or of its shaft, (n_modes,), Hz."""
         if axis == "torsion":
             left, right = (support != "free" for support in self.beam.supports)
             bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
-            shaft = shafts(self.beam) if self.shaft is None else self.shaft
-            return torsion_hz(shaft, (left, right), n_modes, bodies)
+            return torsion_hz(shafts(self.beam), (left, right), n_modes, bodies)
         from verify.analytic_modes import ExactModel
 
         exact = ExactModel(in_plane(self.beam, axis), self.theory)

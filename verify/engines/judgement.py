@@ -14,10 +14,9 @@ import numpy as np
 
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.arrays import Array
-from verify.engines.description import RULES, Axis, Hinge, Joint, Link, RigidChain, in_plane
+from verify.engines.description import RULES, Hinge, Joint, Link, RigidChain, in_plane
 from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
-from verify.exact.torsion import shafts
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointMass
 from verify.problem.supports import FIXED
@@ -37,13 +36,12 @@ ALIKE, SAME = 2e-3, 1e-9
 
 
 class Judged(NamedTuple):
-    """A chain as it is and with correct joints, about `axis`: "torsion", or "bending" in either plane.
+    """A chain as it is and with correct joints, whose axis is "bending" in either plane.
 
-    `stiffness`: EI or GJ, N m^2. `springs`: correct ones, N m/rad. `advice`: a better wall than a fixed link, or ''.
+    `stiffness`: EI, N m^2. `springs`: correct ones, N m/rad. `advice`: a better wall than a fixed link, or ''.
     """
 
     line: Line
-    axis: Axis
     present: RigidChain
     correct: RigidChain
     rule: str
@@ -55,48 +53,44 @@ class Judged(NamedTuple):
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
     """The rules of a chain and what is wrong with it. `beam`: the one it means, in the plane of the line."""
-    (lengths, masses, _, inertias), k, bends = line.links.T, line.springs, line.axis != "torsion"
+    (lengths, masses, *_), k = line.links.T, line.springs
     n, edges, held = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0]))
-    support: Any = "clamped" if held or k[0] > 0.0 else "pinned" if bends else "free"
-    shaft, scale, expected = None, np.ones(n), np.median(masses / lengths) * lengths
+    support: Any = "clamped" if held or k[0] > 0.0 else "pinned"
+    scale, expected = np.ones(n), np.median(masses / lengths) * lengths
     if beam is not None:
-        if bends and beam.supports != (support, "free"):
+        if beam.supports != (support, "free"):
             raise InputError(f"the beam is {'-'.join(beam.supports)}, the chain {support}-free, give one like it")
         at = np.searchsorted(np.cumsum([one.length for one in beam.pieces])[:-1], 0.5 * (edges[1:] + edges[:-1]))
-        bending = [one.bending_stiffness for one in beam.pieces]
-        values = (np.array(bending) if bends else shafts(beam)[:, 1])[at]
+        values = np.array([one.bending_stiffness for one in beam.pieces])[at]
         scale, expected = values / values[0], np.array([one.mass_per_length for one in beam.pieces])[at] * lengths
     soft = lengths / scale
     bases = [0.5 * (np.append(soft[0], soft[:-1]) + soft)]
     if np.ptp(lengths) > 1e-4 * lengths.mean():
         bases += [np.full(n, lengths.mean()), lengths, np.append(lengths[0], lengths[:-1])]
-    rule, spacing, stiffness = _rule(k, bases, support, bends)
+    rule, spacing, stiffness = _rule(k, bases, support)
     reference = stiffness if beam is None else float(values[0])
-    even = bends and np.ptp(soft[:3]) < 1e-4 * soft[0]
+    even = np.ptp(soft[:3]) < 1e-4 * soft[0]
     best = "gregory" if even else "half"
     hinged = reference / bases[0] / wall_factors((support, "free"), n, best)[:-1]
     behind = np.append(HELD if even and n > len(HELD) else [np.nan, 1.5], np.ones(n))[:n]
     springs = reference / bases[0] / behind if held else hinged
     if beam is None:
         beam = _meant(line, expected, support, reference)
-        shaft = np.array([[beam.length, reference, np.median(inertias / lengths)]])
 
     def chain(springs: Array) -> RigidChain:
-        hinges = [() if np.isnan(one) else (Hinge(axis, float(one)),) for one in [*springs, 0.0]]
+        hinges = [() if np.isnan(one) else (Hinge("bending", float(one)),) for one in [*springs, 0.0]]
         rows = zip(edges.tolist(), line.links.tolist(), strict=False)
         links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
         joints = tuple(map(Joint, edges.tolist(), hinges))
-        return RigidChain(beam, rule, joints, links, theory=theory, shaft=shaft)
+        return RigidChain(beam, rule, joints, links, theory=theory)
 
-    axis: Axis = "bending" if bends else "torsion"
     where = "at the wall" if support == "clamped" else f"{support} end"
-    right, ratio = RULES[best].replace("EI", "EI" if bends else "GJ"), stiffness / reference
-    faults = [f"{rule} {where}"] if rule != right and support == "clamped" else []
-    faults += _faults(line, expected, spacing, ratio)
+    faults = [f"{rule} {where}"] if rule != RULES[best] and support == "clamped" else []
+    faults += _faults(line, expected, spacing, stiffness / reference)
     first = ", ".join(f"{one:.6g}" for one in hinged[:3])
     advice = f"{line.axis}: better than a fixed link is a hinge at the wall, with {first} N m/rad from it on"
     text = f"{rule} {where}" if support == "clamped" else where
-    return Judged(line, axis, chain(k), chain(springs), text, stiffness, springs, faults, advice * held)
+    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, advice * held)
 
 
 def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str]:
@@ -107,8 +101,6 @@ def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str
     if abs(ratio - 1.0) > ALIKE:
         words = ": a square section's for a round one, 1.3029 in frequency" * (abs(ratio / SQUARE - 1.0) < 0.01)
         found.append(f"stiffness {ratio:.5g} times that of the beam{words}")
-    if line.axis == "torsion":
-        return found
     ratios = inertias / (masses * lengths**2), centres / lengths, masses / expected
     inertia, centre, mass = (float(np.median(one)) for one in ratios)
     if not (0.98 / 12 < inertia < 1.02 / 12 or line.solid):
@@ -137,10 +129,10 @@ def _meant(line: Line, expected: Array, support: Any, stiffness: float) -> Beam:
     )  # fmt: skip
 
 
-def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str, int, float]:
-    """(rule at the wall, spacing, EI or GJ): the first ones by which all joints have the same EI."""
+def _rule(k: Array, bases: list[Array], support: str) -> tuple[str, int, float]:
+    """(rule at the wall, spacing, EI): the first ones by which all joints have the same EI."""
     held = bool(np.isnan(k[0]))
-    names = [name for name in WALLS if name != "welded" and (bends or name in ("half", "full"))]
+    names = [name for name in WALLS if name != "welded"]
     names = ["rigid", ADAPTED] if held else names if support == "clamped" else ["full"]
     rows = [HELD if name == ADAPTED else 1.0 + np.array(WALLS.get(name, ())) for name in names]
     fits = [(k * base * np.append(row, np.ones(len(k)))[: len(k)])[k > 0.0] for base in bases for row in rows]
@@ -153,7 +145,7 @@ def _rule(k: Array, bases: list[Array], support: str, bends: bool) -> tuple[str,
         spacing, stiffness, text = 0, float(np.median(inner)), "irregular joints"
         if inner.std() < ALIKE * stiffness:
             text = f"{k[0] * bases[0][0] / stiffness:.4g} EI/l"
-    return text if bends else text.replace("EI", "GJ"), spacing, stiffness
+    return text, spacing, stiffness
 
 
 def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
@@ -163,8 +155,7 @@ def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
     if abs((length := float(line.links[:, 0].sum())) / beam.length - 1.0) > 0.01:
         raise InputError(f"{name}: its chain is {length:.6g} m long, the beam {beam.length:.6g} m")
     planes, stiffness = [in_plane(beam, axis) for axis in ("bending", "width")], judge(line).stiffness
-    nearest = int(np.argmin([abs(np.log(stiffness / one.bending_stiffness)) for one in planes]))
-    return beam if line.axis == "torsion" else planes[nearest]
+    return min(planes, key=lambda one: abs(np.log(stiffness / one.bending_stiffness)))
 
 
 def judge_file(
@@ -187,9 +178,9 @@ def judge_file(
     tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error[:2]], rows)]
     limits: dict[str, Any] = {"fine": within, "limit": within}
     for one in judged:
-        n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.axis, modes)
-        m, exact = len(hertz), one.present.exact_hz(one.axis, len(hertz))
-        errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(one.axis, m) / exact - 1.0
+        n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(n_modes=modes)
+        m, exact = len(hertz), one.present.exact_hz(n_modes=len(hertz))
+        errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(n_modes=m) / exact - 1.0
         rows += zip([axis] * m, range(1, m + 1), exact, hertz, errors, after, strict=True)
         pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]
         changes = [new / old - 1.0 if old and new else None for old, new in zip(*pairs, strict=True)]
@@ -210,8 +201,7 @@ def judge_file(
         data.append(about | {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after})
     warnings = [one.advice for one in judged if one.advice]
     warnings += [_write(path, kind, solids, judged, corrected)] if corrected else []
-    names = {"torsion": "GJ"}
-    rules = [f"{j.line.axis}: {j.rule}, {names.get(j.line.axis, 'EI')} = {j.stiffness:.6g} N m2" for j in judged]
+    rules = [f"{one.line.axis}: {one.rule}, EI = {one.stiffness:.6g} N m2" for one in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{sizes}; {'; '.join(rules)}."
     passed = max(float(abs(one["error"]).max()) for one in data) <= within

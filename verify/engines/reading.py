@@ -43,7 +43,7 @@ class Solid(NamedTuple):
 
 
 class Line(NamedTuple):
-    """The chain about one axis, N joints with a link beyond each. SI.
+    """The chain in one bending plane, N joints with a link beyond each. SI.
 
     A first link fixed to the wall has the joint '' of stiffness NaN. `links`, with the bodies fixed to them: length,
     mass, centre of mass from the joint, inertia about it, (N, 4). `solid`: inertias are those of prisms.
@@ -215,7 +215,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
 
 
 def lines(solids: list[Solid], name: str) -> list[Line]:
-    """The chain about each axis of its hinges. Raises InputError for what is no straight chain."""
+    """The chain in bending in each plane of its hinges. Raises InputError for what is no straight chain."""
     parts = _chain(solids, name)
     mains, hinges = [members[0] for _, members in parts], [move for moves, _ in parts for move in moves]
     places = np.array([moves[-1].at if moves else members[0].origin for moves, members in parts])
@@ -228,16 +228,16 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
     if abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
         last = float(steps[-1])  # a body of the end moves the centre of mass
-    across = next((one.axis for one in hinges if abs(one.axis @ along) < STRAIGHT), None)
-    turned = [along] if across is None else [across, np.cross(along, across), along]
-    if any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
+    across = next((one.axis for one in hinges if one.stiffness and abs(one.axis @ along) < STRAIGHT), along)
+    turned = [across, np.cross(along, across), along]
+    if across is along or any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
         raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
     whole = [_joined(members) for _, members in parts]
     masses, centre = np.array([one.mass for one in whole]), np.array([one.centre for one in whole] - places) @ along
     prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in whole])
     apart = np.array([np.trace(one.inertia) for one in whole]) - prism - 2.0 * spins
     found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
-    for axis, about in zip(AXES[-len(turned) :], turned, strict=True):
+    for axis, about in zip(AXES[:2], turned[:2], strict=True):
         own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
         if not any(move.stiffness for moves in own for move in moves):
             continue
