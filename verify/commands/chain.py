@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FIRST = 4
 """Joints that the terminal always shows."""
-RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed"}
+COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
 
 
@@ -28,8 +28,7 @@ RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid
 @click.option("--wall", default="gregory", show_default=True, metavar="RULE", help="Joints at a clamped end.")
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
-@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, .py, .json or .csv.")
-@click.option("--engine", metavar="NAME", help="exudyn or pinocchio, for a .py file.")
+@click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
 @format_options
 def chain(
     scene: str,
@@ -41,7 +40,6 @@ def chain(
     in_space: bool,
     damping: str,
     path: str | None,
-    engine: str | None,
     **formats: bool,
 ) -> None:
     """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
@@ -56,21 +54,19 @@ def chain(
     from verify.scene.load import load_scene
     from verify.validation import Relative
 
-    if engine and not path:
-        raise InputError(f"engine = {engine!r} is for a file: give --to FILE.py")
     ratio, beam = typed(damping, Relative, "damping"), load_scene(scene, overrides).beam
     if count is None:
         count = _fewest(beam, mode, relative_error(error), wall, in_space)
     described, brief = describe(beam, count, wall=wall, in_space=in_space, damping=ratio), not any(formats.values())
     result = _result(described, mode, brief=brief)
-    wrote = write(described, Path(path), engine) if path else ""
+    wrote = write(described, Path(path)) if path else ""
     show(result, **formats)
     if wrote:
         click.echo(printable(wrote), err=not brief)
 
 
 def judge_chain(
-    words: list[str], overrides: tuple[str, ...], modes: int, within: str | None, theory: str, corrected: str | None,
+    words: list[str], overrides: tuple[str, ...], modes: int, within: str, theory: str, corrected: str | None,
     formats: dict[str, bool],
 ) -> None:  # fmt: skip
     """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""
@@ -83,13 +79,10 @@ def judge_chain(
     if len(words) > 2:
         raise InputError(f"{words[-1]}: give one file, with one scene in front of it or none")
     beam = load_scene(words[0], overrides).beam if len(words) > 1 else None
-    out, limit = Path(corrected) if corrected else None, relative_error(within) if within else None
-    result = judge_file(Path(words[-1]), beam, modes, limit, theory, out)
+    out = Path(corrected) if corrected else None
+    result = judge_file(Path(words[-1]), beam, modes, relative_error(within), theory, out)
     if not any(formats.values()):
-        joints, axes = result.tables[-1], dict.fromkeys(row[2] for row in result.tables[-1].rows)
-        parts = [replace(joints, rows=[row for row in joints.rows if row[2] == axis]) for axis in axes]
-        rows = [row for part in parts for row in _shortened(part).rows]
-        result = replace(result, tables=[*result.tables[:-1], replace(joints, rows=rows)])
+        result = replace(result, tables=[result.tables[0], *map(_shortened, result.tables[1:])])
     show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(GATE_FAILED)
@@ -117,15 +110,13 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
     from verify.analysis.margins import beam_margins
     from verify.analysis.solution_cache import SolutionCache
     from verify.analysis.verdict import Margin
-    from verify.engines.description import describe
+    from verify.engines.description import RULES, describe
     from verify.engines.writers import data, table
     from verify.report.result import Column, Result, Table
 
-    walls, n = (RULES if "clamped" in chain.beam.supports else {}), chain.count
+    walls, n = (COMPARED if "clamped" in chain.beam.supports else ()), chain.count
     others = {
-        title: describe(chain.beam, n, wall=wall, in_space=chain.in_space)
-        for wall, title in walls.items()
-        if wall != chain.wall
+        RULES[wall]: describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls if wall != chain.wall
     }
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
@@ -140,24 +131,21 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
         name = f"discretisation of {n} links in {axis}"
         margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
                            condition=f"{n} links are enough in {axis}")]  # fmt: skip
-    rule = f", {RULES.get(chain.wall, chain.wall)} at the wall" if walls else ""
+    rule = f", {RULES[chain.wall]} at the wall" if walls else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
-    if chain.in_space and (chain.bodies or chain.springs):
+    if chain.in_space and (chain.beam.mass or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
     tables = [_shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))
 
 
 def _shortened(table: "Table") -> "Table":
-    """The first rows, the last, and in between a row for each run of joints that differ in position alone."""
+    """The first rows and the last, and a row with what those in between have in common."""
     from dataclasses import replace
 
-    rows, start = list(map(tuple, table.rows)), FIRST
-    alike = [[f"{value:.9g}" if isinstance(value, float) else value for value in row[2:]] for row in rows]
-    runs = [(str(row[0]), *row[1:]) for row in rows[:FIRST]]
-    for j in range(FIRST + 1, len(rows) + 1):
-        if j >= len(rows) - 1 or alike[j] != alike[start]:
-            first = (str(start), rows[start][1]) if j == start + 1 else (f"{start} to {j - 1}", None)
-            runs.append((*first, *rows[start][2:]))
-            start = j
-    return replace(table, rows=runs)
+    rows = [(str(row[0]), *row[1:]) for row in table.rows]
+    inner = list(zip(*rows[FIRST:-1], strict=True))[1:]
+    alike = [values[0] if len({f"{v:.9g}" if isinstance(v, float) else v for v in values}) == 1 else None
+             for values in inner]  # fmt: skip
+    between = [(f"{FIRST} to {len(rows) - 2}", *alike)] if len(rows) > FIRST + 2 else rows[FIRST:-1]
+    return replace(table, rows=[*rows[:FIRST], *between, *rows[-1:]] if len(rows) > FIRST else rows)

@@ -19,26 +19,14 @@ SAMPLES = 200
 
 @dataclass(frozen=True)
 class Chain:
-    """n equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest. SI units.
+    """N equal rigid links, pinned at x = 0 and on a roller at the end, driven from rest.
 
-    `link`, `mass`, `inertia`: length of a link, its mass, and its inertia about its middle. `spring`: rotational, at
-    each inner joint. `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0. `rigid`: the
-    same chain joint by joint.
+    `forces`: transverse, amplitude cos(omega t + phase), switched on at t = 0.
     """
 
-    n: int
-    link: float
-    mass: float
-    inertia: float
-    spring: float
+    rigid: RigidChain
     frequency_hz: float
     forces: tuple[PointForce, ...]
-    rigid: RigidChain
-
-    @property
-    def length(self) -> float:
-        """Length of the chain, m."""
-        return self.n * self.link
 
     def force_values(self, t: float) -> list[float]:
         """Values of all forces at t, s, in N."""
@@ -47,8 +35,9 @@ class Chain:
 
     def locate(self, x: float) -> tuple[int, float]:
         """(link, counted from 0, distance from its near end) of a position."""
-        i = min(int(x / self.link + 1e-12), self.n - 1)
-        return i, x - i * self.link
+        link = self.rigid.links[0].length
+        i = min(int(x / link + 1e-12), self.rigid.count - 1)
+        return i, x - i * link
 
 
 def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: float) -> Chain:
@@ -63,9 +52,7 @@ def chain_of(beam: Beam, n: int, forces: Sequence[PointForce], frequency_hz: flo
     for i, force in enumerate(forces):
         if force.position > beam.length:
             raise InputError(f"force[{i}].position = {force.position!r}: give one between 0 and {beam.length!r} m")
-    rigid = describe(beam, n)
-    link, spring = rigid.links[0], rigid.joints[1].hinges[0].stiffness
-    return Chain(n, link.length, link.mass, link.inertia[1], spring, frequency_hz, tuple(forces), rigid)
+    return Chain(describe(beam, n), frequency_hz, tuple(forces))
 
 
 @dataclass(frozen=True)
@@ -85,7 +72,7 @@ class Adapter(Protocol):
     """Interface of an engine."""
 
     def frequencies(self, chain: Chain) -> Array | None:
-        """Natural frequencies (n - 1,), Hz, ascending; None if the engine computes none."""
+        """Natural frequencies (N - 1,), Hz, ascending; None if the engine computes none."""
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
         """The motion from rest to `end` (s) in `steps` steps."""

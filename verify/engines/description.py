@@ -4,7 +4,8 @@ x is along the beam, z the deflection across its thickness, y across its width. 
 between the wall and link 0, joint j between links j - 1 and j, joint N between the last link and what is behind the far
 end. In space every joint has hinges for both bending planes and for torsion. Angles are relative: a hinge turns all
 links beyond it. A pinned or clamped end is fixed in z (and y) and free along x; every support prevents the twist.
-Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint.
+Attached bodies and springs are fixed to their rigid link, half to either link where they turn at a joint; a body is
+part of the mass, centre and inertia of its link.
 
 The joints in bending are those of `SegmentModel`. In torsion a link is a disk at the centre of its inertia, between
 springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the relative error is -(k l)^2/24 at the
@@ -22,7 +23,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
-from verify.options import WALLS
+from verify.options import Theory
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
@@ -31,8 +32,9 @@ from verify.validation import check_choice, check_integer, check_number, check_t
 Axis = Literal["bending", "width", "torsion"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
-_ABOUT = {"bending": 1, "width": 2, "torsion": 0}
-CHAIN_WALLS = (*(wall for wall in WALLS if wall != "welded"), "rigid")
+RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed",
+         "third-order": "weights 5/12, 13/12", "five-joint": "five-joint weights"}  # fmt: skip
+"""Joints at a clamped end."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 
@@ -57,7 +59,7 @@ class Joint(msgspec.Struct, frozen=True):
 
 
 class Link(msgspec.Struct, frozen=True):
-    """A rigid link from x = `start`, m: its centre of mass from there, inertia about it and x, y, z, kg m^2."""
+    """A rigid link with its bodies from x = `start`, m: centre of mass from there, inertia about it, kg m^2."""
 
     start: float
     length: float
@@ -66,43 +68,34 @@ class Link(msgspec.Struct, frozen=True):
     inertia: tuple[float, float, float]
 
 
-class Body(msgspec.Struct, frozen=True):
-    """A mass, kg, at x = `position` on a link (from 0), with its inertia, kg m^2, in space about all axes."""
-
-    position: float
-    link: int
-    mass: float
-    inertia: float
-
-
 class Spring(msgspec.Struct, frozen=True):
-    """A spring from a link to the ground, N/m along z and N m/rad about y, with dashpots, N s/m and N m s."""
+    """A spring, N/m, and a dashpot, N s/m, from a link to the ground along z, or `rotational` about y, N m, N m s."""
 
     position: float
     link: int
+    rotational: bool
     stiffness: float
-    rotational: float
-    damping: float = 0.0
-    rotational_damping: float = 0.0
+    damping: float
 
 
 @dataclass(frozen=True, eq=False)
 class RigidChain:
-    """N + 1 joints, N links, attachments, and the frequencies of exactly this chain.
+    """N + 1 joints, N links, springs to the ground, and the frequencies of exactly this chain.
 
     `beam` runs from joint 0 on; `mirrored`: joint 0 is at the right end of the scene's beam. `wall`: rule of the joints
     at a clamped end. `damping`: ratio of the first mode about every axis; that of others is in proportion to frequency.
+    `theory`: of the exact beam.
     """
 
     beam: Beam
     wall: str
     joints: tuple[Joint, ...]
     links: tuple[Link, ...]
-    bodies: tuple[Body, ...] = ()
     springs: tuple[Spring, ...] = ()
     damping: float = 0.0
     in_space: bool = False
     mirrored: bool = False
+    theory: Theory = "euler-bernoulli"
 
     @property
     def count(self) -> int:
@@ -120,26 +113,18 @@ class RigidChain:
         left, right = (FIXED[support].deflection for support in self.beam.supports)
         return left, right
 
-    def hinges(self, axis: Axis) -> list[tuple[int, Hinge]]:
-        """(joint, hinge) of all hinges about an axis in front of a link."""
-        each = [(j, joint.hinge(axis)) for j, joint in enumerate(self.joints[:-1])]
-        return [(j, hinge) for j, hinge in each if hinge]
-
-    def slides(self, axis: Axis) -> bool:
-        """Whether the first unknown is the deflection of joint 0."""
-        return axis != "torsion" and not self.supported[0]
+    def unknowns(self, axis: Axis) -> list[tuple[str, int, float]]:
+        """(name, joint, stiffness): the deflection of joint 0 where that is free, then hinges in front of links."""
+        slide = [] if self.supported[0] or axis == "torsion" else [(f"slide_{axis}", 0, 0.0)]
+        every = [(j, joint.hinge(axis)) for j, joint in enumerate(self.joints[:-1])]
+        return slide + [(f"joint{j}_{axis}", j, hinge.stiffness) for j, hinge in every if hinge]
 
     def rows(self, axis: Axis, links: Any, x: Any) -> tuple[Array, Array]:
-        """(deflections, rotations) of points x (m) of links by the unknowns, (p, n) each.
-
-        Unknowns: the deflection of joint 0 where that is free, then the angles of `hinges`.
-        """
-        joints = np.array([j for j, _ in self.hinges(axis)], dtype=int)
-        places = np.array([self.joints[j].position for j in joints])
-        turned = (joints <= np.asarray(links)[:, None]).astype(float)
-        across = turned * (np.asarray(x)[:, None] - places)
-        first = np.full((len(turned), int(self.slides(axis))), 1.0)
-        return np.hstack([first, across]), np.hstack([0.0 * first, turned])
+        """(deflections, rotations) of points x (m) of links by the `unknowns`, (p, n) each."""
+        names, joints, _ = zip(*self.unknowns(axis), strict=True)
+        slides = np.array([name.startswith("slide") for name in names])
+        turned = (np.array(joints) <= np.asarray(links)[:, None]) * (1.0 - slides)
+        return turned * (np.asarray(x)[:, None] - [self.joints[j].position for j in joints]) + slides, turned
 
     def constraints(self, axis: Axis) -> Array:
         """Rows over the unknowns that the supports of the far end make zero, (0 to 2, n)."""
@@ -149,32 +134,28 @@ class RigidChain:
         return np.vstack([across[:0], *rows])
 
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
-        """(mass, stiffness) over the unknowns of `rows`, or a basis of those that satisfy the constraints, (n, n)."""
-        from scipy.linalg import null_space
-
-        links = [(i, one.start + one.centre, one.mass, one.inertia[_ABOUT[axis]]) for i, one in enumerate(self.links)]
-        bodies = [(one.link, one.position, one.mass, one.inertia) for one in self.bodies]
-        index, x, masses, inertias = np.array(links + bodies).T
-        across, turned = self.rows(axis, index, x)
+        """(mass, stiffness) over the `unknowns`, without the constraints, (n, n)."""
+        about = {"bending": 1, "width": 2, "torsion": 0}[axis]
+        x, masses, inertias = np.array([(one.start + one.centre, one.mass, one.inertia[about]) for one in self.links]).T
+        across, turned = self.rows(axis, range(self.count), x)
         mass = (turned.T * inertias) @ turned
         if axis != "torsion":
             mass += (across.T * masses) @ across
-        stiffness = np.diag([0.0] * self.slides(axis) + [hinge.stiffness for _, hinge in self.hinges(axis)])
+        stiffness = np.diag([spring for *_, spring in self.unknowns(axis)])
         for _, row, spring, _ in self.grounded(axis):
             stiffness += spring * np.outer(row, row)
-        if len(constraints := self.constraints(axis)):
-            basis = null_space(constraints)
-            mass, stiffness = basis.T @ mass @ basis, basis.T @ stiffness @ basis
         return mass, stiffness
+
+    @property
+    def closed(self) -> bool:
+        """Whether the far end has a support, or a spring acts between a link and the ground."""
+        return any(len(self.constraints(axis)) or [*self.grounded(axis)] for axis in self.axes)
 
     def grounded(self, axis: Axis) -> Iterator[tuple[str, Array, float, float]]:
         """(name, row over the unknowns, stiffness, damping) of springs to the ground and of joint N."""
         for i, one in enumerate(self.springs if axis == "bending" else ()):
             across, turned = self.rows(axis, [one.link], [one.position])
-            if one.stiffness:
-                yield f"spring{i}", across[0], one.stiffness, one.damping
-            if one.rotational:
-                yield f"spring{i}_rotational", turned[0], one.rotational, one.rotational_damping
+            yield f"spring{i}", (turned if one.rotational else across)[0], one.stiffness, one.damping
         if (far := self.joints[-1].hinge(axis)) and far.stiffness:
             row = self.rows(axis, [self.count - 1], [self.joints[-1].position])[1][0]
             yield f"joint{self.count}_{axis}", row, far.stiffness, far.damping
@@ -184,14 +165,14 @@ class RigidChain:
         return _frequencies(self, axis)[:n_modes]
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
-        """Frequencies of the exact beam, (n_modes,), Hz; in space with the rotary inertia of its sections."""
+        """Frequencies of the exact beam by `theory`, or of its shaft, (n_modes,), Hz."""
         if axis == "torsion":
             left, right = (support != "free" for support in self.beam.supports)
             bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
             return torsion_hz(shafts(self.beam), (left, right), n_modes, bodies)
         from verify.analytic_modes import ExactModel
 
-        exact = ExactModel(in_plane(self.beam, axis), "rayleigh" if self.in_space else "euler-bernoulli")
+        exact = ExactModel(in_plane(self.beam, axis), self.theory)
         return np.array([exact.frequency_hz(mode) for mode in range(1, n_modes + 1)])
 
     def errors(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
@@ -202,15 +183,23 @@ class RigidChain:
 
 @lru_cache(maxsize=16)
 def _frequencies(chain: RigidChain, axis: Axis) -> Array:
-    """The inverse problem, whose largest eigenvalues are the lowest modes without loss of digits.
-
-    A shift makes the stiffness of a chain with rigid-body motions positive definite.
-    """
-    from scipy.linalg import eigh
-
+    """All of `RigidChain.frequencies_hz`."""
     loose = int(set(chain.beam.supports) == {"free"}) if axis == "torsion" else in_plane(chain.beam, axis).rigid_motions
-    shift = (2.0 * pi * float(chain.exact_hz(axis, 1)[0])) ** 2 if loose else 0.0
-    mass, stiffness = chain.matrices(axis)
+    return small_motion_hz(*chain.matrices(axis), chain.constraints(axis), loose)
+
+
+def small_motion_hz(mass: Array, stiffness: Array, constraints: Array, loose: int = 0) -> Array:
+    """Elastic natural frequencies, ascending, Hz, of matrices (n, n) whose unknowns `constraints` (m, n) make zero.
+
+    The largest eigenvalues of the inverse problem are the lowest modes without loss of digits; a shift makes the
+    stiffness of a system with `loose` rigid-body motions positive definite.
+    """
+    from scipy.linalg import eigh, null_space
+
+    if len(constraints):
+        basis = null_space(constraints)
+        mass, stiffness = basis.T @ mass @ basis, basis.T @ stiffness @ basis
+    shift = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[loose, loose])[0] if loose else 0.0
     values = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1][loose:]
     return np.asarray(np.sqrt(1.0 / values - shift) / (2.0 * pi))
 
@@ -220,14 +209,14 @@ def describe(
 ) -> RigidChain:
     """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
 
-    `wall`: joints at a clamped end, one of `CHAIN_WALLS`; "rigid" fixes the first link to the wall. `damping`:
+    `wall`: joints at a clamped end, one of `RULES`; "rigid" fixes the first link to the wall. `damping`:
     damping ratio of the first mode about every axis. Joint 0 is at the end with the stronger support.
     """
     from verify.segment_model import SegmentModel
 
     check_type("beam", beam, Beam)
     beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
-    check_choice("wall", wall, CHAIN_WALLS)
+    check_choice("wall", wall, tuple(RULES))
     check_integer("count", count, 2, MOST_LINKS)
     check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
     first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)
@@ -248,16 +237,16 @@ def describe(
     masses = parts.lengths * parts.masses_per_length * beam.mass_per_length * unit
     inertias = np.stack([masses * lengths**2 / 12.0] * 3, axis=1)
     bodies = [
-        Body(m.position, link, share * m.mass, share * m.rotary_inertia)
+        (link, m.position - chain.nodes[link], share * m.mass, share * m.rotary_inertia)
         for m in beam.mass
         for link, share in _shares(chain, m.position, m.rotary_inertia)
     ]
     if in_space:
         shaft = np.repeat(shafts(beam)[:, 1:], parts.shares, axis=0)
         spin, moment = shaft[:, 1] * lengths, np.zeros(count)
-        for body in bodies:
-            spin[body.link] += body.inertia
-            moment[body.link] += body.inertia * (body.position - chain.nodes[body.link] - 0.5 * lengths[body.link])
+        for link, x, _, inertia in bodies:
+            spin[link] += inertia
+            moment[link] += inertia * (x - 0.5 * lengths[link])
         # a disk is at the centre of its inertia: order 1 otherwise
         before, after = (0.5 * lengths + moment / spin) / shaft[:, 0], (0.5 * lengths - moment / spin) / shaft[:, 0]
         before[0] = before[0] if beam.supports[0] != "free" else np.inf
@@ -265,13 +254,19 @@ def describe(
         springs["torsion"] = 1.0 / (np.append(before, 0.0) + np.append(0.0, after))
         sections = [shaft[:, 1], *(one.links.of("rotary_inertia") for one in models.values())]
         inertias = inertias * [0.0, 1.0, 1.0] + np.stack(sections, axis=1) * lengths[:, None]
+    centres = 0.5 * lengths
+    for link, x, mass, inertia in bodies:
+        share, apart = mass / (masses[link] + mass), x - centres[link]
+        inertias[link] += inertia + share * masses[link] * apart**2 * np.array([0.0, 1.0, 1.0])
+        centres[link] += share * apart
+        masses[link] += mass
     times = dict.fromkeys(springs, 0.0)
     if damping:
         undamped = describe(beam, count, wall=wall, in_space=in_space)
         times = {axis: damping / (pi * float(undamped.frequencies_hz(axis, 1)[0])) for axis in springs}
     fixed = [end for end, s in zip((0, count), beam.supports, strict=True) if s == "clamped" and wall == "rigid"]
     nodes, across = chain.nodes.tolist(), times["bending"]
-    links = zip(nodes, lengths.tolist(), masses.tolist(), inertias.tolist(), strict=False)
+    links = zip(nodes, *(one.tolist() for one in (lengths, masses, centres, inertias)), strict=False)
     hinges = [
         tuple(Hinge(a, float(k[j]), times[a] * float(k[j])) for a, k in springs.items()) for j in range(count + 1)
     ]
@@ -279,18 +274,19 @@ def describe(
         beam=beam,
         wall=wall,
         joints=tuple(Joint(x, () if j in fixed else hinges[j]) for j, x in enumerate(nodes)),
-        links=tuple(Link(x, length, mass, 0.5 * length, tuple(inertia)) for x, length, mass, inertia in links),
-        bodies=tuple(bodies),
+        links=tuple(Link(x, length, mass, centre, tuple(inertia)) for x, length, mass, centre, inertia in links),
         springs=tuple(
-            Spring(s.position, link, share * s.stiffness, share * k, across * share * s.stiffness, across * share * k)
-            for s in beam.spring
-            for k in [0.0 if any(s.position == b.position for b in behind) else s.rotational]
-            for link, share in _shares(chain, s.position, k)
-            if s.stiffness or k
+            Spring(one.position, link, rotational, share * k, across * share * k)
+            for one in beam.spring
+            for turning in [0.0 if any(one.position == b.position for b in behind) else one.rotational]
+            for link, share in _shares(chain, one.position, turning)
+            for rotational, k in ((False, one.stiffness), (True, turning))
+            if k
         ),
         damping=damping,
         in_space=in_space,
         mirrored=mirrored,
+        theory="rayleigh" if in_space else "euler-bernoulli",
     )
 
 

@@ -26,16 +26,16 @@ class Exudyn:
         system.Assemble()
         with redirect_stdout(StringIO()):
             hertz, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
-        return np.sort(np.asarray(hertz, dtype=float))[-(chain.n - 1) :]
+        return np.sort(np.asarray(hertz, dtype=float))[1 - chain.rigid.count :]
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
-        """Motion by the trapezoidal rule."""
+        """Motion by the trapezoidal rule: modified Newton, sparse matrices, sensors at `SAMPLES` times."""
         import exudyn as exu
         from exudyn import utilities as items
 
         system, bodies = assemble(chain)
-        middle, at = chain.locate(0.5 * chain.length)
-        position, place = exu.OutputVariableType.Position, [at - chain.link / 2, 0.0, 0.0]
+        middle, at = chain.locate(0.5 * chain.rigid.beam.length)
+        position, place = exu.OutputVariableType.Position, [at - chain.rigid.links[0].centre, 0.0, 0.0]
         sensor = system.AddSensor(
             items.SensorBody(
                 bodyNumber=bodies[middle],
@@ -46,11 +46,21 @@ class Exudyn:
             )
         )
         system.Assemble()
+        settings = exu.SimulationSettings()
+        settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = steps, end
+        settings.timeIntegration.verboseMode = 0
+        newton = settings.timeIntegration.newton
+        newton.useModifiedNewton = True
+        newton.relativeTolerance, newton.absoluteTolerance = TOLERANCE, 1e-12
+        newton.numericalDifferentiation.minimumCoordinateSize = 1
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = end / min(SAMPLES, steps)
         failure = ""
         with redirect_stdout(StringIO()):
             try:
                 rule = exu.DynamicSolverType.TrapezoidalIndex2
-                system.SolveDynamic(_settings(steps, end), solverType=rule, showHints=False)
+                system.SolveDynamic(settings, solverType=rule, showHints=False)
             except exu.SolverError as error:
                 failure = f"it raised {str(error) or 'an error'!r}"
         times, _, deflection, _ = np.array(system.GetSensorStoredData(sensor)).reshape(-1, 4)[1:].T
@@ -63,12 +73,13 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
     import exudyn as exu
     from exudyn import utilities as items
 
-    half = chain.link / 2
+    links, joints = chain.rigid.links, chain.rigid.joints
+    half = links[0].centre
     system = exu.SystemContainer().AddSystem()
     ground = system.AddObject(items.ObjectGround())
-    middles = [[(i + 0.5) * chain.link, 0.0, 0.0] for i in range(chain.n)]
+    middles = [[link.start + half, 0.0, 0.0] for link in links]
     nodes = [system.AddNode(items.NodeRigidBody2D(referenceCoordinates=place)) for place in middles]
-    body = {"mass": chain.mass, "inertia": chain.inertia}
+    body = {"mass": links[0].mass, "inertia": links[0].inertia[1]}
     bodies = [system.AddObject(items.ObjectRigidBody2D(nodeNumber=node, **body)) for node in nodes]
 
     def point(body: int, x: float) -> int:
@@ -76,12 +87,13 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
 
     turns = [system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2)) for node in nodes]
     system.AddObject(items.RevoluteJoint2D(markerNumbers=[point(ground, 0.0), point(bodies[0], -half)]))
-    for i in range(chain.n - 1):
+    for i, joint in enumerate(joints[1:-1]):
+        stiffness = joint.hinges[0].stiffness
         ends = [point(bodies[i], half), point(bodies[i + 1], -half)]
         system.AddObject(items.RevoluteJoint2D(markerNumbers=ends))
-        system.AddObject(items.CoordinateSpringDamper(markerNumbers=turns[i : i + 2], stiffness=chain.spring))
+        system.AddObject(items.CoordinateSpringDamper(markerNumbers=turns[i : i + 2], stiffness=stiffness))
     tip = system.AddMarker(items.MarkerBodyRigid(bodyNumber=bodies[-1], localPosition=[half, 0.0, 0.0]))
-    far = system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[chain.length, 0.0, 0.0]))
+    far = system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[joints[-1].position, 0.0, 0.0]))
     system.AddObject(items.GenericJoint(markerNumbers=[far, tip], constrainedAxes=[0, 1, 0, 0, 0, 0]))
     for k, force in enumerate(chain.forces):
         link, at = chain.locate(force.position)
@@ -93,20 +105,3 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
         vector = items.LoadForceVector(markerNumber=marker, loadVector=[0.0, 1.0, 0.0], loadVectorUserFunction=load)
         system.AddLoad(vector)
     return system, bodies
-
-
-def _settings(steps: int, end: float) -> Any:
-    """Settings: modified Newton, sparse matrices, sensors at `SAMPLES` times."""
-    import exudyn as exu
-
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = steps, end
-    settings.timeIntegration.verboseMode = 0
-    newton = settings.timeIntegration.newton
-    newton.useModifiedNewton = True
-    newton.relativeTolerance, newton.absoluteTolerance = TOLERANCE, 1e-12
-    newton.numericalDifferentiation.minimumCoordinateSize = 1
-    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = end / min(SAMPLES, steps)
-    return settings

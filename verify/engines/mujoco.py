@@ -11,8 +11,8 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.base import SAMPLES, Chain, Run
+from verify.engines.description import small_motion_hz
 from verify.engines.writers import mjcf
-from verify.errors import one_line
 
 
 class Mujoco:
@@ -26,30 +26,24 @@ class Mujoco:
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
         mass = np.zeros((model.nv, model.nv))
-        try:
-            mujoco.mj_fullM(model, data, mass)
-        except TypeError:  # before version 4
-            mujoco.mj_fullM(model, mass, data.qM)
-        stiffness = np.asarray(model.jnt_stiffness).reshape(model.nv, -1)[:, 0]
-        return tree_frequencies(mass, np.array(data.efc_J).reshape(-1, model.nv)[0], np.array(stiffness))
+        mujoco.mj_fullM(model, data, mass)
+        stiffness = np.diag(np.reshape(model.jnt_stiffness, (model.nv, -1))[:, 0])
+        return small_motion_hz(mass, stiffness, np.reshape(data.efc_J, (-1, model.nv)))
 
     def run(self, chain: Chain, steps: int, end: float) -> Run:
         """Motion by the engine's Runge-Kutta method."""
         import mujoco
 
         h = end / steps
-        middle, at = chain.locate(0.5 * chain.length)
-        reach = np.append(np.full(middle, chain.link), at)
+        middle, at = chain.locate(0.5 * chain.rigid.beam.length)
+        reach = np.append([link.length for link in chain.rigid.links[:middle]], at)
         samples: list[tuple[float, float]] = []
 
         def run_up_to(k: int, failure: str = "") -> Run:
             times, heights = np.array(samples).reshape(-1, 2).T
             return Run(times, heights, k, failure)
 
-        try:
-            model = mujoco.MjModel.from_xml_string(mjcf(chain.rigid, h))
-        except ValueError as error:
-            return run_up_to(0, f"before its first step it rejected the model: {one_line(str(error))}")
+        model = mujoco.MjModel.from_xml_string(mjcf(chain.rigid, h))
         data = mujoco.MjData(model)
         before = mujoco.get_mju_user_warning()
         mujoco.set_mju_user_warning(lambda text: None)  # the default handler writes a file
@@ -67,23 +61,10 @@ class Mujoco:
         return run_up_to(steps)
 
 
-def tree_frequencies(mass: Array, closure: Array, stiffness: Array) -> Array:
-    """Natural frequencies (n - 1,), Hz, ascending, of a tree over joint angles with constrained far end.
-
-    `mass` (n, n), `closure` (n,) derivative of the far end's height by the angles, `stiffness` (n,). The largest
-    eigenvalues of the inverse problem, whose stiffness is diagonal, are the lowest modes without loss of digits.
-    """
-    from scipy.linalg import eigh
-
-    basis = np.vstack([-closure[1:] / closure[0], np.eye(len(closure) - 1)])
-    root = 1.0 / np.sqrt(stiffness[1:])
-    values = eigh(root[:, None] * (basis.T @ mass @ basis) * root, eigvals_only=True)
-    return np.asarray(1.0 / np.sqrt(values[::-1]) / (2.0 * np.pi))
-
-
 def _loads(chain: Chain) -> Any:
     """The control callback."""
-    places = [(link + 1, at - chain.link / 2) for link, at in (chain.locate(force.position) for force in chain.forces)]
+    half, at = chain.rigid.links[0].centre, [chain.locate(force.position) for force in chain.forces]
+    places = [(link + 1, x - half) for link, x in at]
     bodies = sorted({body for body, _ in places})
 
     def control(model: Any, data: Any) -> None:

@@ -4,7 +4,6 @@ MJCF is compiled by MuJoCo, which resolves defaults, includes and the inertias o
 standard library; the springs of URDF are those of Gazebo's extension.
 """
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -16,29 +15,23 @@ from verify.arrays import Array
 from verify.engines.description import AXES, Axis
 from verify.errors import InputError, one_line, shown
 
+SLIDE = "a slide or a free base"
 STRAIGHT = 1e-3
 """Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
-MASSLESS = 1e-8
-"""Mass of a body that counts as none, over the largest: formats demand one between two hinges at one place."""
 
 
 class Move(NamedTuple):
-    """A degree of freedom at a place, m, about or along an axis in the world; `bound`: what else acts on it."""
+    """A hinge at a place, m, about an axis in the world; `bound`: what it has besides, or a slide in its place."""
 
     joint: str
-    slides: bool
     at: Array
     axis: Array
     stiffness: float
-    armature: float = 0.0
     bound: str = ""
 
 
 class Solid(NamedTuple):
-    """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
-
-    `shape`, of MJCF: 'box' or 'round' and its sizes as vectors, rows (3, 3), m.
-    """
+    """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3)."""
 
     name: str
     parent: int
@@ -47,24 +40,19 @@ class Solid(NamedTuple):
     centre: Array
     inertia: Array
     moves: tuple[Move, ...]
-    shape: tuple[str, Array] | None
 
 
 class Line(NamedTuple):
-    """The chain about one axis, N joints with a link beyond each. SI.
+    """The chain in one bending plane, N joints with a link beyond each. SI.
 
-    A first link fixed to the wall has the joint '' of stiffness NaN. `links`: length, mass, centre of mass from the
-    joint, inertia about it, (N, 4). `bodies` fixed to links: (link, position from its joint, mass, inertia). `section`:
-    shape, width and thickness as drawn, or None. `solid`: inertias are those of a prism, about all axes.
+    A first link fixed to the wall has the joint '' of stiffness NaN. `links`, with the bodies fixed to them: length,
+    mass, centre of mass from the joint, inertia about it, (N, 4). `solid`: inertias are those of prisms.
     """
 
     axis: Axis
     joints: list[str]
     springs: Array
-    armatures: Array
     links: Array
-    bodies: list[tuple[int, float, float, float]]
-    section: tuple[str, float, float] | None
     solid: bool
 
 
@@ -74,10 +62,6 @@ def read(path: Path) -> tuple[str, list[Solid]]:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
             return root.tag, _mjcf(path)
-        beside = path.with_name(path.name + ".json")
-        other = json.loads(beside.read_text("utf-8")) if beside.exists() else {}
-        if other.get("springs") or other.get("supports", ["", "free"])[1] != "free":
-            raise InputError(f"{path.name}: springs to the ground and supports of the far end are not judged, free it")
         if root.tag == "sdf":
             return root.tag, _xml(next(root.iter("model")), path.name, None)
         if root.tag == "robot":
@@ -101,7 +85,8 @@ def _mjcf(path: Path) -> list[Solid]:
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos_spring
     mujoco.mj_forward(model, data)
-    springs, bound = np.reshape(model.jnt_stiffness, (model.njnt, -1)), dict[int, str]()
+    springs = np.reshape(model.jnt_stiffness, (model.njnt, -1))
+    bound = {int(dof): "an armature" for dof in np.flatnonzero(model.dof_armature)}
     kinds = ("an equality", "dry friction", "dry friction", "a limit", "a limit", *["a contact"] * 9)
     for kind, row in zip(data.efc_type, np.reshape(data.efc_J, (-1, model.nv)), strict=False):
         bound |= {int(dof): kinds[kind] for dof in np.flatnonzero(row)}
@@ -115,23 +100,16 @@ def _mjcf(path: Path) -> list[Solid]:
         for j in range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body])):
             kind, dof = int(model.jnt_type[j]), int(model.jnt_dofadr[j])
             for i, axis in enumerate([data.xaxis[j]] if kind > 1 else data.xmat[body].reshape(3, 3).T):
-                spring, armature = float(springs[j, 0]), float(model.dof_armature[dof + i])
-                name, at, slides = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), kind in (0, 2)
-                yield Move(name, slides, at, axis.copy(), spring, armature, bound.get(dof + i, ""))
+                name, at, slide = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), SLIDE * (kind in (0, 2))
+                yield Move(name, at, axis.copy(), float(springs[j, 0]), bound.get(dof + i, slide))
 
-    solids, axial = [], {"CAPSULE", "CYLINDER"}
+    solids = []
     for b in range(1, model.nbody):
-        own, shape = data.ximat[b].reshape(3, 3), None
+        own = data.ximat[b].reshape(3, 3)
         inertia = (own * model.body_inertia[b]) @ own.T
-        if model.body_geomnum[b]:
-            g = int(model.body_geomadr[b])
-            kind, size = mujoco.mjtGeom(model.geom_type[g]).name[7:], 2.0 * model.geom_size[g]
-            size = size[[0, 0, 1]] if kind in axial else size
-            shape = "round" if kind in axial else "box", (data.geom_xmat[g].reshape(3, 3) * size).T
-            shape = shape if kind in {*axial, "BOX"} else None
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
-        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b)), shape))
+        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b))))
     return solids
 
 
@@ -190,12 +168,12 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
             axis, turn, word = joints[joint].find("axis"), place(joint), joint[len(mark) :]
             about = turn[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
             own = _value(axis, "dynamics/spring_stiffness") if springs is None else springs.get(word)
-            moves = [Move(word, kind == "prismatic", turn[:3, 3], about, float(own or 0.0))]
+            moves = [Move(word, turn[:3, 3], about, float(own or 0.0), SLIDE * (kind == "prismatic"))]
         centre = at @ _pose(inertial)
         six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
         inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
         up = order.index(parent) if parent in order else -1
-        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), None))
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves)))
     return solids
 
 
@@ -209,7 +187,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         above = owner[one.parent] if one.parent >= 0 else -1
         owner.append(i if one.moves else above)
         up |= {i: above} if one.moves else {}
-    sprung = [i for i in up if any(move.stiffness > 0.0 and not move.slides for move in solids[i].moves)]
+    sprung = [i for i in up if any(move.stiffness > 0.0 for move in solids[i].moves)]
     if not sprung:
         raise InputError(f"{name}: no hinge has a stiffness, give springs (in URDF by gazebo/springStiffness)")
     chain = sprung[:1]
@@ -221,15 +199,13 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         chain += below
     if other := set(sprung) - set(chain):
         raise InputError(f"{name}: {shown(solids[min(other)].name)} has springs beyond the first chain, give one chain")
-    for move in (move for i in chain for move in solids[i].moves if move.bound or move.slides):
-        what = f"{move.bound} acts on" if move.bound else "a slide or a free base is"
-        raise InputError(f"{name}: {what} joint {shown(move.joint)}, give a wall, hinges and springs alone")
-    dust, parts = MASSLESS * max(solids[i].mass for i in chain), list[tuple[list[Move], list[Solid]]]()
+    for move in (move for i in chain for move in solids[i].moves if move.bound):
+        raise InputError(f"{name}: joint {shown(move.joint)} has {move.bound}, give a wall, hinges and springs alone")
+    parts = list[tuple[list[Move], list[Solid]]]()
     for i in chain:
         own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
         before = parts.pop() if parts and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6) else ([], [])
-        others = [one for one in (*members[1:], *before[1]) if one.mass > dust]
-        parts.append((before[0] + own, [members[0], *others]))
+        parts.append((before[0] + own, members + before[1]))
     if len(parts) > 1 and (base := solids[chain[0]].parent) >= 0:
         ahead, first = (parts[i][0][-1].at for i in (1, 0))
         reach, step = (np.linalg.norm(one) for one in (first - solids[base].origin, ahead - first))
@@ -239,7 +215,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
 
 
 def lines(solids: list[Solid], name: str) -> list[Line]:
-    """The chain about each axis of its hinges. Raises InputError for what is no straight chain."""
+    """The chain in bending in each plane of its hinges. Raises InputError for what is no straight chain."""
     parts = _chain(solids, name)
     mains, hinges = [members[0] for _, members in parts], [move for moves, _ in parts for move in moves]
     places = np.array([moves[-1].at if moves else members[0].origin for moves, members in parts])
@@ -250,16 +226,18 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         raise InputError(f"{name}: its joints and centres of mass are on no straight line, give two links or more")
     masses, centre, steps = np.array([one.mass for one in mains]), (centres - places) @ along, np.diff(x)
     last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
-    if (shape := mains[-1].shape) and abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
-        last = float(np.abs(shape[1] @ along).max())  # a body of the end moves the centre of mass
-    across = next((one.axis for one in hinges if abs(one.axis @ along) < STRAIGHT), None)
-    turned = [along] if across is None else [across, np.cross(along, across), along]
-    if any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
+    if abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
+        last = float(steps[-1])  # a body of the end moves the centre of mass
+    across = next((one.axis for one in hinges if one.stiffness and abs(one.axis @ along) < STRAIGHT), along)
+    turned = [across, np.cross(along, across), along]
+    if across is along or any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
         raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
-    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in mains])
-    apart = np.array([np.trace(one.inertia) for one in mains]) - prism - 2.0 * spins
+    whole = [_joined(members) for _, members in parts]
+    masses, centre = np.array([one.mass for one in whole]), np.array([one.centre for one in whole] - places) @ along
+    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in whole])
+    apart = np.array([np.trace(one.inertia) for one in whole]) - prism - 2.0 * spins
     found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
-    for axis, about in zip(AXES[-len(turned) :], turned, strict=True):
+    for axis, about in zip(AXES[:2], turned[:2], strict=True):
         own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
         if not any(move.stiffness for moves in own for move in moves):
             continue
@@ -267,19 +245,18 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             if len(moves) != 1 or not moves[0].stiffness:
                 raise InputError(f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
-        armatures = np.array([sum(move.armature for move in moves) for moves in own])
-        inertias = np.array([about @ one.inertia @ about for one in mains])
-        bodies = [
-            (j, float((one.centre - places[j]) @ along), one.mass, float(about @ one.inertia @ about))
-            for j, (_, members) in enumerate(parts)
-            for one in members[1:]
-        ]
-        section = None
-        if drawn := mains[-2].shape:
-            width, depth = (float(np.abs(drawn[1] @ one).sum()) for one in (about, np.cross(about, along)))
-            section = drawn[0], width, depth
-        joints, links = [moves[0].joint if moves else "" for moves in own], [np.append(steps, last), masses, centre]
-        found.append(
-            Line(axis, joints, springs, armatures, np.stack([*links, inertias], axis=1), bodies, section, solid)
-        )
+        links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
+        joints = [moves[0].joint if moves else "" for moves in own]
+        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid))
     return found
+
+
+def _joined(members: list[Solid]) -> Solid:
+    """One body of those that move together, of the name of the first."""
+    mass = sum(one.mass for one in members)
+    centre = np.sum([one.mass * one.centre for one in members], axis=0) / mass
+    inertia = np.zeros((3, 3))
+    for one in members:
+        arm = one.centre - centre
+        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return members[0]._replace(mass=mass, centre=centre, inertia=inertia)

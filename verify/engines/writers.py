@@ -21,7 +21,6 @@ DEEPEST = 496
 MASSLESS = 1e-10
 """Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
 MODES = 3
-SCRIPTS = ("exudyn", "pinocchio")
 _MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
 _MJCF_BODY = (
     '\n<inertial pos="{centre!r} 0 0" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
@@ -59,7 +58,7 @@ _URDF = (
 def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
     """One degree of freedom after the other from joint 0 on: a body, its parent, the joint between them.
 
-    The last at a joint moves the link with the bodies on it, those before it a body without mass. `offset`: x, m, of
+    The last at a joint moves the link, those before it a body without mass. `offset`: x, m, of
     the joint in the parent.
     """
     beam, parent, offset = chain.beam, "world", chain.joints[0].position
@@ -69,12 +68,6 @@ def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
         if j == 0 and not chain.supported[0]:
             slides = [(axis, direction) for axis, direction in SLIDES.items() if axis in chain.axes]
             moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0) for axis, direction in slides] + moves
-        own = [(link.mass, link.centre, link.inertia)]
-        own += [(b.mass, b.position - link.start, (b.inertia,) * 3) for b in chain.bodies if b.link == j]
-        mass = sum(m for m, _, _ in own)
-        centre = sum(m * x for m, x, _ in own) / mass
-        spread = sum(m * (x - centre) ** 2 for m, x, _ in own)
-        inertia = [sum(each[i] for _, _, each in own) + spread * (i > 0) for i in range(3)]
         section = beam.section[int(np.searchsorted(steps, link.start + link.centre))] if beam.section else None
         fields = merged(section, beam) if section else set_fields(beam)
         # a hundredth of the length where unknown
@@ -86,8 +79,9 @@ def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
             yield {
                 **{"name": name, "kind": kind, "direction": direction, "body": body, "parent": parent, "link": j},
                 **{"offset": offset, "stiffness": stiffness, "damping": damping, "last": last},
-                **{"mass": share * mass, "centre": centre * last, "inertia": tuple(share * one for one in inertia)},
-                **{"length": link.length, "middle": 0.5 * link.length, "size": size, "half": half},
+                **{"mass": share * link.mass, "centre": link.centre * last, "length": link.length},
+                **{"inertia": tuple(share * one for one in link.inertia)},
+                **{"middle": 0.5 * link.length, "size": size, "half": half},
                 **{"colour": COLOURS[j % 2], "frame": "__model__" if parent == "world" else parent},
             }
             parent, offset = body, 0.0
@@ -107,7 +101,7 @@ def notes(chain: RigidChain) -> str:
         lines.append(f"frequencies in {axis}, Hz (relative errors against the exact beam): {text}")
     if chain.damping:
         lines.append(f"dashpots in proportion to the springs: damping ratio {chain.damping!r} in mode 1, more beyond")
-    if beam.supports[1] != "free" or chain.springs:
+    if chain.closed:
         lines.append("supports of the far end and springs to the ground act along z (and y): for small motion")
     return "\n".join(lines)
 
@@ -129,8 +123,8 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
         begun = not one["last"]
 
     def tendon(name: str, axis: Axis, row: Array, values: str = "") -> str:
-        names = [f"slide_{axis}"] * chain.slides(axis) + [f"joint{j}_{axis}" for j, _ in chain.hinges(axis)]
-        coefs = "".join(f'<joint joint="{n}" coef="{c!r}"/>' for n, c in zip(names, row.tolist(), strict=True) if c)
+        each = zip(chain.unknowns(axis), row.tolist(), strict=True)
+        coefs = "".join(f'<joint joint="{joint}" coef="{coef!r}"/>' for (joint, *_), coef in each if coef)
         return f'<fixed name="{name}"{values}>{coefs}</fixed>\n'
 
     tendons, equalities, closed, rule = "", "", "", "implicitfast" if chain.damping else "RK4"
@@ -169,8 +163,7 @@ def script(chain: RigidChain, engine: str) -> str:
         values = [one[key] for key in ("offset", "stiffness", "damping", "mass", "centre", "inertia")]
         rows += f"    {(one['name'], kind, *values)!r},\n"
     bodies = {one["link"]: i for i, one in enumerate(moves)}
-    each = [(s.link, s.position, 2, s.stiffness, s.damping) for s in chain.springs]
-    each += [(s.link, s.position, 4, s.rotational, s.rotational_damping) for s in chain.springs]
+    each = [(s.link, s.position, 4 if s.rotational else 2, s.stiffness, s.damping) for s in chain.springs]
     end, about = chain.joints[-1], {"torsion": 3, "bending": 4, "width": 5}
     each += [(chain.count - 1, end.position, about[h.axis], h.stiffness, h.damping) for h in end.hinges]
     for link, x, i, *pair in each:
@@ -211,7 +204,7 @@ def table(chain: RigidChain) -> Table:
 
 def data(chain: RigidChain) -> dict[str, object]:
     """The chain as data, SI, with its expected frequencies."""
-    names = ("wall", "mirrored", "damping", "joints", "links", "bodies", "springs")
+    names = ("wall", "mirrored", "damping", "joints", "links", "springs")
     expected = {
         axis: {"frequencies_hz": chain.frequencies_hz(axis, MODES), "error": chain.errors(axis, MODES)}
         for axis in chain.axes
@@ -221,33 +214,33 @@ def data(chain: RigidChain) -> dict[str, object]:
 
 
 _WRITERS: dict[str, Callable[[RigidChain], str]] = {
-    "xml": mjcf,
-    "sdf": lambda chain: robot(chain, _SDF),
-    "urdf": lambda chain: robot(chain, _URDF),
-    "json": lambda chain: to_json(data(chain)),
-    "csv": lambda chain: table(chain).csv(),
+    ".xml": mjcf,
+    ".sdf": lambda chain: robot(chain, _SDF),
+    ".urdf": lambda chain: robot(chain, _URDF),
+    "_exudyn.py": lambda chain: script(chain, "exudyn"),
+    "_pinocchio.py": lambda chain: script(chain, "pinocchio"),
+    ".json": lambda chain: to_json(data(chain)),
+    ".csv": lambda chain: table(chain).csv(),
 }
 
 
-def write(chain: RigidChain, path: Path, engine: str | None = None) -> str:
-    """Write a chain to a file by its suffix, whole or not at all; returns a sentence on what was written.
+def write(chain: RigidChain, path: Path) -> str:
+    """Write a chain to a file by the end of its name, whole or not at all; returns a sentence on what was written.
 
-    .xml MJCF, .sdf, .urdf, .json, .csv, .py for `engine` exudyn or pinocchio. What SDF and URDF do not express is in a
-    JSON file next to them. Raises InputError.
+    .xml is MJCF. The stiffnesses of a URDF are also in a JSON file next to it. Raises InputError.
     """
-    kind = path.suffix.lower().removeprefix(".")
-    if kind not in (*_WRITERS, "py"):
-        raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give .{', .'.join(_WRITERS)} or .py")
+    kind = next((end for end in _WRITERS if path.name.lower().endswith(end)), None)
+    if kind is None:
+        raise InputError(f"to = {shown(str(path))}: its end is no file type, give {', '.join(_WRITERS)}")
     if chain.wall == "rigid":
         raise InputError("wall = 'rigid': a first link fixed to the wall is for comparison, give another wall")
-    if (kind == "py") != (engine is not None) or (engine and engine not in SCRIPTS):
-        raise InputError(f"engine = {engine!r}: for a .py file give {' or '.join(SCRIPTS)}, for others none")
+    if kind in (".sdf", ".urdf") and chain.closed:
+        text = "has no support of the far end and no spring to the ground, write .xml, _exudyn.py or _pinocchio.py"
+        raise InputError(f"to = {shown(str(path))}: {kind[1:].upper()} {text}")
     writable_folder(path.parent, "to")
-    write_whole(path, script(chain, engine) if engine else _WRITERS[kind](chain), "to")
-    missing = ["joint springs but in Gazebo"] * (kind == "urdf") + ["springs to the ground"] * bool(chain.springs)
-    missing += ["support of the far end"] * (chain.beam.supports[1] != "free")
-    if kind not in ("sdf", "urdf") or not missing:
+    write_whole(path, _WRITERS[kind](chain), "to")
+    if kind != ".urdf":
         return f"wrote {path}"
     beside = path.with_name(path.name + ".json")
     write_whole(beside, to_json(data(chain)), "to")
-    return f"wrote {path}: {kind.upper()} has no {', no '.join(missing)}, apply what is in {beside}"
+    return f"wrote {path}: URDF has no joint springs but in Gazebo, apply what is in {beside}"
