@@ -1,5 +1,6 @@
 """Comparison of frequencies from another program with candidate discretisations and the exact beam of a scene."""
 
+from bisect import bisect_left
 from itertools import product
 from typing import Any, get_args
 
@@ -160,7 +161,7 @@ def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
 
 
 def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tuple[int | None, ...]:
-    """Required N of a mode for each of ERRORS, by interpolation and steps of one; None beyond LARGEST."""
+    """Required N of a mode for each of ERRORS, by interpolation and bisection; None beyond LARGEST."""
     exact = float(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1])
     sizes, logs = spectrum(beam, candidate, n_modes)
     counts: list[int | None] = []
@@ -174,10 +175,11 @@ def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tupl
         if len(failing) and sizes[failing[-1]] == sizes[-1]:
             counts.append(None)
             continue
-        high = int(sizes[failing[-1]]) + 1 if len(failing) else int(sizes[0])
+        low = high = int(sizes[failing[-1]]) + 1 if len(failing) else int(sizes[0])
+        step = 1
         while not within(high):
-            high += 1
-        while high > 1 and within(high - 1):
-            high -= 1
-        counts.append(high)
+            low, high, step = high, high + step, 2 * step
+        while low > 0 and within(low):
+            low, high, step = max(low - step, 0), low, 2 * step
+        counts.append(low + 1 + bisect_left(range(low + 1, high), True, key=within))
     return tuple(counts)

@@ -130,7 +130,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def agrees(self, fit: Fit) -> bool:
         """Whether all differences are within the digits; the last digit may be off by one."""
-        return fit.largest <= AGREED + 0.5 * self.floor
+        return bool((abs(np.log1p(fit.differences)) <= AGREED + 1.5 * self.rounding[fit.fault.entries]).all())
 
     def near(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit is within the factor of ambiguity of the best."""
@@ -238,7 +238,7 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     near = [one for one in near if one.rms < min(PROMISING, parts * one.effect) or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
     if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
-        refined = rank(_refined(data, one, SEARCHED) for one in near)
+        refined = rank(_refined(data, one, every=True) for one in near)
     if every:
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
@@ -315,10 +315,10 @@ def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: flo
     return Fit(candidate=one, count=n, fault=fault, parameter=parameter, differences=np.expm1(left), **sizes)
 
 
-def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
+def _refined(data: Data, fit: Fit, *, every: bool = False) -> Fit | None:
     """The fit at the best N near the interpolated one, within 30 % if errors oscillate with N.
 
-    `around`: least search distance.
+    `every`: at all N with an interpolated error of a third of the list's or more.
     """
     best = _solved(data, fit, fit.count)
     wide = is_uneven(data.beam) and not fit.fault.ends
@@ -327,8 +327,13 @@ def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
     off = float(abs(best.differences - fit.differences).max())  # by interpolation: at the right N it is all there is
     if fit.rms > min(PROMISING, 10.0 * off + AGREED) and not wide:
         return best
-    around = max(around, 2 + best.count * (0.3 if wide else 0.03))
-    sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)
+    around = 2 + best.count * (0.3 if wide else 0.03)
+    sizes = list(range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1))
+    if every:
+        known, table = spectrum(data.beam, fit.candidate, data.n_modes)
+        exact = _logs(data.beam, Candidate(model=EXACT, theory=fit.candidate.theory), None, data.n_modes)[data.modes]
+        errors = abs(table[:, data.modes] - exact).max(axis=1)
+        sizes = known[(known <= SEARCHED) & (3.0 * errors >= abs(data.logs[data.entries] - exact).max())].tolist()
     for size in sorted(sizes, key=lambda size: abs(size - (fit.count or 0))):
         if best.rms <= data.floor:
             break
