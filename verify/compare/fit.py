@@ -242,7 +242,14 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     if every:
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
-
+    by = {
+        one.candidate: one for one in refined
+    }  # joint rules at steps that agree with half links in series are left out
+    refined = [
+        one
+        for one in refined
+        if not _same(one, twin := by.get(replace(one.candidate, joints="series"), one)) or one is twin
+    ]
     equal = {one.candidate for one in refined if _same(one, refined[0])}  # of these the one with least fitted
     return sorted(refined, key=lambda f: (data.fitted(f), order[f.candidate]) if f.candidate in equal else (9, 0))
 
