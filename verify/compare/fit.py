@@ -11,6 +11,7 @@ from msgspec.structs import replace
 from verify.analysis.variants import is_uneven
 from verify.arrays import Array, Indices
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
+from verify.compare.discrete import STEPS
 from verify.compare.effects import effect_of, fit_parameter
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
@@ -23,8 +24,8 @@ PROMISING = 5e-3
 """Largest rms by interpolated N and effects of a fit that is solved."""
 EFFECT = 0.02
 """Largest rms over the effect of an accepted fault."""
-SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
-"""Largest N if it is unknown; largest N of the interpolated spectra."""
+SMALLEST, EVERY, SEARCHED, LARGEST = 2, 40, 400, 1000
+"""Least N; N up to which other joint rules at steps are solved; largest N if it is unknown; largest N of the interpolated spectra."""
 FEWEST, REFINED = 3, 5
 """Least number of entries for a fault; number of candidates solved around their interpolated N."""
 FAULTS = {
@@ -381,7 +382,9 @@ def spectrum(beam: Beam, candidate: Candidate, n_modes: int) -> tuple[Indices, A
 
     knots, sizes = [max(SMALLEST, n_modes // 2)], np.arange(SMALLEST, LARGEST + 1)
     while knots[-1] < 6 * n_modes:
-        knots.append(max(knots[-1] + 1, round((1.3 if knots[-1] < 3 * n_modes else 1.5) * knots[-1])))
+        every = candidate.joints in STEPS and knots[-1] < EVERY  # their errors oscillate with N
+        factor = 1.0 if every else 1.3 if knots[-1] < 3 * n_modes else 1.5
+        knots.append(max(knots[-1] + 1, round(factor * knots[-1])))
     solved = np.array([_logs(beam, candidate, size, n_modes) for size in knots])
     logs = np.full((len(sizes), n_modes), np.nan)
     if np.isnan(solved).all():
