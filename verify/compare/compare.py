@@ -1,6 +1,7 @@
 """Comparison of frequencies from another program with candidate discretisations and the exact beam of a scene."""
 
 from bisect import bisect_left
+from collections.abc import Callable
 from itertools import product
 from typing import Any, get_args
 
@@ -43,7 +44,11 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def compare(
-    scene: Any, listed: FrequencyList, shapes: ModeShapes | None = None, options: Options | None = None
+    scene: Any,
+    listed: FrequencyList,
+    shapes: ModeShapes | None = None,
+    options: Options | None = None,
+    progress: Callable[[str], None] = lambda step: None,
 ) -> Result:
     """Identify the discretisation behind frequencies of the scene's beam and their errors. Raises InputError.
 
@@ -88,7 +93,7 @@ def compare(
         ordered=ordered,
         count=options.count,
     )
-    fits = identify(data)
+    fits = identify(data, progress)
     macs = np.full(len(modes), None) if likeness is None else likeness
     rows = [
         Entry(int(e) + rigid + 1, int(m) + 1, float(hertz[e + rigid]), float(exact_hz[m]), like)

@@ -36,8 +36,9 @@ class DiscreteBeam:
         parts, self.joints = divide(beam, count), joints
         self.beam, self.n, self.unit = beam, count, parts.unit
         self.lengths = np.ones(count) if joints in STEPS else parts.lengths
-        steps, ends = np.cumsum([p.length for p in beam.pieces]) / self.unit, np.cumsum(self.lengths)
-        piece = np.minimum(np.searchsorted(steps, ends - 0.5 * self.lengths), len(beam.pieces) - 1)
+        steps, centres = np.cumsum([p.length for p in beam.pieces]) / self.unit, np.cumsum(self.lengths)
+        centres -= 0.5 * self.lengths
+        piece = np.minimum(np.searchsorted(steps, centres), len(beam.pieces) - 1)
         self.stiffnesses = np.array([p.bending_stiffness for p in beam.pieces])[piece] / beam.bending_stiffness
         self.masses = np.array([p.mass_per_length for p in beam.pieces])[piece] * self.lengths / beam.mass_per_length
         self.rotary, self.shear = np.zeros(count), np.full(count, np.inf)  # rho I l, kappa G A

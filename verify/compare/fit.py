@@ -1,6 +1,6 @@
 """Ranking of candidates by the rms difference of log frequencies, and tests of faults of the list by this rms."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import hypot, log, pi
 
@@ -25,7 +25,7 @@ PROMISING = 5e-3
 EFFECT = 0.02
 """Largest rms over the effect of an accepted fault."""
 SMALLEST, EVERY, SEARCHED, LARGEST = 2, 40, 400, 1000
-"""Least N; N up to which other joint rules at steps are solved; largest N if it is unknown; largest N of the interpolated spectra."""
+"""Least N; largest N at which other joint rules at steps are solved, if it is unknown, and of interpolated spectra."""
 FEWEST, REFINED = 3, 5
 """Least number of entries for a fault; number of candidates solved around their interpolated N."""
 FAULTS = {
@@ -158,15 +158,18 @@ class Identification(msgspec.Struct, frozen=True, eq=False):
         return self.ranking[0]
 
 
-def identify(data: Data) -> Identification:
+def identify(data: Data, progress: Callable[[str], None] = lambda step: None) -> Identification:
     """Rank all candidates with the likeliest fault of the list. Raises InputError if none has enough modes."""
+    progress(f"candidates, N {data.count or f'from {SMALLEST} to {SEARCHED}'}")
     none = Fault("none", data.entries, data.modes)
     tested = {"none": _best(data, [none])}
     plain = tested["none"][0]
     if plain.candidate.sized or not data.accepts(plain):
         rivalling = ("factor", *EXACTS) if data.accepts(plain) else FAULTS
         faults = [one for one in _faults(data) if one.kind in rivalling]
-        tested |= {kind: _best(data, [one for one in faults if one.kind == kind]) for kind in {f.kind for f in faults}}
+        for kind in dict.fromkeys(one.kind for one in faults):
+            progress(f"fault of the list: {FAULTS[kind][0].partition(',')[0]}")
+            tested[kind] = _best(data, [one for one in faults if one.kind == kind])
     firsts = [fits[0] for fits in tested.values() if fits]
     accepted = [one for one in firsts if data.accepts(one) and data.score(one) <= data.score(plain)]
     best = min(accepted or [plain], key=data.score)

@@ -13,6 +13,7 @@ from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import FAULTS, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.compare.sorting import ACROSS, BENDING
+from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.report.result import Column, Figure, Result, Table
 
@@ -23,18 +24,14 @@ SHOWN = 10
 """Largest number of candidates in the table; all are in the data."""
 STATUS = {
     "identified": "Identified",
-    "ambiguous": "Ambiguous, several agree with the list; the likeliest",
+    "ambiguous": "Ambiguous, several models agree; the likeliest",
     "exact": "No discretisation detected",
-    "few": "Too few frequencies to identify a model; one that agrees",
+    "few": "Too few frequencies to identify a model; one of those that agree",
     "unknown": "None of the known family; nearest",
 }
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """Parameters that change all frequencies by a common factor, with the power of the factor."""
 TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
-WALL = (
-    "The joint at the wall should be 2EI/l, or the first three joints have compliances 3/8, 7/6, 23/24 of l/EI "
-    "(Gregory): `verify chain` prints them in N m/rad."
-)
 UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
 INCH, GRAVITY = 0.0254, 9.80665
 ENTRY = (Column("entry"), Column("mode"), Column("listed", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
@@ -78,14 +75,26 @@ def result_of(
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
     off, passed = abs(worst.error), abs(worst.error) <= within and not faults
-    summary = f"{STATUS[fits.status]}: {_title(best, beam)}, rms difference {best.rms:.2g}."
-    if fits.status in ("identified", "ambiguous") and fits.alternatives:
-        summary += f" Alternatives: {'; '.join(_title(one, beam) for one in fits.alternatives[:3])}."
+    coarse = best.rms == 0.0 and best.digits > 1e-8
+    agreement = "within the rounding of its digits" if coarse else f"rms difference {best.rms:.2g}"
+    summary = f"{STATUS[fits.status]}: {_title(best, beam)}, {agreement}."
+    others = fits.alternatives if fits.status in ("identified", "ambiguous", "exact") else ()
+    if others:
+        more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
+        summary += f" Within the digits agree also: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
+    nearer = fits.tested[0]
+    if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
+        summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
     clamp = beam.uniform and set(beam.supports) == {"clamped", "free"}
     clamp &= any(one.fault.kind == "clamp" for one in (best, *fits.alternatives))
-    wrong = fits.status == "identified" and best.candidate.wall in ("full", "rigid", "stiff")
+    if (
+        change := _change(best, beam)
+        if {one.candidate.wall for one in (best, *others)} == {best.candidate.wall}
+        else ""
+    ):
+        summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
     about |= {"status": fits.status, "identified": fits.status == "identified", "best": _plain(best, beam)}
     groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
@@ -100,9 +109,32 @@ def result_of(
     checks.append(("largest error against the exact beam", off, within, "yes" if off <= within else "no"))
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables = [*_tables(fits, beam, rows, required), Table("Acceptance", columns, checks)]
-    warnings = [*warnings, *[TIP_MASS] * clamp, *[WALL] * wrong]
+    warnings = [*warnings, *[TIP_MASS] * clamp]
     figures = [_figure(beam, fits, rows)] if any(row.motion == BENDING for row in rows) else []
     return Result(summary, tables, figures, warnings=warnings, data=about, margins=margins)
+
+
+def _change(best: Fit, beam: Beam) -> str:
+    """The joints to change in a chain with a wrong rule at the wall or at steps, N m/rad; empty without one."""
+    from verify.engines.description import describe
+
+    wall, texts = best.candidate.wall or "", []
+    if best.candidate.joints in ("printed", "outboard", "inboard", "mean"):
+        texts = ["joints at steps have the stiffness 2/(l1/EI1 + l2/EI2) of two half links in series"]
+    if wall in ("full", "rigid", "stiff"):
+        text = "the joint at a wall has the stiffness 2EI/l"
+        try:
+            half, gregory = (describe(beam, best.count or 1, wall=rule).joints for rule in ("half", "gregory"))
+        except InputError:  # for example with tension
+            texts = [text, *texts]
+        else:
+            two, *three = (one.hinges[0].stiffness for one in (half[0], *gregory[:3]))
+            now = {"full": f"{two / 2:.6g}", "stiff": f"{2 * two:.6g}", "rigid": "fixed"}[wall]
+            each = "each wall" if beam.supports == ("clamped", "clamped") else "the wall"
+            better = ", ".join(f"{one:.6g}" for one in three)
+            text = f"the joint at {each} ({now}) to {two:.6g} N m/rad = 2EI/l, or the first three to {better} (Gregory)"
+            texts = [text, *texts]
+    return f"{'; '.join(texts)}. All joints: `verify chain ... --count {best.count}`." if texts else ""
 
 
 def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
