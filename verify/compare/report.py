@@ -82,6 +82,7 @@ def result_of(
     if others:
         more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
         summary += f" Within the digits agree also: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
+        summary += " More digits or modes distinguish them." * (fits.status == "ambiguous")
     nearer = fits.tested[0]
     if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
         summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
@@ -89,11 +90,8 @@ def result_of(
         summary += f" The values are read as {source.unit}."
     clamp = beam.uniform and set(beam.supports) == {"clamped", "free"}
     clamp &= any(one.fault.kind == "clamp" for one in (best, *fits.alternatives))
-    if (
-        change := _change(best, beam)
-        if {one.candidate.wall for one in (best, *others)} == {best.candidate.wall}
-        else ""
-    ):
+    claimed = fits.status in ("identified", "ambiguous")
+    if claimed and {one.candidate.wall for one in others} <= {best.candidate.wall} and (change := _change(best, beam)):
         summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
     about |= {"status": fits.status, "identified": fits.status == "identified", "best": _plain(best, beam)}
