@@ -24,7 +24,7 @@ SHOWN = 10
 """Largest number of candidates in the table; all are in the data."""
 STATUS = {
     "identified": "Identified",
-    "ambiguous": "Ambiguous, several models agree; the likeliest",
+    "ambiguous": "Ambiguous, within the rounding of its digits several models agree; the likeliest",
     "exact": "No discretisation detected",
     "few": "Too few frequencies to identify a model; one of those that agree",
     "unknown": "None of the known family; nearest",
@@ -76,12 +76,12 @@ def result_of(
     worst = max(bent, key=lambda row: abs(row.error))
     off, passed = abs(worst.error), abs(worst.error) <= within and not faults
     coarse = best.rms == 0.0 and best.digits > 1e-8
-    agreement = "within the rounding of its digits" if coarse else f"rms difference {best.rms:.2g}"
-    summary = f"{STATUS[fits.status]}: {_title(best, beam)}, {agreement}."
+    agreement = ", within the rounding of its digits" if coarse else f", rms difference {best.rms:.2g}"
+    summary = f"{STATUS[fits.status]}: {_title(best, beam)}{agreement * (fits.status != 'ambiguous')}."
     others = fits.alternatives if fits.status in ("identified", "ambiguous", "exact") else ()
     if others:
         more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
-        summary += f" Within the digits agree also: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
+        summary += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
         summary += " More digits or modes distinguish them." * (fits.status == "ambiguous")
     nearer = fits.tested[0]
     if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
