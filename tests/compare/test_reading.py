@@ -9,9 +9,8 @@ from reference.universal_files import write_universal
 from shared_lists import CANTILEVER, DATA, exudyn, table
 
 from verify.cli import status_of
-from verify.compare.meshes import read_mesh
 from verify.compare.reading import read_frequencies, read_shapes, solve_model
-from verify.compare.shapes import compare_shapes
+from verify.compare.shapes import compare_shapes, read_mesh
 from verify.errors import InputError
 
 SOLVER = "1 {0} 3341.453 57.80530 9.2 {1}\n2 {0} 53754.19 231.8495 36.9 {1}\n3 {0} 270657.7 520.2477 82.8 {1}\n"
@@ -126,18 +125,6 @@ class TestMesh:
         result = compare_shapes(self.scene, read_mesh(solid(tmp_path / "modes.vtu", 1.0, [0, 2, 1, 3]), 0.3))
         assert [row["mode"] for row in table(result, "Shapes")] == [1, 2, 3, 4]
         assert not result.data["passed"]
-
-    def test_series_gives_frequencies(self, tmp_path, monkeypatch):
-        monkeypatch.chdir(tmp_path)
-        hertz, x, shapes = exudyn()
-        points = np.stack([x, 0.0 * x], axis=1)
-        points[[0, -1], 0] = 0.0, 0.3
-        cells = [("line", np.array([[i, i + 1] for i in range(len(x) - 1)]))]
-        with meshio.xdmf.TimeSeriesWriter("modes.xdmf", data_format="XML") as writer:
-            writer.write_points_cells(points, cells)
-            for f, shape in zip(hertz, shapes, strict=True):
-                writer.write_data(f, point_data={"u": np.stack([0.0 * shape, shape], axis=1)})
-        assert read_mesh(tmp_path / "modes.xdmf", 0.3).frequencies.hertz == pytest.approx(hertz)
 
     @pytest.mark.parametrize("kind", [55, 58])
     def test_measured_modes_at_sensors(self, tmp_path, kind):

@@ -93,8 +93,7 @@ def compare(
         with shared.progress(quiet=any(formats.values()), lines=count is None) as step:
             result = compare_list(loaded, frequencies, forms, options, step)
     else:
-        from verify.compare.meshes import read_mesh
-        from verify.compare.shapes import compare_shapes
+        from verify.compare.shapes import compare_shapes, read_mesh
 
         result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
     shared.show(result, **formats)
