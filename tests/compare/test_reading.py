@@ -9,6 +9,7 @@ from reference.universal_files import write_universal
 from shared_lists import CANTILEVER, DATA, exudyn, table
 
 from verify.cli import status_of
+from verify.compare.compare import Options
 from verify.compare.reading import read_frequencies, read_shapes, solve_model
 from verify.compare.shapes import compare_shapes, read_mesh
 from verify.errors import InputError
@@ -133,7 +134,7 @@ class TestMesh:
         write_universal(tmp_path / "modes.uff", kind, hertz[:3], x[2:-1:2], shapes[:3, 2:-1:2])
         mesh = read_mesh(tmp_path / "modes.uff", 0.3)
         assert mesh.frequencies.hertz == pytest.approx(hertz[:3], rel=3e-3)
-        result = compare_shapes(self.scene, mesh)
+        result = compare_shapes(self.scene, mesh, Options(count=30))
         assert [row["mode"] for row in table(result, "Shapes")] == [1, 2, 3]
         assert result.data["passed"]
 

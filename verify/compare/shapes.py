@@ -1,4 +1,4 @@
-"""Mode shapes of a beam on a mesh of any format of meshio, or measured, averaged over the cross-sections, and their errors.
+"""Mode shapes of a beam on a mesh of any format of meshio, or measured, averaged over the cross-sections; their errors.
 
 MAC: Allemang, "The modal assurance criterion - twenty years of use and abuse", Sound and Vibration 37 (2003). The error
 of a shape is independent of its scale: the minimum of |a s - e| / |e| over a.
@@ -103,16 +103,19 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     if not bent:
         raise InputError(f"{source} has no shape that bends the beam across its thickness: write bending modes")
     shapes = ModeShapes(x=places * (last * length / places[-1]), values=np.array(list(bent.values())))
-    frequencies = None
-    if named := [
-        (name, np.asarray(values, float).ravel()) for name, values in field.items() if _FREQUENCY.search(name)
-    ]:
-        name, values = named[0]
-        if len(values) != len(vectors):
-            raise InputError(f"{source}: {name!r} has {len(values)} values, {len(vectors)} shapes: give one for each")
-        chosen = [value for value, shape in zip(values.tolist(), vectors, strict=True) if shape in bent]
-        frequencies = listed(source, chosen, unit="rad/s" if _RADIANS.search(name) else "Hz", declared=True)
+    frequencies = _frequencies(field, [name in bent for name in vectors], source)
     return MeshShapes(source, checked_shapes(shapes, length, source), tuple(bent), frequencies, tuple(notes))
+
+
+def _frequencies(field: dict[str, Any], chosen: list[bool], source: str) -> FrequencyList | None:
+    """Frequencies of the chosen shapes from field data, or None. Raises InputError for another number."""
+    for name in filter(_FREQUENCY.search, field):
+        values = np.asarray(field[name], dtype=float).ravel()
+        if len(values) != len(chosen):
+            raise InputError(f"{source}: {name!r} has {len(values)} values, {len(chosen)} shapes: give one for each")
+        unit = "rad/s" if _RADIANS.search(name) else "Hz"
+        return listed(source, values[chosen].tolist(), unit=unit, declared=True)
+    return None
 
 
 def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None) -> Result:
