@@ -122,9 +122,7 @@ class TestFaults:
     def test_missing_mode(self, mode):
         result = compared(PAPER, np.delete(LUMPED, mode - 1), count=49)
         assert result.data["best"]["fault"] == {"kind": "missing", "label": f"mode {mode}", "parameter": 1.0}
-        rows = table(result, "Modes")
-        assert [row["read as mode"] for row in rows] == [m for m in range(1, 23) if m != mode]
-        assert [row["mode"] for row in rows] == list(range(1, 22))
+        assert [row["read as mode"] for row in table(result, "Modes")] == [m for m in range(1, 23) if m != mode]
 
     def test_extra_entry(self):
         hertz = np.sort([*LUMPED[:14], 0.6 * LUMPED[7] + 0.4 * LUMPED[8]])
@@ -158,8 +156,6 @@ class TestFaults:
         assert best(result, "wall") == ("half",)
         assert [row["entry"] for row in table(result, "Modes")] == list(range(3, 11))
         assert not result.data["passed"]
-        free = compared(FREE, [3e-5, 7e-5, *lumped_rod(FREE, 40)[2:10]], count=40, within=0.1)
-        assert free.data["passed"]
 
     def test_other_supports(self):
         result = compared(CANTILEVER, exact_hz(PROPPED, 8), count=30)
@@ -169,12 +165,6 @@ class TestFaults:
 
 class TestCertainty:
     """What a list shows and what it does not."""
-
-    def test_random_frequencies_are_of_no_candidate(self):
-        result = compared(PAPER, np.sort(np.random.default_rng(20).uniform(9.0, 4500.0, 22)), count=49)
-        assert result.data["status"] == "unknown"
-        assert result.data["best"]["fault"]["kind"] == "none"
-        assert not result.data["passed"]
 
     def test_digits_as_coarse_as_the_rotary_inertia_are_ambiguous(self):
         links = rigid_links(PAPER, 20)[:10]
