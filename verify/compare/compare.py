@@ -69,39 +69,31 @@ def compare(
     if not hertz[rigid:].all():
         raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
     exact_hz = frequencies_hz(Candidate(model=EXACT, theory=options.theory), beam, None, n)
-    entries = modes = np.arange(len(hertz) - rigid)
+    modes = np.arange(len(hertz) - rigid)
+    entries = rigid + modes
     likeness, ordered = None, shapes is None and motions is None
     if shapes is not None:
         paired, macs = pair_shapes(beam, shapes.x, shapes.values[rigid:])
-        entries = np.flatnonzero(macs >= LEAST_MAC)
-        modes, likeness = paired[entries], macs[entries]
+        like = macs >= LEAST_MAC
+        entries, modes, likeness = entries[like], paired[like], macs[like]
     elif motions is not None:
-        entries = motions.entries(BENDING)
-        modes = motions.modes[entries]
+        bending = np.array(motions.names) == BENDING
+        entries, modes = entries[bending], motions.modes[bending]
     elif listed.numbers is not None:
         modes = np.array(listed.numbers)[rigid:] - 1 - (rigid if listed.numbers[0] == 1 else 0)
-        ordered = bool((modes == entries).all())
-    order = np.arange(len(entries)) if motions is not None else entries  # motions: the list of one plane alone
-    chosen = rigid + (entries if motions is not None else np.arange(len(hertz) - rigid))
-    data = Data(
-        beam=beam,
-        logs=np.log(hertz[chosen]),
-        rounding=listed.rounding[chosen],
-        members=candidates(beam, options.kind),
-        entries=order,
-        modes=modes,
-        ordered=ordered,
-        count=options.count,
-    )
+        ordered = bool((modes == entries - rigid).all())
+    logs, members, rounding = np.log(np.maximum(hertz, 1e-300)), candidates(beam, options.kind), listed.rounding
+    data = Data(beam=beam, logs=logs, rounding=rounding, members=members, entries=entries, modes=modes,
+                ordered=ordered, count=options.count)  # fmt: skip
     fits = identify(data, progress)
     macs = np.full(len(modes), None) if likeness is None else likeness
     rows = [
-        Entry(int(e) + rigid + 1, int(m) + 1, float(hertz[e + rigid]), float(exact_hz[m]), like)
-        for e, m, like in zip(entries, modes, macs.tolist(), strict=True)
+        Entry(e + 1, m + 1, float(hertz[e]), float(exact_hz[m]), like)
+        for e, m, like in zip(entries.tolist(), modes.tolist(), macs.tolist(), strict=True)
     ]
     disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
     unlike = 0 if likeness is None else len(hertz) - rigid - int((likeness >= LOW_MAC).sum())
-    supports = _other_supports(beam, data.logs[order], modes) if fits.status == "unknown" else ()
+    supports = _other_supports(beam, logs[entries], modes) if fits.status == "unknown" else ()
     own = beam.rigid_motions  # in space and along the axis there are more
     messages = {
         f"The list starts with {rigid} rigid-body motions, the beam of the scene has {own}.": rigid
@@ -121,13 +113,12 @@ def compare(
     required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in dict.fromkeys(sized)]
     if motions is not None:  # the other motions of a model in space
         thick = options.theory == "timoshenko"
-        each = enumerate(zip(motions.names, motions.modes.tolist(), motions.exact[:, int(thick)].tolist(), strict=True))
-        rows += [
-            Entry(i + rigid + 1, mode + 1, float(hertz[i + rigid]), exact, None, name)
-            for i, (name, mode, exact) in each
-            if name != BENDING
+        each = zip(motions.names, motions.modes.tolist(), motions.exact[:, int(thick)].tolist(), strict=True)
+        all_rows = [
+            Entry(i, m + 1, float(hertz[i - 1]), f, None, name) for i, (name, m, f) in enumerate(each, rigid + 1)
         ]
-    return result_of(scene.name, listed, data, fits, rows, required, warnings, options.within, options.theory)
+        rows += [row for row in all_rows if row.motion != BENDING]
+    return result_of(scene.name, listed, data, fits, rows, required, warnings, options)
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:

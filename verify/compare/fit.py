@@ -109,7 +109,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def floor(self) -> float:
         """Rms within the digits of the list."""
-        return max(FLOOR, float(np.median(self.rounding)))
+        return max(FLOOR, float(np.median(self.rounding[self.entries])))
 
     def fitted(self, fit: Fit) -> int:
         """Number of fitted parameters."""
@@ -117,7 +117,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def score(self, fit: Fit) -> float:
         """Minus log likelihood with noise of unknown size, and the cost of the fault."""
-        return len(self.logs) * log(hypot(fit.rms, self.floor)) + FAULTS[fit.fault.kind][1]
+        return len(self.entries) * log(hypot(fit.rms, self.floor)) + FAULTS[fit.fault.kind][1]
 
     def accepts(self, fit: Fit) -> bool:
         """Whether a fit is evidence: it agrees, with more entries than parameters, and its fault has an effect.
@@ -203,7 +203,7 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
 
 def _faults(data: Data) -> Iterator[Fault]:
     """All faults that are tested."""
-    entries, modes, n, beam = data.entries, data.modes, len(data.logs), data.beam
+    entries, modes, n, beam = data.entries, data.modes, len(data.entries), data.beam
     if data.count is not None:
         yield Fault("count", entries, modes)
     for name in beam.features:
@@ -333,7 +333,7 @@ def _refined(data: Data, fit: Fit, *, every: bool = False) -> Fit | None:
     """
     best = _solved(data, fit, fit.count)
     wide = is_uneven(data.beam) and not fit.fault.ends
-    if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
+    if best is None or best.count is None or data.count is not None or len(data.entries) < FEWEST:
         return best
     off = float(abs(best.differences - fit.differences).max())  # by interpolation: at the right N it is all there is
     if fit.rms > min(PROMISING, 10.0 * off + AGREED) and not wide:

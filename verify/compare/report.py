@@ -62,14 +62,13 @@ def result_of(
     rows: list[Entry],
     required: list[tuple[Any, ...]],
     warnings: list[str],
-    within: float,
-    theory: str,
+    options: Any,
 ) -> Result:
     """The result of a comparison with acceptance `data["passed"]`; `warnings` are faults of the list.
 
-    `required`: candidates, modes, and N for 1 % and 0.1 %.
+    `required`: candidates, modes, and N for 1 % and 0.1 %. `options`: `compare.Options`.
     """
-    best, beam, kind = fits.best, data.beam, fits.best.fault.kind
+    best, beam, kind, within = fits.best, data.beam, fits.best.fault.kind, options.within
     misread = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * (kind in ("missing", "extra"))
     faults = [*misread, *warnings]
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
@@ -100,7 +99,7 @@ def result_of(
     failure = f"the list is {per_cent(off)} too {'low' if worst.error < 0.0 else 'high'} at mode {worst.mode}"
     own = Margin(name="error of the list", size=off, where=f"at mode {worst.mode}", fine=within, limit=within,
                  failure=failure)  # fmt: skip
-    settings = not_default({"theory": theory})
+    settings = not_default({"theory": options.theory})
     margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent), settings=settings), own]
     margins += [void(f"the list ({text})", text.rstrip(".")) for text in faults]
     checks: list[Any] = [("faults of the list", float(len(faults)), 0.0, "no" if faults else "yes")]
@@ -224,8 +223,8 @@ def _modes(best: Fit, rows: list[Entry]) -> Table:
     columns += [Column("candidate", "Hz", ".7g"), Column("difference", format=".3g", percent=True)]
     columns += [Column("MAC", format=".4f")] * shaped
     place, lines = {int(entry): i for i, entry in enumerate(fault.entries)}, []
-    for i, row in enumerate(rows):
-        at, corrected = place.get(i), row.listed_hz / factor
+    for row in rows:
+        at, corrected = place.get(row.entry - 1), row.listed_hz / factor
         off = None if at is None else float(best.differences[at])
         line: list[Any] = [row.entry, row.mode, row.listed_hz, row.exact_hz, row.error]
         line += [None if at is None else int(fault.modes[at]) + 1, corrected] * faulty
