@@ -86,11 +86,8 @@ def compare(
     data = Data(beam=beam, logs=logs, rounding=rounding, members=members, entries=entries, modes=modes,
                 ordered=ordered, count=options.count)  # fmt: skip
     fits = identify(data, progress)
-    macs = np.full(len(modes), None) if likeness is None else likeness
-    rows = [
-        Entry(e + 1, m + 1, float(hertz[e]), float(exact_hz[m]), like)
-        for e, m, like in zip(entries.tolist(), modes.tolist(), macs.tolist(), strict=True)
-    ]
+    each = zip(entries.tolist(), modes.tolist(), [None] * len(modes) if likeness is None else likeness, strict=True)
+    rows = [Entry(e + 1, m + 1, float(hertz[e]), float(exact_hz[m]), mac) for e, m, mac in each]
     disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
     unlike = 0 if likeness is None else len(hertz) - rigid - int((likeness >= LOW_MAC).sum())
     supports = _other_supports(beam, logs[entries], modes) if fits.status == "unknown" else ()
@@ -104,19 +101,19 @@ def compare(
         f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
     }
     warnings = [text for text, holds in messages.items() if holds]
-    mode = options.mode or max(row.mode for row in rows)
+    mode = options.mode or int(modes.max()) + 1
     rules = ("gregory", "half", "full") if "clamped" in beam.supports else (None,)
     joints = "tensioned" if beam.tension else "series"
-    sized = [fits.best.candidate] if fits.status != "unknown" and fits.best.candidate.sized else []
-    sized += [Candidate(model=CHAIN, mass="links", wall=rule, joints=joints, theory=options.theory) for rule in rules]
-    sized.append(Candidate(model=ELEMENTS, mass="consistent", theory=options.theory))
+    sized = [
+        *([fits.best.candidate] if fits.status != "unknown" and fits.best.candidate.sized else []),
+        *(Candidate(model=CHAIN, mass="links", wall=rule, joints=joints, theory=options.theory) for rule in rules),
+        Candidate(model=ELEMENTS, mass="consistent", theory=options.theory),
+    ]
     required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in dict.fromkeys(sized)]
     if motions is not None:  # the other motions of a model in space
-        thick = options.theory == "timoshenko"
-        each = zip(motions.names, motions.modes.tolist(), motions.exact[:, int(thick)].tolist(), strict=True)
-        all_rows = [
-            Entry(i, m + 1, float(hertz[i - 1]), f, None, name) for i, (name, m, f) in enumerate(each, rigid + 1)
-        ]
+        exact = motions.exact[:, int(options.theory == "timoshenko")].tolist()
+        others = zip(hertz[rigid:].tolist(), exact, motions.modes.tolist(), motions.names, strict=True)
+        all_rows = [Entry(i, m + 1, f, of, None, name) for i, (f, of, m, name) in enumerate(others, rigid + 1)]
         rows += [row for row in all_rows if row.motion != BENDING]
     return result_of(scene.name, listed, data, fits, rows, required, warnings, options)
 

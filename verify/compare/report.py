@@ -116,21 +116,21 @@ def _change(best: Fit, beam: Beam) -> str:
     from verify.engines.description import describe
 
     wall, texts = best.candidate.wall or "", []
-    if best.candidate.joints in ("printed", "outboard", "inboard", "mean"):
-        texts = ["joints at steps have the stiffness 2/(l1/EI1 + l2/EI2) of two half links in series"]
+    try:
+        half, gregory = (describe(beam, best.count or 1, wall=rule) for rule in ("half", "gregory"))
+    except InputError:  # for example with tension, or without a discretisation
+        return ""
     if wall in ("full", "rigid", "stiff"):
-        text = "the joint at a wall has the stiffness 2EI/l"
-        try:
-            half, gregory = (describe(beam, best.count or 1, wall=rule).joints for rule in ("half", "gregory"))
-        except InputError:  # for example with tension
-            texts = [text, *texts]
-        else:
-            two, *three = (one.hinges[0].stiffness for one in (half[0], *gregory[:3]))
-            now = {"full": f"{two / 2:.6g}", "stiff": f"{2 * two:.6g}", "rigid": "fixed"}[wall]
-            each = "each wall" if beam.supports == ("clamped", "clamped") else "the wall"
-            better = ", ".join(f"{one:.6g}" for one in three)
-            text = f"the joint at {each} ({now}) to {two:.6g} N m/rad = 2EI/l, or the first three to {better} (Gregory)"
-            texts = [text, *texts]
+        two, *three = (one.hinges[0].stiffness for one in (half.joints[0], *gregory.joints[:3]))
+        now = {"full": f"{two / 2:.6g}", "stiff": f"{2 * two:.6g}", "rigid": "fixed"}[wall]
+        each = "each wall" if beam.supports == ("clamped", "clamped") else "the wall"
+        better = ", ".join(f"{one:.6g}" for one in three)
+        texts = [f"the joint at {each} ({now}) to {two:.6g} N m/rad = 2EI/l, or the first three to {better} (Gregory)"]
+    if best.candidate.joints in ("printed", "outboard", "inboard", "mean"):
+        steps = np.cumsum([piece.length for piece in half.beam.pieces[:-1]])
+        at = [one for one in half.joints if np.isclose(one.position, steps).any()]
+        each = ", ".join(f"{one.hinges[0].stiffness:.6g} N m/rad at {one.position:.6g} m" for one in at)
+        texts += [f"joints at steps to those of two half links in series, {each}"]
     return f"{'; '.join(texts)}. All joints: `verify chain ... --count {best.count}`." if texts else ""
 
 
