@@ -16,6 +16,7 @@ from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
 from verify.compare.sorting import BENDING, rigid_of, sort_list
 from verify.errors import InputError
+from verify.linear.registry import MODELS
 from verify.options import Support
 from verify.problem.beam import Beam
 from verify.report.result import Result
@@ -130,8 +131,6 @@ def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
 
 def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
     """Mode shapes of the exact beam at x, (n_modes, len(x)); those of fine elements if it has none."""
-    from verify.linear.registry import MODELS
-
     try:
         return np.asarray(MODELS[EXACT].build(beam).modes(n_modes).deflection(x))
     except InputError:

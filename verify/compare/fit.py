@@ -187,18 +187,13 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     most = data.fitted(best) + 1
     close = [one for one in near if one is not best and one not in equal and data.fitted(one) <= most]
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
-        same = [one for one in close if one.fault.kind == "factor" and one.candidate.wall in ("welded", "rigid")]
-        close = [one for one in close if one not in same]
-    close = [one for one in close if data.accepts(one)]
-    close.sort(key=data.score)
+        close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
+    close = sorted(filter(data.accepts, close), key=data.score)
+    status = "exact" if exact else "ambiguous" if close else "identified"
     if not data.accepts(best):
         status = "few" if data.agrees(best) else "unknown"
-    elif exact:
-        status = "exact"
-    else:
-        status = "ambiguous" if close else "identified"
-    tested_first = tuple(sorted(firsts, key=data.score))
-    return Identification(status, tuple(ranking), tuple(equal), tuple(close), tested_first)
+    firsts.sort(key=data.score)
+    return Identification(status, tuple(ranking), tuple(equal), tuple(close), tuple(firsts))
 
 
 def _faults(data: Data) -> Iterator[Fault]:
@@ -223,7 +218,7 @@ def _faults(data: Data) -> Iterator[Fault]:
         yield Fault("clamp", entries, modes, " and ".join(ends), ends=ends)
     for i in range(n if data.ordered else 0):
         yield Fault("missing", entries, np.delete(np.arange(n + 1), i), f"mode {i + 1}")
-        yield Fault("extra", np.delete(entries, i), modes[:-1], f"entry {i + 1}")
+        yield Fault("extra", np.delete(entries, i), modes[:-1], f"entry {entries[i] + 1}")
 
 
 def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[Fit]:
