@@ -87,8 +87,6 @@ def result_of(
         summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
-    clamp = beam.uniform and set(beam.supports) == {"clamped", "free"}
-    clamp &= any(one.fault.kind == "clamp" for one in (best, *fits.alternatives))
     claimed = fits.status in ("identified", "ambiguous")
     if claimed and {one.candidate.wall for one in others} <= {best.candidate.wall} and (change := _change(best, beam)):
         summary += f"\nTo change: {change}"
@@ -106,7 +104,9 @@ def result_of(
     checks.append(("largest error against the exact beam", off, within, "yes" if off <= within else "no"))
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables = [*_tables(fits, beam, rows, required), Table("Acceptance", columns, checks)]
-    warnings = [*warnings, *[TIP_MASS] * clamp]
+    kinds = {one.fault.kind for one in (best, *others)}
+    if "clamp" in kinds and beam.uniform and set(beam.supports) == {"clamped", "free"}:
+        warnings = [*warnings, TIP_MASS]
     figures = [_figure(beam, fits, rows)] if any(row.motion == BENDING for row in rows) else []
     return Result(summary, tables, figures, warnings=warnings, data=about, margins=margins)
 
@@ -120,7 +120,7 @@ def _change(best: Fit, beam: Beam) -> str:
         half, gregory = (describe(beam, best.count or 1, wall=rule) for rule in ("half", "gregory"))
     except InputError:  # for example with tension, or without a discretisation
         return ""
-    if wall in ("full", "rigid", "stiff"):
+    if wall in ("full", "rigid", "stiff") and "clamped" in beam.supports:
         two, *three = (one.hinges[0].stiffness for one in (half.joints[0], *gregory.joints[:3]))
         now = {"full": f"{two / 2:.6g}", "stiff": f"{2 * two:.6g}", "rigid": "fixed"}[wall]
         each = "each wall" if beam.supports == ("clamped", "clamped") else "the wall"
@@ -174,13 +174,12 @@ def _tables(fits: Identification, beam: Beam, rows: list[Entry], required: list[
         (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
         for one in fits.ranking[:SHOWN]
     ]
-    notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: rms below twice the best."]
+    notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: agrees as well."]
     tables.append(Table("Candidates", [*sizes, Column("order"), *RMS, Column("status")], lines, notes))
-    tested = fits.tested
     if fits.status == "unknown" or any(one.fault.kind != "none" for one in (best, *fits.alternatives)):
-        titles = [(FAULTS[one.fault.kind][0], value(one, beam)) for one in tested]
         lines = [
-            (*title, f.candidate.label, f.count, f.rms, f.largest) for title, f in zip(titles, tested, strict=True)
+            (FAULTS[one.fault.kind][0], value(one, beam), one.candidate.label, one.count, one.rms, one.largest)
+            for one in fits.tested
         ]
         columns = [Column("fault"), Column("value"), *sizes, *RMS]
         tables.append(Table("Faults tested, the likeliest first", columns, lines))
