@@ -3,16 +3,18 @@
 References: frequency equations solved here, Timoshenko's closed form, dense elements with a taper or a crack.
 """
 
-from functools import cache
-from itertools import product
 from math import pi, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from reference.closed_lists import BETAS, euler, pinned_timoshenko, space, written
 from reference.discrete_beams import rigid_links, varying_beam
 from shared_lists import compared, table
 
+from verify.compare.compare import Options, compare
+from verify.compare.reading import read_words
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointMass
 
@@ -23,14 +25,14 @@ BAR = Beam(length=1.0, width=0.15, thickness=0.1, youngs_modulus=68e9, density=2
 EI, MASS = CLAMPED.bending_stiffness, CLAMPED.mass_per_length
 
 
-@pytest.mark.parametrize(("nu", "kappa", "digits"), [*product((0.2, 0.45), (pi**2 / 12, 0.9), (5, 7))])
+@pytest.mark.parametrize(("nu", "kappa", "digits"), [(0.2, pi**2 / 12, 5), (0.45, 0.9, 7)])
 def test_shear_of_another_nu_or_kappa_is_no_discretisation(nu, kappa, digits):
     hertz = pinned_timoshenko(THICK, nu, kappa, 8)
     data = compared(THICK, hertz, digits=digits).data
     assert (data["status"], data["best"]["model"], data["identified"]) == ("exact", "analytic", False)
 
 
-@pytest.mark.parametrize(("digits", "how"), [(3, "cut"), *product((4, 6), ("rounded", "cut", "off"))])
+@pytest.mark.parametrize(("digits", "how"), [(3, "cut"), (4, "off"), (6, "rounded")])
 def test_digits_of_an_exact_list_are_no_discretisation_and_no_factor(digits, how):
     cells = [written(f, digits, how, i) for i, f in enumerate(euler(CLAMPED))]
     data = compared(CLAMPED, cells, digits=digits).data
@@ -39,13 +41,12 @@ def test_digits_of_an_exact_list_are_no_discretisation_and_no_factor(digits, how
     assert data["passed"]
 
 
-@pytest.mark.parametrize("decimals", [2, 3, 4])
+@pytest.mark.parametrize("decimals", [2, 4])
 def test_constants_by_hand_are_constants(decimals):
     data = compared(CLAMPED, euler(CLAMPED, np.round(BETAS, decimals))).data
     assert (data["status"], data["best"]["fault"]["label"]) == ("exact", f"{decimals} decimals")
 
 
-@cache
 def dense(cause, size):
     if cause == "crack":
         at, softness = size
@@ -57,15 +58,28 @@ def dense(cause, size):
     )
 
 
-@pytest.mark.parametrize(
-    ("cause", "size"), [*product(["crack"], product((1, 4, 30), (0.01, 0.2))), *product(["taper"], (0.02, 0.3))]
-)
+@pytest.mark.parametrize(("cause", "size"), [("crack", (1, 0.01)), ("crack", (30, 0.2)), ("taper", 0.02)])
 def test_cracked_and_tapered_beams_are_of_no_known_family(cause, size):
-    """Cracks at 1/120, 1/30 and 1/4 of the length, of 1 % and 20 % of the beam's own softness."""
+    """Cracks at 1/120 and 1/4 of the length, of 1 % and 20 % of the beam's own softness."""
     result = compared(CLAMPED, dense(cause, size)[:6], digits=7)
     assert (result.data["status"], result.data["identified"]) == ("unknown", False)
     assert result.data["best"]["fault"]["kind"] == "none"
     assert "None of the known family" in result.summary
+
+
+def test_three_digits_leave_several_models_and_not_the_exact_beam():
+    """Recorded as 2EI/l, N = 20; mode 5 of the exact beam is 1.3 % off."""
+    strip = Beam(length=1.0, width=0.04, thickness=0.008, youngs_modulus=210e9, density=7850.0, supports=BAR.supports)
+    cells = ("6.7", "42", "117", "228", "375")
+    result = compare(SimpleNamespace(name="beam", beam=strip), read_words(cells), None, Options(count=20))
+    assert (result.data["status"], result.data["best"]["wall"]) == ("ambiguous", "half")
+    assert {one["model"] for one in result.data["alternatives"]} == {"segment", "fem"}
+
+
+def test_change_at_the_wall_is_in_newton_metres():
+    """Of EI/l: 2EI/l, or Gregory's compliances 3/8, 7/6, 23/24."""
+    summary = compared(CLAMPED, rigid_links(CLAMPED, 20, 1.0)[:6], count=20).summary
+    assert all(f"{factor * 20 * EI / CLAMPED.length:.6g}" in summary for factor in (1, 2, 8 / 3, 6 / 7, 24 / 23))
 
 
 def test_motions_of_a_bar_in_space_are_sorted_in_rad_per_second():
@@ -95,7 +109,7 @@ def test_squares_and_periods_are_recognised(unit, values):
     assert (data["unit"], data["passed"]) == (unit, True)
 
 
-FACTORS = {"sqrt(g)": sqrt(9.80665), "plane strain": 1 / sqrt(1 - 0.33**2), "inches": 0.0254, "exchanged": 0.03 / 0.004}
+FACTORS = {"sqrt(g)": sqrt(9.80665), "plane strain": 1 / sqrt(1 - 0.33**2), "exchanged": 0.03 / 0.004}
 
 
 @pytest.mark.parametrize("name", FACTORS)
@@ -106,22 +120,14 @@ def test_factor_has_its_name(name):
 
 
 def test_mass_that_the_list_has_not_is_named():
-    loaded = Beam(
-        length=0.45,
-        width=0.03,
-        thickness=0.004,
-        supports=("clamped", "free"),
-        mass=(PointMass(position=0.45, mass=0.1),),
-        **STEEL,
-    )
+    loaded = replace(CLAMPED, mass=(PointMass(position=0.45, mass=0.1),))
     result = compared(loaded, rigid_links(CLAMPED, 20)[:6], digits=8, count=20)
     assert result.data["best"]["fault"] == {"kind": "scene", "label": "beam.mass", "parameter": 1.0}
 
 
-@pytest.mark.parametrize(("factor", "wall", "count"), [(0.95, "half", 20), (1.02, "full", 20)])
-def test_wrong_modulus_names_no_wrong_wall(factor, wall, count):
-    hertz = factor * rigid_links(CLAMPED, 20, {"half": 2.0, "full": 1.0}[wall])[:6]
-    data = compared(CLAMPED, hertz, digits=6, count=count).data
+@pytest.mark.parametrize(("factor", "wall", "stiffness"), [(0.95, "half", 2.0), (1.02, "full", 1.0)])
+def test_wrong_modulus_names_no_wrong_wall(factor, wall, stiffness):
+    data = compared(CLAMPED, factor * rigid_links(CLAMPED, 20, stiffness)[:6], digits=6, count=20).data
     walls = {one["wall"] for one in (data["best"], *data["alternatives"])}
     assert wall in walls
     assert not data["identified"] or walls == {wall}

@@ -53,10 +53,10 @@ def lumped_elements(beam, n, rotary=0.0):
     return np.sqrt(abs(eigh(condensed, np.diag(masses[moves]), eigvals_only=True))) / (2 * np.pi)
 
 
-def printed_chain(beam, n):
+def stepped_chain(beam, n, rule):
     """Links of two sections, clamped with 2EI/l at the left and pinned at the right, joints by Eq. (1) as printed.
 
-    k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i).
+    k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i). Other rules: EI/l of the outboard or inboard link, mean EI.
     """
     ends = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
     parts = [np.linspace(*span, count + 1) for *span, count in zip(ends[:-1], ends[1:], n, strict=True)]
@@ -64,7 +64,9 @@ def printed_chain(beam, n):
     e, i = np.transpose([(piece.youngs_modulus, piece.second_moment) for piece in chain.pieces])
     k = 2 * e[:-1] * e[1:] * i[:-1] * i[1:]
     k /= e[:-1] * i[1:] * chain.lengths[1:] + e[1:] * i[:-1] * chain.lengths[:-1]
-    chain.compliance[1:] = 1 / k
+    own = e * i / chain.lengths
+    rules = {"outboard": own[1:], "inboard": own[:-1], "mean": (own[1:] + own[:-1]) / 2}
+    chain.compliance[1:] = 1 / rules.get(rule, k)
     return hertz((chain.bend.T / chain.compliance) @ chain.bend, chain.mass, chain.free)
 
 

@@ -77,20 +77,23 @@ def compare(
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
     loaded = load_scene(scene, overrides)
     options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory)
+    forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
     typed_list = None if Path(given[0] if given else "").exists() else read_words(given, unit)
     if model is not None:
-        result = compare_list(loaded, solve_model(model, loaded.beam, count, mode), None, options)
+        frequencies = solve_model(model, loaded.beam, count, mode)
     elif typed_list is not None:
-        result = compare_list(loaded, typed_list, None, options)
+        frequencies = typed_list
     elif len(given) > 1:
         raise InputError(f"frequencies = {' '.join(given)}: give one file, or numbers alone")
     elif Path(given[0]).suffix.lower() in TEXT:
         frequencies = read_frequencies(Path(given[0]), unit)
-        forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
-        result = compare_list(loaded, frequencies, forms, options)
     else:
-        from verify.compare.meshes import read_mesh
-        from verify.compare.shapes import compare_shapes
+        frequencies = None
+    if frequencies is not None:
+        with shared.progress(quiet=any(formats.values()), lines=count is None) as step:
+            result = compare_list(loaded, frequencies, forms, options, step)
+    else:
+        from verify.compare.shapes import compare_shapes, read_mesh
 
         result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
     shared.show(result, **formats)

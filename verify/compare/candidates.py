@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.analysis.variants import attached_within, has_wall
 from verify.arrays import Array
-from verify.compare.discrete import DiscreteBeam
+from verify.compare.discrete import STEPS, DiscreteBeam
 from verify.linear.registry import MODELS
 from verify.options import THEORIES, WALLS
 from verify.problem.beam import Beam
@@ -39,6 +39,10 @@ LABELS = {
     "rigid": "first link fixed to the wall",
     "stiff": "4EI/l at the wall",
     "printed": "Eq. (1) as printed",
+    "centre": "equal links by the section at their centre",
+    "outboard": "joints by EI/l of the outboard link",
+    "inboard": "joints by EI/l of the inboard link",
+    "mean": "joints by the mean EI",
     "tensioned": "joints corrected for tension",
     "lever": "attachments on their rigid link",
     "rayleigh": "Rayleigh",
@@ -77,7 +81,8 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def packaged(self) -> bool:
         """Whether the candidate is a model of `verify`."""
-        return not self.sized or self.mass == "consistent" or (self.mass == "links" and self.wall in (None, *WALLS))
+        chain = self.mass == "links" and self.wall in (None, *WALLS) and self.joints not in STEPS
+        return not self.sized or self.mass == "consistent" or chain
 
     @property
     def springs(self) -> bool:
@@ -98,6 +103,8 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         if self.model == ELEMENTS:
             even = "free" not in beam.supports and not beam.stepped and self.theory == EULER
             return 4 if self.mass == "consistent" or (self.mass == "lumped" and even) else 2
+        if self.joints in STEPS:
+            return None if self.joints == "centre" else 1
         rules = {"joints": self.joints, "theory": EULER if self.mass == "rod" else self.theory}
         known = MODELS[CHAIN].build(beam, FINE, **rules, attachment=self.attachment).expected_order()
         highest = min(ORDERS.get(self.wall or "", 4), 4 if self.mass == "links" else 2)
@@ -131,6 +138,8 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
     if attached_within(beam):
         for joints, wall in product(rules, [wall for wall in common if wall not in others]):
             yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, attachment="lever")
+    for joints, wall in product(STEPS if beam.stepped else (), common):
+        yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints)
     for mass, wall in product(("points", "joints"), common):
         yield Candidate(model=CHAIN, mass=mass, wall=wall)
     for wall in common:
@@ -149,7 +158,7 @@ def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes:
         if n_modes < 1:
             return np.empty(0)
         return np.asarray(model.build(beam, count, **settings).modes(n_modes).frequencies_hz)
-    line, wall = DiscreteBeam(beam, count or 0, candidate.theory), candidate.wall or "half"
+    line, wall = DiscreteBeam(beam, count or 0, candidate.theory, candidate.joints), candidate.wall or "half"
     if candidate.model == ELEMENTS:
         return line.elements_hz(n_modes, candidate.mass)
     return line.rod_hz(n_modes, wall) if candidate.mass == "rod" else line.chain_hz(n_modes, candidate.mass, wall)

@@ -1,5 +1,7 @@
 """Comparison of frequencies from another program with candidate discretisations and the exact beam of a scene."""
 
+from bisect import bisect_left
+from collections.abc import Callable
 from itertools import product
 from typing import Any, get_args
 
@@ -14,6 +16,7 @@ from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
 from verify.compare.sorting import BENDING, rigid_of, sort_list
 from verify.errors import InputError
+from verify.linear.registry import MODELS
 from verify.options import Support
 from verify.problem.beam import Beam
 from verify.report.result import Result
@@ -42,7 +45,11 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def compare(
-    scene: Any, listed: FrequencyList, shapes: ModeShapes | None = None, options: Options | None = None
+    scene: Any,
+    listed: FrequencyList,
+    shapes: ModeShapes | None = None,
+    options: Options | None = None,
+    progress: Callable[[str], None] = lambda step: None,
 ) -> Result:
     """Identify the discretisation behind frequencies of the scene's beam and their errors. Raises InputError.
 
@@ -63,39 +70,28 @@ def compare(
     if not hertz[rigid:].all():
         raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
     exact_hz = frequencies_hz(Candidate(model=EXACT, theory=options.theory), beam, None, n)
-    entries = modes = np.arange(len(hertz) - rigid)
+    modes = np.arange(len(hertz) - rigid)
+    entries = rigid + modes
     likeness, ordered = None, shapes is None and motions is None
     if shapes is not None:
         paired, macs = pair_shapes(beam, shapes.x, shapes.values[rigid:])
-        entries = np.flatnonzero(macs >= LEAST_MAC)
-        modes, likeness = paired[entries], macs[entries]
+        like = macs >= LEAST_MAC
+        entries, modes, likeness = entries[like], paired[like], macs[like]
     elif motions is not None:
-        entries = motions.entries(BENDING)
-        modes = motions.modes[entries]
+        bending = np.array(motions.names) == BENDING
+        entries, modes = entries[bending], motions.modes[bending]
     elif listed.numbers is not None:
         modes = np.array(listed.numbers)[rigid:] - 1 - (rigid if listed.numbers[0] == 1 else 0)
-        ordered = bool((modes == entries).all())
-    order = np.arange(len(entries)) if motions is not None else entries  # motions: the list of one plane alone
-    chosen = rigid + (entries if motions is not None else np.arange(len(hertz) - rigid))
-    data = Data(
-        beam=beam,
-        logs=np.log(hertz[chosen]),
-        rounding=listed.rounding[chosen],
-        members=candidates(beam, options.kind),
-        entries=order,
-        modes=modes,
-        ordered=ordered,
-        count=options.count,
-    )
-    fits = identify(data)
-    macs = np.full(len(modes), None) if likeness is None else likeness
-    rows = [
-        Entry(int(e) + rigid + 1, int(m) + 1, float(hertz[e + rigid]), float(exact_hz[m]), like)
-        for e, m, like in zip(entries, modes, macs.tolist(), strict=True)
-    ]
+        ordered = bool((modes == entries - rigid).all())
+    logs, members, rounding = np.log(np.maximum(hertz, 1e-300)), candidates(beam, options.kind), listed.rounding
+    data = Data(beam=beam, logs=logs, rounding=rounding, members=members, entries=entries, modes=modes,
+                ordered=ordered, count=options.count)  # fmt: skip
+    fits = identify(data, progress)
+    each = zip(entries.tolist(), modes.tolist(), [None] * len(modes) if likeness is None else likeness, strict=True)
+    rows = [Entry(e + 1, m + 1, float(hertz[e]), float(exact_hz[m]), mac) for e, m, mac in each]
     disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
     unlike = 0 if likeness is None else len(hertz) - rigid - int((likeness >= LOW_MAC).sum())
-    supports = _other_supports(beam, data.logs[order], modes) if fits.status == "unknown" else ()
+    supports = _other_supports(beam, logs[entries], modes) if fits.status == "unknown" else ()
     own = beam.rigid_motions  # in space and along the axis there are more
     messages = {
         f"The list starts with {rigid} rigid-body motions, the beam of the scene has {own}.": rigid
@@ -106,22 +102,21 @@ def compare(
         f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
     }
     warnings = [text for text, holds in messages.items() if holds]
-    mode = options.mode or max(row.mode for row in rows)
+    mode = options.mode or int(modes.max()) + 1
     rules = ("gregory", "half", "full") if "clamped" in beam.supports else (None,)
     joints = "tensioned" if beam.tension else "series"
-    sized = [fits.best.candidate] if fits.status != "unknown" and fits.best.candidate.sized else []
-    sized += [Candidate(model=CHAIN, mass="links", wall=rule, joints=joints, theory=options.theory) for rule in rules]
-    sized.append(Candidate(model=ELEMENTS, mass="consistent", theory=options.theory))
+    sized = [
+        *([fits.best.candidate] if fits.status != "unknown" and fits.best.candidate.sized else []),
+        *(Candidate(model=CHAIN, mass="links", wall=rule, joints=joints, theory=options.theory) for rule in rules),
+        Candidate(model=ELEMENTS, mass="consistent", theory=options.theory),
+    ]
     required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in dict.fromkeys(sized)]
     if motions is not None:  # the other motions of a model in space
-        thick = options.theory == "timoshenko"
-        each = enumerate(zip(motions.names, motions.modes.tolist(), motions.exact[:, int(thick)].tolist(), strict=True))
-        rows += [
-            Entry(i + rigid + 1, mode + 1, float(hertz[i + rigid]), exact, None, name)
-            for i, (name, mode, exact) in each
-            if name != BENDING
-        ]
-    return result_of(scene.name, listed, data, fits, rows, required, warnings, options.within, options.theory)
+        exact = motions.exact[:, int(options.theory == "timoshenko")].tolist()
+        others = zip(hertz[rigid:].tolist(), exact, motions.modes.tolist(), motions.names, strict=True)
+        all_rows = [Entry(i, m + 1, f, of, None, name) for i, (f, of, m, name) in enumerate(others, rigid + 1)]
+        rows += [row for row in all_rows if row.motion != BENDING]
+    return result_of(scene.name, listed, data, fits, rows, required, warnings, options)
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
@@ -136,8 +131,6 @@ def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
 
 def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
     """Mode shapes of the exact beam at x, (n_modes, len(x)); those of fine elements if it has none."""
-    from verify.linear.registry import MODELS
-
     try:
         return np.asarray(MODELS[EXACT].build(beam).modes(n_modes).deflection(x))
     except InputError:
@@ -160,7 +153,7 @@ def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
 
 
 def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tuple[int | None, ...]:
-    """Required N of a mode for each of ERRORS, by interpolation and steps of one; None beyond LARGEST."""
+    """Required N of a mode for each of ERRORS, by interpolation and bisection; None beyond LARGEST."""
     exact = float(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1])
     sizes, logs = spectrum(beam, candidate, n_modes)
     counts: list[int | None] = []
@@ -174,10 +167,11 @@ def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tupl
         if len(failing) and sizes[failing[-1]] == sizes[-1]:
             counts.append(None)
             continue
-        high = int(sizes[failing[-1]]) + 1 if len(failing) else int(sizes[0])
+        low = high = int(sizes[failing[-1]]) + 1 if len(failing) else int(sizes[0])
+        step = 1
         while not within(high):
-            high += 1
-        while high > 1 and within(high - 1):
-            high -= 1
-        counts.append(high)
+            low, high, step = high, high + step, 2 * step
+        while low > 0 and within(low):
+            low, high, step = max(low - step, 0), low, 2 * step
+        counts.append(low + 1 + bisect_left(range(low + 1, high), True, key=within))
     return tuple(counts)

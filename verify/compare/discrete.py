@@ -16,6 +16,9 @@ from verify.linear.system import StructuralSystem
 from verify.options import WALLS
 from verify.problem.beam import Beam
 
+STEPS = ("centre", "outboard", "inboard", "mean")
+"""Joint rules of equal links with the section at their centre: two half links, EI/l of the link beyond the joint or in
+front of it, mean EI."""
 WALL_COMPLIANCE = {"rigid": 0.0, "stiff": 0.25}
 """Compliance of the joint at a clamped end, in l/EI: EI/l, first link fixed to the wall, 4EI/l."""
 MASSLESS = 1e-12
@@ -28,11 +31,16 @@ Zienkiewicz, Earthquake Eng. Struct. Dyn. 4, 1976)."""
 class DiscreteBeam:
     """A beam in N equal parts per section, relative to its own EI and rho A. Raises InputError for attachments."""
 
-    def __init__(self, beam: Beam, count: int, theory: str) -> None:
+    def __init__(self, beam: Beam, count: int, theory: str, joints: str = "series") -> None:
         beam.check_features("this candidate", ("section",))
-        parts = divide(beam, count)
-        self.beam, self.n, self.unit, self.lengths = beam, count, parts.unit, parts.lengths
-        self.stiffnesses, self.masses = parts.stiffnesses, parts.lengths * parts.masses_per_length
+        parts, self.joints = divide(beam, count), joints
+        self.beam, self.n, self.unit = beam, count, parts.unit
+        self.lengths = np.ones(count) if joints in STEPS else parts.lengths
+        steps, centres = np.cumsum([p.length for p in beam.pieces]) / self.unit, np.cumsum(self.lengths)
+        centres -= 0.5 * self.lengths
+        piece = np.minimum(np.searchsorted(steps, centres), len(beam.pieces) - 1)
+        self.stiffnesses = np.array([p.bending_stiffness for p in beam.pieces])[piece] / beam.bending_stiffness
+        self.masses = np.array([p.mass_per_length for p in beam.pieces])[piece] * self.lengths / beam.mass_per_length
         self.rotary, self.shear = np.zeros(count), np.full(count, np.inf)  # rho I l, kappa G A
         ends = [beam.supports[0], *["free"] * (count - 1), beam.supports[1]]
         self.free = np.array([support not in ("pinned", "clamped") for support in ends])
@@ -44,8 +52,6 @@ class DiscreteBeam:
         inertias, stiffnesses = [p.rotary_inertia for p in beam.pieces], [p.shear_stiffness for p in beam.pieces]
         if None in inertias or (theory == "timoshenko" and None in stiffnesses):
             raise InputError("beam.rotary_inertia or beam.shear_stiffness is missing: give both for this theory")
-        steps = np.cumsum([p.length for p in beam.pieces]) / self.unit
-        piece = np.minimum(np.searchsorted(steps, parts.nodes[1:] - 0.5 * self.lengths), len(beam.pieces) - 1)
         self.rotary = np.array(inertias, float)[piece] * self.lengths / (beam.mass_per_length * self.unit**2)
         if theory == "timoshenko":
             self.shear = np.array(stiffnesses, float)[piece] * self.unit**2 / beam.bending_stiffness
@@ -106,11 +112,18 @@ class DiscreteBeam:
         return self._lowest_hz(n_modes, strain, stiffness, matrix, free)
 
     def _compliances(self, wall: str) -> Array:
-        """1/k of joints 0..N: two half links in series, at clamped ends by the wall rule; infinite without a joint."""
+        """1/k of joints 0..N: two half links in series, at clamped ends by the wall rule; infinite without a joint.
+
+        Outboard is away from the clamped end, or to the right.
+        """
         from verify.segments.walls import wall_factors
 
-        whole = _at_ends(0.5 * self.lengths / self.stiffnesses)
-        whole[[0, -1]] *= 2.0
+        links = self.lengths / self.stiffnesses
+        near, far = links[:-1], links[1:]
+        if self.beam.supports[1] == "clamped" != self.beam.supports[0]:
+            near, far = far, near
+        rules = {"outboard": far, "inboard": near, "mean": 2.0 / (1.0 / near + 1.0 / far)}
+        whole = np.concatenate([links[:1], rules.get(self.joints, 0.5 * (near + far)), links[-1:]])
         rule = wall if wall in WALLS else "welded"  # one joint EI/l
         whole *= wall_factors(self.beam.supports, self.n, rule)
         clamped = [support == "clamped" for support in self.beam.supports]

@@ -56,12 +56,14 @@ def fit_parameter(
     """
     from scipy.optimize import least_squares
 
+    grid = CLAMPS if ends else SHEARS
+
     def left(log_parameter: Array) -> Array:
-        parameter = float(np.exp(np.clip(log_parameter, -9.0, 18.0)[0]))
+        parameter = float(np.clip(np.exp(log_parameter[0]), grid[0], grid[-1]))
         hertz = frequencies_hz(candidate, varied(beam, ends, parameter), count, int(modes.max()) + 1)
         if len(hertz) <= modes.max():
             raise InputError(f"count = {count}: the model has {len(hertz)} modes, raise count")
         return np.asarray(logs - np.log(hertz[modes]))
 
     solution = least_squares(left, [np.log(start)], diff_step=1e-4, xtol=1e-9)
-    return float(np.exp(solution.x[0])), np.asarray(solution.fun)
+    return float(np.clip(np.exp(solution.x[0]), grid[0], grid[-1])), np.asarray(solution.fun)

@@ -1,6 +1,6 @@
 """Ranking of candidates by the rms difference of log frequencies, and tests of faults of the list by this rms."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import hypot, log, pi
 
@@ -11,6 +11,7 @@ from msgspec.structs import replace
 from verify.analysis.variants import is_uneven
 from verify.arrays import Array, Indices
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
+from verify.compare.discrete import STEPS
 from verify.compare.effects import effect_of, fit_parameter
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
@@ -23,8 +24,8 @@ PROMISING = 5e-3
 """Largest rms by interpolated N and effects of a fit that is solved."""
 EFFECT = 0.02
 """Largest rms over the effect of an accepted fault."""
-SMALLEST, SEARCHED, LARGEST = 2, 400, 1000
-"""Largest N if it is unknown; largest N of the interpolated spectra."""
+SMALLEST, EVERY, SEARCHED, LARGEST = 2, 40, 400, 1000
+"""Least N; largest N at which other joint rules at steps are solved, if it is unknown, and of interpolated spectra."""
 FEWEST, REFINED = 3, 5
 """Least number of entries for a fault; number of candidates solved around their interpolated N."""
 FAULTS = {
@@ -108,7 +109,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def floor(self) -> float:
         """Rms within the digits of the list."""
-        return max(FLOOR, float(np.median(self.rounding)))
+        return max(FLOOR, float(np.median(self.rounding[self.entries])))
 
     def fitted(self, fit: Fit) -> int:
         """Number of fitted parameters."""
@@ -116,7 +117,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def score(self, fit: Fit) -> float:
         """Minus log likelihood with noise of unknown size, and the cost of the fault."""
-        return len(self.logs) * log(hypot(fit.rms, self.floor)) + FAULTS[fit.fault.kind][1]
+        return len(self.entries) * log(hypot(fit.rms, self.floor)) + FAULTS[fit.fault.kind][1]
 
     def accepts(self, fit: Fit) -> bool:
         """Whether a fit is evidence: it agrees, with more entries than parameters, and its fault has an effect.
@@ -130,7 +131,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def agrees(self, fit: Fit) -> bool:
         """Whether all differences are within the digits; the last digit may be off by one."""
-        return fit.largest <= AGREED + 0.5 * self.floor
+        return bool((abs(np.log1p(fit.differences)) <= AGREED + 1.5 * self.rounding[fit.fault.entries]).all())
 
     def near(self, fit: Fit, best: Fit) -> bool:
         """Whether a fit is within the factor of ambiguity of the best."""
@@ -157,15 +158,18 @@ class Identification(msgspec.Struct, frozen=True, eq=False):
         return self.ranking[0]
 
 
-def identify(data: Data) -> Identification:
+def identify(data: Data, progress: Callable[[str], None] = lambda step: None) -> Identification:
     """Rank all candidates with the likeliest fault of the list. Raises InputError if none has enough modes."""
+    progress(f"candidates, N {data.count or f'from {SMALLEST} to {SEARCHED}'}")
     none = Fault("none", data.entries, data.modes)
     tested = {"none": _best(data, [none])}
     plain = tested["none"][0]
     if plain.candidate.sized or not data.accepts(plain):
         rivalling = ("factor", *EXACTS) if data.accepts(plain) else FAULTS
         faults = [one for one in _faults(data) if one.kind in rivalling]
-        tested |= {kind: _best(data, [one for one in faults if one.kind == kind]) for kind in {f.kind for f in faults}}
+        for kind in dict.fromkeys(one.kind for one in faults):
+            progress(f"fault of the list: {FAULTS[kind][0].partition(',')[0]}")
+            tested[kind] = _best(data, [one for one in faults if one.kind == kind])
     firsts = [fits[0] for fits in tested.values() if fits]
     accepted = [one for one in firsts if data.accepts(one) and data.score(one) <= data.score(plain)]
     best = min(accepted or [plain], key=data.score)
@@ -183,23 +187,18 @@ def identify(data: Data) -> Identification:
     most = data.fitted(best) + 1
     close = [one for one in near if one is not best and one not in equal and data.fitted(one) <= most]
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
-        same = [one for one in close if one.fault.kind == "factor" and one.candidate.wall in ("welded", "rigid")]
-        close = [one for one in close if one not in same]
-    close = [one for one in close if data.accepts(one)]
-    close.sort(key=data.score)
+        close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
+    close = sorted(filter(data.accepts, close), key=data.score)
+    status = "exact" if exact else "ambiguous" if close else "identified"
     if not data.accepts(best):
         status = "few" if data.agrees(best) else "unknown"
-    elif exact:
-        status = "exact"
-    else:
-        status = "ambiguous" if close else "identified"
-    tested_first = tuple(sorted(firsts, key=data.score))
-    return Identification(status, tuple(ranking), tuple(equal), tuple(close), tested_first)
+    firsts.sort(key=data.score)
+    return Identification(status, tuple(ranking), tuple(equal), tuple(close), tuple(firsts))
 
 
 def _faults(data: Data) -> Iterator[Fault]:
     """All faults that are tested."""
-    entries, modes, n, beam = data.entries, data.modes, len(data.logs), data.beam
+    entries, modes, n, beam = data.entries, data.modes, len(data.entries), data.beam
     if data.count is not None:
         yield Fault("count", entries, modes)
     for name in beam.features:
@@ -219,7 +218,7 @@ def _faults(data: Data) -> Iterator[Fault]:
         yield Fault("clamp", entries, modes, " and ".join(ends), ends=ends)
     for i in range(n if data.ordered else 0):
         yield Fault("missing", entries, np.delete(np.arange(n + 1), i), f"mode {i + 1}")
-        yield Fault("extra", np.delete(entries, i), modes[:-1], f"entry {i + 1}")
+        yield Fault("extra", np.delete(entries, i), modes[:-1], f"entry {entries[i] + 1}")
 
 
 def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[Fit]:
@@ -238,11 +237,18 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     near = [one for one in near if one.rms < min(PROMISING, parts * one.effect) or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
     if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
-        refined = rank(_refined(data, one, SEARCHED) for one in near)
+        refined = rank(_refined(data, one, every=True) for one in near)
     if every:
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
-
+    by = {
+        one.candidate: one for one in refined
+    }  # joint rules at steps that agree with half links in series are left out
+    refined = [
+        one
+        for one in refined
+        if not _same(one, twin := by.get(replace(one.candidate, joints="series"), one)) or one is twin
+    ]
     equal = {one.candidate for one in refined if _same(one, refined[0])}  # of these the one with least fitted
     return sorted(refined, key=lambda f: (data.fitted(f), order[f.candidate]) if f.candidate in equal else (9, 0))
 
@@ -315,20 +321,25 @@ def _fit(data: Data, one: Candidate, n: int | None, fault: Fault, parameter: flo
     return Fit(candidate=one, count=n, fault=fault, parameter=parameter, differences=np.expm1(left), **sizes)
 
 
-def _refined(data: Data, fit: Fit, around: float = 0.0) -> Fit | None:
+def _refined(data: Data, fit: Fit, *, every: bool = False) -> Fit | None:
     """The fit at the best N near the interpolated one, within 30 % if errors oscillate with N.
 
-    `around`: least search distance.
+    `every`: at all N with an interpolated error of a third of the list's or more.
     """
     best = _solved(data, fit, fit.count)
     wide = is_uneven(data.beam) and not fit.fault.ends
-    if best is None or best.count is None or data.count is not None or len(data.logs) < FEWEST:
+    if best is None or best.count is None or data.count is not None or len(data.entries) < FEWEST:
         return best
     off = float(abs(best.differences - fit.differences).max())  # by interpolation: at the right N it is all there is
     if fit.rms > min(PROMISING, 10.0 * off + AGREED) and not wide:
         return best
-    around = max(around, 2 + best.count * (0.3 if wide else 0.03))
-    sizes = range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1)
+    around = 2 + best.count * (0.3 if wide else 0.03)
+    sizes = list(range(max(SMALLEST, int(best.count - around)), min(SEARCHED, int(best.count + around)) + 1))
+    if every:
+        known, table = spectrum(data.beam, fit.candidate, data.n_modes)
+        exact = _logs(data.beam, Candidate(model=EXACT, theory=fit.candidate.theory), None, data.n_modes)[data.modes]
+        errors = abs(table[:, data.modes] - exact).max(axis=1)
+        sizes = known[(known <= SEARCHED) & (3.0 * errors >= abs(data.logs[data.entries] - exact).max())].tolist()
     for size in sorted(sizes, key=lambda size: abs(size - (fit.count or 0))):
         if best.rms <= data.floor:
             break
@@ -369,7 +380,9 @@ def spectrum(beam: Beam, candidate: Candidate, n_modes: int) -> tuple[Indices, A
 
     knots, sizes = [max(SMALLEST, n_modes // 2)], np.arange(SMALLEST, LARGEST + 1)
     while knots[-1] < 6 * n_modes:
-        knots.append(max(knots[-1] + 1, round((1.3 if knots[-1] < 3 * n_modes else 1.5) * knots[-1])))
+        every = candidate.joints in STEPS and knots[-1] < EVERY  # their errors oscillate with N
+        factor = 1.0 if every else 1.3 if knots[-1] < 3 * n_modes else 1.5
+        knots.append(max(knots[-1] + 1, round(factor * knots[-1])))
     solved = np.array([_logs(beam, candidate, size, n_modes) for size in knots])
     logs = np.full((len(sizes), n_modes), np.nan)
     if np.isnan(solved).all():

@@ -13,6 +13,7 @@ from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.fit import FAULTS, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.compare.sorting import ACROSS, BENDING
+from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.report.result import Column, Figure, Result, Table
 
@@ -23,18 +24,14 @@ SHOWN = 10
 """Largest number of candidates in the table; all are in the data."""
 STATUS = {
     "identified": "Identified",
-    "ambiguous": "Ambiguous, several agree with the list; the likeliest",
+    "ambiguous": "Ambiguous, within the rounding of its digits several models agree; the likeliest",
     "exact": "No discretisation detected",
-    "few": "Too few frequencies to identify a model; one that agrees",
+    "few": "Too few frequencies to identify a model; one of those that agree",
     "unknown": "None of the known family; nearest",
 }
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """Parameters that change all frequencies by a common factor, with the power of the factor."""
 TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
-WALL = (
-    "The joint at the wall should be 2EI/l, or the first three joints have compliances 3/8, 7/6, 23/24 of l/EI "
-    "(Gregory): `verify chain` prints them in N m/rad."
-)
 UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
 INCH, GRAVITY = 0.0254, 9.80665
 ENTRY = (Column("entry"), Column("mode"), Column("listed", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
@@ -65,27 +62,34 @@ def result_of(
     rows: list[Entry],
     required: list[tuple[Any, ...]],
     warnings: list[str],
-    within: float,
-    theory: str,
+    options: Any,
 ) -> Result:
     """The result of a comparison with acceptance `data["passed"]`; `warnings` are faults of the list.
 
-    `required`: candidates, modes, and N for 1 % and 0.1 %.
+    `required`: candidates, modes, and N for 1 % and 0.1 %. `options`: `compare.Options`.
     """
-    best, beam, kind = fits.best, data.beam, fits.best.fault.kind
+    best, beam, kind, within = fits.best, data.beam, fits.best.fault.kind, options.within
     misread = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * (kind in ("missing", "extra"))
     faults = [*misread, *warnings]
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
     off, passed = abs(worst.error), abs(worst.error) <= within and not faults
-    summary = f"{STATUS[fits.status]}: {_title(best, beam)}, rms difference {best.rms:.2g}."
-    if fits.status in ("identified", "ambiguous") and fits.alternatives:
-        summary += f" Alternatives: {'; '.join(_title(one, beam) for one in fits.alternatives[:3])}."
+    coarse = best.rms == 0.0 and best.digits > 1e-8
+    agreement = ", within the rounding of its digits" if coarse else f", rms difference {best.rms:.2g}"
+    summary = f"{STATUS[fits.status]}: {_title(best, beam)}{agreement * (fits.status != 'ambiguous')}."
+    others = fits.alternatives if fits.status in ("identified", "ambiguous", "exact") else ()
+    if others:
+        more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
+        summary += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
+        summary += " More digits or modes distinguish them." * (fits.status == "ambiguous")
+    nearer = fits.tested[0]
+    if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
+        summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
-    clamp = beam.uniform and set(beam.supports) == {"clamped", "free"}
-    clamp &= any(one.fault.kind == "clamp" for one in (best, *fits.alternatives))
-    wrong = fits.status == "identified" and best.candidate.wall in ("full", "rigid", "stiff")
+    claimed = fits.status in ("identified", "ambiguous")
+    if claimed and {one.candidate.wall for one in others} <= {best.candidate.wall} and (change := _change(best, beam)):
+        summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
     about |= {"status": fits.status, "identified": fits.status == "identified", "best": _plain(best, beam)}
     groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
@@ -93,16 +97,41 @@ def result_of(
     failure = f"the list is {per_cent(off)} too {'low' if worst.error < 0.0 else 'high'} at mode {worst.mode}"
     own = Margin(name="error of the list", size=off, where=f"at mode {worst.mode}", fine=within, limit=within,
                  failure=failure)  # fmt: skip
-    settings = not_default({"theory": theory})
+    settings = not_default({"theory": options.theory})
     margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent), settings=settings), own]
     margins += [void(f"the list ({text})", text.rstrip(".")) for text in faults]
     checks: list[Any] = [("faults of the list", float(len(faults)), 0.0, "no" if faults else "yes")]
     checks.append(("largest error against the exact beam", off, within, "yes" if off <= within else "no"))
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables = [*_tables(fits, beam, rows, required), Table("Acceptance", columns, checks)]
-    warnings = [*warnings, *[TIP_MASS] * clamp, *[WALL] * wrong]
+    kinds = {one.fault.kind for one in (best, *others)}
+    if "clamp" in kinds and beam.uniform and set(beam.supports) == {"clamped", "free"}:
+        warnings = [*warnings, TIP_MASS]
     figures = [_figure(beam, fits, rows)] if any(row.motion == BENDING for row in rows) else []
     return Result(summary, tables, figures, warnings=warnings, data=about, margins=margins)
+
+
+def _change(best: Fit, beam: Beam) -> str:
+    """The joints to change in a chain with a wrong rule at the wall or at steps, N m/rad; empty without one."""
+    from verify.engines.description import describe
+
+    wall, texts = best.candidate.wall or "", []
+    try:
+        half, gregory = (describe(beam, best.count or 1, wall=rule) for rule in ("half", "gregory"))
+    except InputError:  # for example with tension, or without a discretisation
+        return ""
+    if wall in ("full", "rigid", "stiff") and "clamped" in beam.supports:
+        two, *three = (one.hinges[0].stiffness for one in (half.joints[0], *gregory.joints[:3]))
+        now = {"full": f"{two / 2:.6g}", "stiff": f"{2 * two:.6g}", "rigid": "fixed"}[wall]
+        each = "each wall" if beam.supports == ("clamped", "clamped") else "the wall"
+        better = ", ".join(f"{one:.6g}" for one in three)
+        texts = [f"the joint at {each} ({now}) to {two:.6g} N m/rad = 2EI/l, or the first three to {better} (Gregory)"]
+    if best.candidate.joints in ("printed", "outboard", "inboard", "mean"):
+        steps = np.cumsum([piece.length for piece in half.beam.pieces[:-1]])
+        at = [one for one in half.joints if np.isclose(one.position, steps).any()]
+        each = ", ".join(f"{one.hinges[0].stiffness:.6g} N m/rad at {one.position:.6g} m" for one in at)
+        texts += [f"joints at steps to those of two half links in series, {each}"]
+    return f"{'; '.join(texts)}. All joints: `verify chain ... --count {best.count}`." if texts else ""
 
 
 def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
@@ -145,13 +174,12 @@ def _tables(fits: Identification, beam: Beam, rows: list[Entry], required: list[
         (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
         for one in fits.ranking[:SHOWN]
     ]
-    notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: rms below twice the best."]
+    notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: agrees as well."]
     tables.append(Table("Candidates", [*sizes, Column("order"), *RMS, Column("status")], lines, notes))
-    tested = fits.tested
     if fits.status == "unknown" or any(one.fault.kind != "none" for one in (best, *fits.alternatives)):
-        titles = [(FAULTS[one.fault.kind][0], value(one, beam)) for one in tested]
         lines = [
-            (*title, f.candidate.label, f.count, f.rms, f.largest) for title, f in zip(titles, tested, strict=True)
+            (FAULTS[one.fault.kind][0], value(one, beam), one.candidate.label, one.count, one.rms, one.largest)
+            for one in fits.tested
         ]
         columns = [Column("fault"), Column("value"), *sizes, *RMS]
         tables.append(Table("Faults tested, the likeliest first", columns, lines))
@@ -194,8 +222,8 @@ def _modes(best: Fit, rows: list[Entry]) -> Table:
     columns += [Column("candidate", "Hz", ".7g"), Column("difference", format=".3g", percent=True)]
     columns += [Column("MAC", format=".4f")] * shaped
     place, lines = {int(entry): i for i, entry in enumerate(fault.entries)}, []
-    for i, row in enumerate(rows):
-        at, corrected = place.get(i), row.listed_hz / factor
+    for row in rows:
+        at, corrected = place.get(row.entry - 1), row.listed_hz / factor
         off = None if at is None else float(best.differences[at])
         line: list[Any] = [row.entry, row.mode, row.listed_hz, row.exact_hz, row.error]
         line += [None if at is None else int(fault.modes[at]) + 1, corrected] * faulty

@@ -32,10 +32,6 @@ class Motions(msgspec.Struct, frozen=True, eq=False):
     modes: Indices
     exact: Array
 
-    def entries(self, name: str) -> Indices:
-        """Entries of one motion, from 0."""
-        return np.flatnonzero(np.array(self.names) == name)
-
 
 def rigid_of(beam: Beam, hertz: Array) -> int:
     """Number of leading entries that are rigid-body motions."""

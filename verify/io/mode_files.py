@@ -18,7 +18,7 @@ def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[
     """(points (n, 3), arrays at them, field data with frequencies). Raises InputError."""
     if path.suffix.lower() in UNIVERSAL:
         return _universal(path, source)
-    return _series(path) or _mesh(path, source)
+    return _mesh(path, source)
 
 
 def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
@@ -79,20 +79,3 @@ def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, A
         raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
     arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
     return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}
-
-
-def _series(path: Path) -> tuple[Array, dict[str, Array], dict[str, Any]] | None:
-    """`read_points` of an xdmf series with one mode per step and frequencies in Hz as times; None for other files."""
-    import meshio
-
-    if path.suffix.lower() != ".xdmf":
-        return None
-    try:
-        with meshio.xdmf.TimeSeriesReader(path) as reader:
-            points, _ = reader.read_points_cells()
-            steps = [reader.read_data(i)[:2] for i in range(reader.num_steps)]
-    except Exception:  # not a series
-        return None
-    arrays = {f"step_{i}": np.asarray(next(iter(data.values()))) for i, (_, data) in enumerate(steps, start=1)}
-    times = np.array([float(time) for time, _ in steps])
-    return np.asarray(points, dtype=float), arrays, {"hz": times} if (np.diff(times, prepend=0.0) > 0.0).all() else {}
