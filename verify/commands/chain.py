@@ -66,7 +66,7 @@ def chain(
 
 
 def judge_chain(
-    words: list[str], overrides: tuple[str, ...], modes: int, within: str, theory: str, corrected: str | None,
+    words: list[str], overrides: tuple[str, ...], modes: int, within: str, theory: str | None, corrected: str | None,
     formats: dict[str, bool],
 ) -> None:  # fmt: skip
     """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""

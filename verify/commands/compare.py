@@ -30,7 +30,7 @@ CHAINS = {".xml", ".mjcf", ".sdf", ".urdf"}
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
-    "--theory", type=click.Choice(THEORIES), default=THEORIES[0], show_default=True, help="Of the exact beam."
+    "--theory", type=click.Choice(THEORIES), help=f"Of the exact beam. Default: {THEORIES[0]}; in space, rayleigh."
 )
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
 @shared.charts_option
@@ -46,7 +46,7 @@ def compare(
     kind: str | None,
     mode: int | None,
     within: str,
-    theory: str,
+    theory: str | None,
     corrected: str | None,
     charts: str | None,
     **formats: bool,
@@ -76,7 +76,7 @@ def compare(
     if not (isinstance(limit, float | int) and limit > 0.0):
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
     loaded = load_scene(scene, overrides)
-    options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory)
+    options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory or THEORIES[0])
     forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
     typed_list = None if Path(given[0] if given else "").exists() else read_words(given, unit)
     if model is not None:

@@ -159,17 +159,21 @@ def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
 
 
 def judge_file(
-    path: Path, beam: Beam | None, modes: int = 5, within: float = FINE, theory: str = "euler-bernoulli",
+    path: Path, beam: Beam | None, modes: int = 5, within: float = FINE, theory: str | None = None,
     corrected: Path | None = None,
 ) -> "Result":  # fmt: skip
     """The result of the chain in a file, acceptance in `data["passed"]`: all errors are `within`.
 
-    `corrected`: file to write, with correct stiffnesses. Raises InputError for a file that is not such a chain.
+    `theory`: by default "euler-bernoulli" in a plane, "rayleigh" in space where links have the rotary inertia of their
+    drawn sections. `corrected`: file to write, with correct stiffnesses. Raises InputError for another file.
     """
     from verify.report.result import Column, Result, Table
 
     (kind, solids), judged = read(path), list[Judged]()
-    for line in lines(solids, path.name):
+    found = lines(solids, path.name)
+    in_space = len(found) > 1 and all(line.solid for line in found)
+    theory = theory or ("rayleigh" if in_space else "euler-bernoulli")
+    for line in found:
         judged.append(judge(line, beam and _in_its_plane(line, beam, path.name), theory))
     error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected", "change")]
     hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
