@@ -1,0 +1,1 @@
+"""Piezoelectric actuators: materials, bars, stacks, transducers, patches; shunts; actuators on a beam."""
