@@ -14,6 +14,7 @@ from verify.errors import InputError
 from verify.validation import check_integer, check_type
 
 if TYPE_CHECKING:
+    from verify.actuators.bar import Line
     from verify.arrays import Array
 
 SPLIT = 0.381966  # node within each line, so that its clamped modes coincide with no mode of the transducer
@@ -108,22 +109,24 @@ def _modes_below(actuator: Longitudinal, parts: Parts, omega: float, is_open: bo
     """
     import numpy as np
 
-    count, size, nodes = 0, 0, [0]
-    stiffness = np.zeros((7, 7))
-    for line in parts:
-        for share in (SPLIT, 1.0 - SPLIT):
-            if line is None:
-                break
-            theta = omega * share * line.length / complex(line.speed).real
-            own, transfer = (omega * complex(line.impedance).real / one for one in (np.tan(theta), np.sin(theta)))
-            stiffness[size : size + 2, size : size + 2] += [[own, -transfer], [-transfer, own]]
-            count, size = count + int(theta // pi), size + 1
-        nodes.append(size)
     active = parts.active
-    if is_open != active.along:  # the speed is that with open electrodes along the field, with closed ones across it
-        ends = np.ix_(nodes[1:3], nodes[1:3])
-        added = (1.0 if is_open else -1.0) * complex(active.force_factor**2 / active.capacitance).real
-        stiffness[ends] += added * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    elements = list[tuple["Line", float]]()
+    for line in (line for line in parts if line is not None):
+        layers = active.layers if line is active else 1
+        elements += [(line, 1.0)] * layers if layers > 1 else [(line, SPLIT), (line, 1.0 - SPLIT)]
+    span, first = 1 if active.layers > 1 else 2, 0 if parts.back is None else 2  # elements of a layer, of the back
+    last = first + span * active.layers
+    count, stiffness = 0, np.zeros((len(elements) + 1, len(elements) + 1))
+    for node, (line, share) in enumerate(elements):
+        theta = omega * share * line.length / complex(line.speed).real
+        own, transfer = (omega * complex(line.impedance).real / one for one in (np.tan(theta), np.sin(theta)))
+        stiffness[node : node + 2, node : node + 2] += [[own, -transfer], [-transfer, own]]
+        count += int(theta // pi)
+    electrical = complex(active.force_factor**2 / active.capacitance).real * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    for node in range(first, last, span) if active.along else ():  # its speed is that with open electrodes
+        stiffness[np.ix_([node, node + span], [node, node + span])] -= electrical
+    if is_open:
+        stiffness[np.ix_([first, last], [first, last])] += electrical / active.layers
     stiffness[0, 0] += actuator.base if isinstance(actuator.base, float) else 0.0
-    free = slice(int(actuator.base == "fixed"), size + 1)
-    return count + int(np.sum(np.linalg.eigvalsh(stiffness[free, free]) < 0.0))
+    fixed = int(actuator.base == "fixed")
+    return count + int(np.sum(np.linalg.eigvalsh(stiffness[fixed:, fixed:]) < 0.0))
