@@ -5,7 +5,7 @@ The frequencies are those without losses. The count of W. Wittrick and F. Willia
 resonance and is left out.
 """
 
-from math import pi, sqrt
+from math import gcd, pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from verify.actuators.port import Actuator
@@ -14,7 +14,6 @@ from verify.errors import InputError
 from verify.validation import check_integer, check_type
 
 if TYPE_CHECKING:
-    from verify.actuators.bar import Line
     from verify.arrays import Array
 
 SPLIT = 0.381966  # node within each line, so that its clamped modes coincide with no mode of the transducer
@@ -105,28 +104,36 @@ def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
 def _modes_below(actuator: Longitudinal, parts: Parts, omega: float, is_open: bool) -> int:
     """Number of natural frequencies below omega, the rigid motion included.
 
-    It is the number of the lines' modes with clamped ends plus that of negative eigenvalues of the dynamic stiffness.
+    It is that of the clamped modes of the chain's elements plus that of negative eigenvalues of its dynamic stiffness.
+    Each line has two elements, each stack two groups of layers that are periodic lines.
     """
     import numpy as np
 
     active = parts.active
-    elements = list[tuple["Line", float]]()
-    for line in (line for line in parts if line is not None):
+    electrical = complex(active.force_factor**2 / active.capacitance).real
+    count, node, stiffness = 0, 0, np.zeros((7, 7))
+    for line in (one for one in parts if one is not None):
         layers = active.layers if line is active else 1
-        elements += [(line, 1.0)] * layers if layers > 1 else [(line, SPLIT), (line, 1.0 - SPLIT)]
-    span, first = 1 if active.layers > 1 else 2, 0 if parts.back is None else 2  # elements of a layer, of the back
-    last = first + span * active.layers
-    count, stiffness = 0, np.zeros((len(elements) + 1, len(elements) + 1))
-    for node, (line, share) in enumerate(elements):
-        theta = omega * share * line.length / complex(line.speed).real
-        own, transfer = (omega * complex(line.impedance).real / one for one in (np.tan(theta), np.sin(theta)))
-        stiffness[node : node + 2, node : node + 2] += [[own, -transfer], [-transfer, own]]
-        count += int(theta // pi)
-    electrical = complex(active.force_factor**2 / active.capacitance).real * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    for node in range(first, last, span) if active.along else ():  # its speed is that with open electrodes
-        stiffness[np.ix_([node, node + span], [node, node + span])] -= electrical
-    if is_open:
-        stiffness[np.ix_([first, last], [first, last])] += electrical / active.layers
+        # an odd number prime to that of the layers: a mode with nodes at the ends of the group would be lost in rounding
+        group = next(one for one in range(round(SPLIT * layers) | 1, layers + 1, 2) if gcd(one, layers) == 1)
+        for share, size in ((SPLIT, 1), (1.0 - SPLIT, 1)) if layers == 1 else ((1.0, group), (1.0, layers - group)):
+            half = 0.5 * omega * share * line.length / complex(line.speed).real
+            rigidity = omega * complex(line.impedance).real
+            stretch, shift = rigidity / np.tan(half), -rigidity * np.tan(half)
+            if layers > 1:  # its speed is that with open electrodes; closed ones soften it
+                stretch -= 2.0 * electrical
+            within = np.cos(np.arange(1, size) * pi / size)
+            count += size * int(2.0 * half // pi) + int(np.sum(stretch * (1.0 - within) + shift * (1.0 + within) < 0.0))
+            phase = 2.0 * np.arctan(np.sqrt(complex(-shift / stretch)))
+            scale = 0.5 * (stretch - shift) * np.sin(phase)
+            own, transfer = (scale / np.tan(size * phase)).real, (scale / np.sin(size * phase)).real
+            stiffness[node : node + 2, node : node + 2] += [[own, -transfer], [-transfer, own]]
+            node += 1
+    first = 0 if parts.back is None else 2
+    softening = -electrical if active.along and active.layers == 1 else 0.0
+    across = softening + (electrical / active.layers if is_open else 0.0)
+    stiffness[np.ix_([first, first + 2], [first, first + 2])] += across * np.array([[1.0, -1.0], [-1.0, 1.0]])
     stiffness[0, 0] += actuator.base if isinstance(actuator.base, float) else 0.0
     fixed = int(actuator.base == "fixed")
-    return count + int(np.sum(np.linalg.eigvalsh(stiffness[fixed:, fixed:]) < 0.0))
+    free = stiffness[fixed : node + 1, fixed : node + 1]
+    return count + int(np.sum(np.linalg.eigvalsh(free) < 0.0))
