@@ -114,7 +114,7 @@ def _modes_below(actuator: Longitudinal, parts: Parts, omega: float, is_open: bo
     count, node, stiffness = 0, 0, np.zeros((7, 7))
     for line in (one for one in parts if one is not None):
         layers = active.layers if line is active else 1
-        # an odd number prime to that of the layers: a mode with nodes at the ends of the group would be lost in rounding
+        # odd and prime to the number of layers: a mode with nodes at the ends of the group is lost in rounding
         group = next(one for one in range(round(SPLIT * layers) | 1, layers + 1, 2) if gcd(one, layers) == 1)
         for share, size in ((SPLIT, 1), (1.0 - SPLIT, 1)) if layers == 1 else ((1.0, group), (1.0, layers - group)):
             half = 0.5 * omega * share * line.length / complex(line.speed).real
