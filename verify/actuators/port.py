@@ -1,14 +1,17 @@
 """The electrical and the mechanical port of an actuator, which all its forms share."""
 
 from abc import abstractmethod
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import msgspec
 
-from verify.arrays import ComplexArray
+if TYPE_CHECKING:
+    from verify.arrays import ComplexArray
 
-Number = complex | ComplexArray
-"""A number, or one for each frequency, (n,)."""
+    Number: TypeAlias = complex | ComplexArray
+else:
+    Number = Any
+    """A number, or one for each frequency, (n,). Scenes import this module, and not numpy."""
 
 
 class Port(msgspec.Struct, frozen=True, eq=False, kw_only=True):

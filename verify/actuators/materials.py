@@ -1,0 +1,152 @@
+"""Piezoelectric ceramics: constants of the stress-charge form with their sources, and those derived from them."""
+
+from functools import cached_property
+from math import sqrt
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import msgspec
+
+from verify.errors import InputError
+from verify.validation import Relative, unit, validate
+
+if TYPE_CHECKING:
+    from verify.arrays import Array
+
+EPS0 = 8.8541878128e-12
+"""Permittivity of vacuum, F/m (CODATA 2018)."""
+Direction = Literal["33", "31"]
+"""Wave along the field, or across it."""
+Form = Literal["mason", "klm", "circuit"]
+"""Mason's three-port, the model of Krimholtz, Leedom and Matthaei, or the circuit of Butterworth and Van Dyke."""
+
+
+class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
+    """A ceramic poled along 3 (6mm): T = cE S - e^t E, D = e S + epsS E (IEEE Std 176-1987, Table 8).
+
+    Losses are those of the strain-charge form, which catalogues measure: sE (1 - i/Q), d (1 - i p), epsT (1 - i tan
+    delta) with e^{+i omega t} (R. Holland, IEEE Trans. Sonics Ultrason. 14:18, 1967). Raises InputError for constants
+    of an unstable material, and for a piezoelectric loss that makes it a source of energy.
+    """
+
+    c11: Annotated[float, unit("Pa", gt=0)]
+    """cE11, Pa."""
+    c12: Annotated[float, unit("Pa")]
+    """cE12, Pa."""
+    c13: Annotated[float, unit("Pa")]
+    """cE13, Pa."""
+    c33: Annotated[float, unit("Pa", gt=0)]
+    """cE33, Pa."""
+    c44: Annotated[float, unit("Pa", gt=0)]
+    """cE44, Pa."""
+    e15: Annotated[float, unit("C/m^2")]
+    """C/m^2."""
+    e31: Annotated[float, unit("C/m^2")]
+    """C/m^2."""
+    e33: Annotated[float, unit("C/m^2")]
+    """C/m^2."""
+    eps11: Annotated[float, unit("relative to vacuum", gt=0)]
+    """epsS11 over that of vacuum."""
+    eps33: Annotated[float, unit("relative to vacuum", gt=0)]
+    """epsS33 over that of vacuum."""
+    density: Annotated[float, unit("kg/m^3", gt=0)]
+    """rho, kg/m^3."""
+    dielectric_loss: Annotated[Relative, unit("tan delta", ge=0, lt=1)] = 0.0
+    """tan delta of the free ceramic."""
+    mechanical_loss: Annotated[Relative, unit("1/Q", ge=0, lt=1)] = 0.0
+    """1/Q with short-circuited electrodes."""
+    piezoelectric_loss: Annotated[Relative, unit("loss tangent", gt=-1, lt=1)] = 0.0
+    """Loss tangent of d31 and d33."""
+    source: str = ""
+    """Publication of the constants."""
+
+    def __post_init__(self) -> None:
+        validate(self, "material")
+        if self.c11 <= abs(self.c12) or (self.c11 + self.c12) * self.c33 <= 2.0 * self.c13**2:
+            raise InputError(
+                f"material.c12 = {self.c12!r}, material.c13 = {self.c13!r}: the stiffness is not positive definite, "
+                "check the constants and their unit, Pa"
+            )
+        limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(abs(self.k33), abs(self.k31), 1e-300)
+        if abs(self.piezoelectric_loss) > limit * (1.0 + 1e-12):
+            raise InputError(
+                f"material.piezoelectric_loss = {self.piezoelectric_loss!r}: the bar would be a source of energy, give "
+                f"at most sqrt(dielectric_loss mechanical_loss)/k33 = {limit:.6g}"
+            )
+
+    @cached_property
+    def strain_charge(self) -> "tuple[Array, Array, Array]":
+        """(sE (6, 6) in 1/Pa, d (3, 6) in C/N, epsT (3, 3) in F/m) without losses: sE = cE^-1, d = e sE."""
+        import numpy as np
+
+        stiffness = np.diag([self.c11, self.c11, self.c33, self.c44, self.c44, 0.5 * (self.c11 - self.c12)])
+        stiffness[[0, 1], [1, 0]] = self.c12
+        stiffness[[0, 1, 2, 2], [2, 2, 0, 1]] = self.c13
+        e = np.zeros((3, 6))
+        e[[0, 1], [4, 3]] = self.e15
+        e[2, :3] = self.e31, self.e31, self.e33
+        compliance = np.linalg.inv(stiffness)
+        return compliance, e @ compliance, EPS0 * np.diag([self.eps11, self.eps11, self.eps33]) + e @ compliance @ e.T
+
+    @property
+    def s11(self) -> float:
+        """sE11, 1/Pa."""
+        return float(self.strain_charge[0][0, 0])
+
+    @property
+    def s33(self) -> float:
+        """sE33, 1/Pa."""
+        return float(self.strain_charge[0][2, 2])
+
+    @property
+    def s33_open(self) -> float:
+        """sD33 = sE33 (1 - k33^2), 1/Pa."""
+        return self.s33 * (1.0 - self.k33**2)
+
+    @property
+    def d31(self) -> float:
+        """C/N."""
+        return float(self.strain_charge[1][2, 0])
+
+    @property
+    def d33(self) -> float:
+        """C/N."""
+        return float(self.strain_charge[1][2, 2])
+
+    @property
+    def eps33_free(self) -> float:
+        """epsT33, F/m."""
+        return float(self.strain_charge[2][2, 2])
+
+    @property
+    def k31(self) -> float:
+        """|d31| / sqrt(sE11 epsT33)."""
+        return abs(self.d31) / sqrt(self.s11 * self.eps33_free)
+
+    @property
+    def k33(self) -> float:
+        """|d33| / sqrt(sE33 epsT33)."""
+        return abs(self.d33) / sqrt(self.s33 * self.eps33_free)
+
+    def bar_constants(self, direction: Direction) -> tuple[complex, complex, complex]:
+        """(sE, d, epsT33) of a slender bar with losses: 1/Pa, C/N, F/m."""
+        compliance, d = (self.s33, self.d33) if direction == "33" else (self.s11, self.d31)
+        return (
+            compliance * (1.0 - 1j * self.mechanical_loss),
+            d * (1.0 - 1j * self.piezoelectric_loss),
+            self.eps33_free * (1.0 - 1j * self.dielectric_loss),
+        )
+
+
+MaterialName = Literal["pzt-4", "pzt-8"]
+PIEZO: dict[str, PiezoMaterial] = {
+    "pzt-4": PiezoMaterial(
+        c11=139e9, c12=77.8e9, c13=74.3e9, c33=115e9, c44=25.6e9, e15=12.7, e31=-5.2, e33=15.1, eps11=730.0,
+        eps33=635.0, density=7500.0, source="D. Berlincourt, D. Curran, H. Jaffe, Physical Acoustics I-A (1964), Ch. 3",
+    ),
+    "pzt-8": PiezoMaterial(
+        c11=146.88e9, c12=81.09e9, c13=81.05e9, c33=131.71e9, c44=31.35e9, e15=10.34, e31=-3.875, e33=13.91,
+        eps11=904.4, eps33=561.6, density=7600.0,
+        source="inverse of sE, d, epsT in D. Berlincourt, H. Krueger, C. Near, Morgan Electro Ceramics TP-226",
+    ),
+}  # fmt: skip
+"""Catalogue constants without losses. Catalogues give tan delta 0.004 for both, Q 500 (PZT-4) and 1000 (PZT-8)."""
