@@ -38,7 +38,16 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
 
 def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
     """A sentence for every error; the constraints between fields are checked where each field is valid."""
-    table, inside = table_of(kind), list[str]()
+    tables, inside = structs_of(kind), list[str]()
+    if len(tables) > 1 and isinstance(data, dict):
+        tag, name = data.get("kind"), f"{where}.kind".lstrip(".")
+        if tag not in tables:
+            known = near_name(str(tag), tuple(tables)) if tag is not None else f"give one of {', '.join(tables)}"
+            yield f"{name} = {shown(tag)} is not known: {known}" if tag is not None else f"{name} is missing: {known}"
+            return
+        kind, tables = tables[tag], {tag: tables[tag]}
+        data = {key: value for key, value in data.items() if key != "kind"}
+    table = next(iter(tables.values()), None)
     lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
     if table is not None and isinstance(data, dict):
         fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
@@ -111,7 +120,13 @@ def metas_of(kind: Any) -> list[msgspec.Meta]:
 
 def table_of(kind: Any) -> type[msgspec.Struct] | None:
     """The struct among the members of a union."""
-    return next((arm for arm in arms_of(kind) if isinstance(arm, type) and issubclass(arm, msgspec.Struct)), None)
+    return next(iter(structs_of(kind).values()), None)
+
+
+def structs_of(kind: Any) -> dict[str, type[msgspec.Struct]]:
+    """The structs among the members of a union by their tags, the values of `kind` in a table."""
+    tables = [arm for arm in arms_of(kind) if isinstance(arm, type) and issubclass(arm, msgspec.Struct)]
+    return {str(table.__struct_config__.tag): table for table in tables}
 
 
 def entry_of(kind: Any) -> Any:

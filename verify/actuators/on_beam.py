@@ -18,15 +18,18 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
+from verify.actuators.patch import Patch
 from verify.actuators.port import Actuator, Port
+from verify.actuators.shunt import Load
 from verify.errors import InputError, ResonanceError
 from verify.linear.base import BeamModel, Devices
 from verify.linear.field import HarmonicField, combined, phasor, point_force
 from verify.linear.positions import Loads, frequencies_on, loads_on
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass, PointSpring
 from verify.validation import as_tuple, check_position
 
 QUASI_STATIC = 0.05
@@ -43,8 +46,8 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
     """Amplitude, V; 0: short-circuited electrodes."""
     current: complex | None = None
     """Amplitude of the current into the actuator, A."""
-    load: Any = None
-    """Electrical load with `admittance(omega)`, S."""
+    load: Load | None = None
+    """Electrical load."""
 
     def __post_init__(self) -> None:
         if sum(one is not None for one in (self.voltage, self.current, self.load)) != 1:
@@ -52,12 +55,12 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
 
     def loads(self, beam: Beam) -> tuple[PointLoad, ...]:
         """The load of its mechanical port for F = 1. Raises InputError off the beam, and at a fixed point of it."""
-        length = getattr(self.actuator, "bonded_length", None)
-        if length is None:
+        if not isinstance(self.actuator, Patch):
             check_position("actuator.position", self.position, beam.length)
             Device(position=self.position, amplitude=1.0).check_on(beam)
             return (PointForce(position=self.position),)
-        ends = self.position - 0.5 * length, self.position + 0.5 * length
+        half = 0.5 * self.actuator.length
+        ends = self.position - half, self.position + half
         for end in ends:
             check_position("actuator.position, an end of the patch,", end, beam.length)
         return PointMoment(position=ends[1]), PointMoment(position=ends[0], amplitude=-1.0)
@@ -186,40 +189,58 @@ def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: floa
     )
 
 
-class InTime(msgspec.Struct, frozen=True, kw_only=True):
-    """An actuator far below its own resonance as a spring and a mass on the beam."""
+class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
+    """A beam and its loads in time that are equivalent to a drive."""
 
-    stiffness: float
-    """N/m, limit of i omega Z_e at omega = 0."""
-    mass: float
-    """kg: of a slender bar a third of its own."""
-    factor: complex
-    """F0 per volt or ampere at the drive, N/V or N/A."""
-    error: float
-    """Relative error of stiffness - omega^2 mass at the drive, about (omega/omega_1)^2; losses count as error."""
+    beam: Beam
+    loads: tuple[PointLoad, ...]
+    error: float = 0.0
+    """Relative error of an actuator's reduction to a spring and a mass, about (omega/omega_1)^2."""
 
 
-def in_time(actuator: Actuator, omega: float, *, current: bool = False) -> InTime:
-    """The quasi-static reduction of an actuator, with open electrodes if its `current` is prescribed.
+def beam_in_time(
+    beam: Beam, kind: str, forces: Sequence[PointForce], actuator: Actuator | None, frequency_hz: float
+) -> BeamInTime:
+    """The beam and the loads that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
 
-    Stiffness and mass are the first coefficients of i omega Z_e in omega^2, from three frequencies below the drive's.
-    Raises InputError for an error above `QUASI_STATIC`, and for a patch.
+    Far below its resonance an actuator is a spring and a mass (of a slender bar a third of its own), the coefficients
+    of i omega Z_e in powers of omega^2; a current sees the stiffness of open electrodes. A patch is a part of the
+    section. Force factors are those of the steady state. Raises InputError for displacements, the current of a patch,
+    and an error of the reduction above `QUASI_STATIC`, losses of the actuator included.
     """
+    if kind == "force":
+        return BeamInTime(beam=beam, loads=tuple(forces))
+    if kind == "moment":
+        return BeamInTime(beam=beam, loads=tuple(PointMoment(**asdict(one)) for one in forces))
+    if actuator is None or (kind == "current" and isinstance(actuator, Patch)):
+        what = "displacements" if actuator is None else "currents of a patch"
+        raise InputError(f"drive.kind = {kind!r}: a beam moves in time under no {what}, give 'force' or 'voltage'")
+    omega = 2.0 * pi * frequency_hz
+    if isinstance(actuator, Patch):
+        whole, patch = actuator.on(beam, [one.position for one in forces]), actuator.bonded(beam)
+        turning = [Mounted(actuator=patch, position=one.position, voltage=phasor(one)) for one in forces]
+        volts = complex(patch.port(omega).force_factor).real
+        loads = [replace(load, amplitude=volts * force.amplitude * load.amplitude, phase_deg=force.phase_deg)
+                 for one, force in zip(turning, forces, strict=True) for load in one.loads(whole)]  # fmt: skip
+        return BeamInTime(beam=whole, loads=tuple(loads))
 
     def dynamic(at: Any) -> Any:
         port = actuator.port(at)
-        return 1j * at * (port.loaded_impedance() if current else port.short_impedance)
+        return 1j * at * (port.loaded_impedance() if kind == "current" else port.short_impedance)
 
-    if getattr(actuator, "bonded_length", None) is not None:
-        raise InputError("drive.actuator: in time it is a spring and a mass at one point, give a stack")
     low = omega * np.array([0.1, 0.2, 0.3])
-    stiffness, mass, _ = np.linalg.solve(np.vander(low**2, increasing=True), dynamic(low).real)
-    whole, port = dynamic(np.array([omega]))[0], actuator.port(omega)
-    error = float(abs(whole - (stiffness + mass * omega**2)) / abs(whole))
+    stiffness, mass, _ = np.linalg.solve(np.vander((low / omega) ** 2, increasing=True), dynamic(low).real).tolist()
+    whole, port = complex(dynamic(np.array([omega]))[0]), actuator.port(omega)
+    error = abs(whole - (stiffness + mass)) / abs(whole)
     if error > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
         raise InputError(
-            f"drive.actuator: as a spring and a mass in time it errs by {error:.2g} at {omega / (2.0 * pi):g} Hz (at "
-            f"most {QUASI_STATIC:g}): drive it far below its resonance, or use quantities of the steady wave"
+            f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} (at "
+            f"most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
         )
-    factor = port.force_factor / (port.blocked_admittance if current else 1.0)
-    return InTime(stiffness=float(stiffness), mass=float(-mass), factor=complex(factor), error=error)
+    factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
+    places = dict.fromkeys(one.position for one in forces)
+    springs = (PointSpring(position=x, stiffness=stiffness) for x in places)
+    masses = (PointMass(position=x, mass=-mass / omega**2) for x in places)
+    whole = replace(beam, spring=(*beam.spring, *springs), mass=(*beam.mass, *masses))
+    loads = [point_force(one.position, factor * phasor(one)) for one in forces]
+    return BeamInTime(beam=whole, loads=tuple(loads), error=error)

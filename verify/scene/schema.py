@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from verify.convert import description_of, table_of
+from verify.convert import description_of, entry_of, structs_of
 from verify.errors import InputError, near_name
 from verify.quantities.base import QUANTITIES
 from verify.scene.model import Scene
@@ -26,10 +26,13 @@ def sections() -> dict[str, type[msgspec.Struct]]:
 
     def add(kind: type[msgspec.Struct], where: str) -> None:
         for field in msgspec.structs.fields(kind):
-            entry = next((arg for arg in getattr(field.type, "__args__", ()) if table_of(arg)), field.type)
-            if (table := table_of(entry)) is not None:
-                found[where + field.encode_name] = table
-                add(table, f"{where}{field.encode_name}.")
+            tables = structs_of(entry_of(field.type) or field.type)
+            for tag, table in tables.items():
+                if table in found.values():  # a material of several actuators
+                    continue
+                name = f"{where}{field.encode_name}" + (f".{tag}" if len(tables) > 1 else "")
+                found[name] = table
+                add(table, f"{name}.")
 
     add(Scene, "")
     for name in STUDIES:
