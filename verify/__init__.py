@@ -2,7 +2,8 @@
 
 Public names (`help` of a name lists fields, shapes and units; everything is SI):
 
-  Beam, Section, PointMass, PointSpring, PointForce, Slider    the problem
+  Beam, Section, PointMass, PointSpring, Slider                the problem
+  PointForce, PointMoment                                      harmonic loads
   Device                                                       impedance on a driven beam: absorber or actuator
   ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
   Modes, HarmonicField                                         their results
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from verify.fem_beam import HermiteModel
     from verify.linear.field import HarmonicField
     from verify.linear.modes import Modes
-    from verify.problem.beam import Beam, PointForce
+    from verify.problem.beam import Beam, PointForce, PointMoment
     from verify.problem.cross_section import Section
     from verify.problem.device import Device
     from verify.problem.point_attachments import PointMass, PointSpring
@@ -46,13 +47,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Beam", "Bent", "Contact", "Device", "ExactModel", "Foot", "FreeVibration", "HarmonicField", "HermiteModel",
-    "InputError", "Modes", "Motion", "PointForce", "PointMass", "PointSpring", "Section", "SegmentModel", "Slider",
+    "InputError", "Modes", "Motion", "PointForce", "PointMass", "PointMoment", "PointSpring", "Section", "SegmentModel", "Slider",
     "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_scene", "simulate", "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
 
 _HOME = {
-    "Beam": "problem.beam", "PointForce": "problem.beam", "Device": "problem.device",
+    "Beam": "problem.beam", "PointForce": "problem.beam", "PointMoment": "problem.beam", "Device": "problem.device",
     "Section": "problem.cross_section",
     "PointMass": "problem.point_attachments", "PointSpring": "problem.point_attachments", "Contact": "problem.slider",
     "Foot": "problem.slider", "Slider": "problem.slider", "ExactModel": "analytic_modes", "HermiteModel": "fem_beam",

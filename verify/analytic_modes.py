@@ -29,12 +29,12 @@ from verify.exact.characteristic import buckling_load, check_stable, count_at, w
 from verify.exact.layout import BeamLayout, Station, layout_of, with_stations
 from verify.exact.transfer import ROTATION, Motion, divide, modal_motion, solve
 from verify.linear.base import BeamModel
-from verify.linear.field import HarmonicField, phasor, point_force, wavenumber
+from verify.linear.field import HarmonicField, acting_on, phasor, point_force, wavenumber
 from verify.linear.modes import Modes
-from verify.linear.positions import Forces, Numbers, frequencies_on, positions_on, reshape_like, vector_on
+from verify.linear.positions import Forces, Loads, Numbers, frequencies_on, positions_on, reshape_like, vector_on
 from verify.linear.system import RESONANCE
 from verify.linear.time_basis import TimeBasis, check_supported
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.problem.supports import FIXED
 from verify.validation import check_integer
@@ -140,13 +140,13 @@ class ExactModel(BeamModel):
 
     def harmonic(
         self,
-        forces: Forces,
+        forces: Loads,
         frequency_hz: Numbers,
         *,
         devices: Device | Sequence[Device] = (),
         modal_damping: float = 0.0,
     ) -> HarmonicField:
-        """The exact steady field under harmonic point forces; see `BeamModel.harmonic`.
+        """The exact steady field under harmonic point forces and moments; see `BeamModel.harmonic`.
 
         Raises InputError, also for a modal damping, and ResonanceError.
         """
@@ -161,7 +161,7 @@ class ExactModel(BeamModel):
         self, displacements: Forces, frequency_hz: float, *, devices: Device | Sequence[Device] = ()
     ) -> HarmonicField:
         """The exact steady field under imposed harmonic displacements, amplitudes in m; see `BeamModel.imposed`."""
-        drives, stationed = self.check_stationed(displacements, devices)
+        drives, stationed = self.check_stationed(displacements, devices, PointForce)
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
         fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if FIXED[end].deflection]
@@ -175,12 +175,12 @@ class ExactModel(BeamModel):
 
     def _field(
         self,
-        forces: tuple[PointForce, ...],
+        forces: tuple[PointLoad, ...],
         devices: tuple[Device, ...],
         drives: tuple[PointForce, ...],
         frequency_hz: Numbers,
     ) -> HarmonicField:
-        """The field under forces (N) and imposed displacements (`drives`, m), with devices."""
+        """The field under loads (N, N m) and imposed displacements (`drives`, m), with devices."""
         beam, frequencies, one = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
         if (devices or drives) and not one:
             raise InputError("frequency_hz has several values: give one with devices or imposed displacements")
@@ -188,7 +188,7 @@ class ExactModel(BeamModel):
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
         self._check_resonance(frequencies, drives, devices)
         imposed = [(layout.station_at(drive.position / beam.length), phasor(drive)) for drive in drives]
-        loads = [(force.position, np.array([phasor(force)])) for force in forces]
+        loads = [(force.position, np.array([phasor(force)]), isinstance(force, PointMoment)) for force in forces]
         blocks = np.split(frequencies, range(_SWEPT_TOGETHER, len(frequencies), _SWEPT_TOGETHER))
         solved = [self._solve(layout, block, loads, imposed) for block in blocks]
 
@@ -213,11 +213,10 @@ class ExactModel(BeamModel):
             count=None,
             beam=beam,
             frequency_hz=float(frequencies[0]) if one else frequencies,
-            forces=(*constraint_forces, *forces, *reactions),
             shapes=read,
             theory=self.theory,
             rotation_shapes=(lambda x, d: read(x, d, ROTATION)) if self.theory == "timoshenko" else None,
-            couples=tuple(device.position for device in devices if device.turning),
+            **acting_on((*constraint_forces, *forces, *reactions), devices),
         )
 
     def receptance(self, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> ComplexArray:
@@ -229,7 +228,7 @@ class ExactModel(BeamModel):
         xi = vector_on("x", x, self.beam.length) / self.beam.length
         layout = self._stationed(tuple(at.tolist()))
         steady = np.flatnonzero(np.array(self._resonances(self.layout, frequencies)) == 0)
-        loads = list(zip(at.tolist(), np.eye(len(at)), strict=True))
+        loads = [(place, one, False) for place, one in zip(at.tolist(), np.eye(len(at)), strict=True)]
         responses = np.full((len(frequencies), len(at), len(xi)), np.nan, dtype=complex)
         for block in np.split(steady, range(_SWEPT_TOGETHER, len(steady), _SWEPT_TOGETHER)) if len(steady) else ():
             responses[block] = self._solve(layout, frequencies[block], loads)[0].read(xi, 0)
@@ -244,17 +243,23 @@ class ExactModel(BeamModel):
         self,
         layout: BeamLayout,
         frequencies: Array,
-        loads: Sequence[tuple[float, Array]],
+        loads: Sequence[tuple[float, Array, bool]],
         imposed: Sequence[tuple[int, complex]] = (),
     ) -> tuple[Motion, ComplexArray]:
-        """(motions in m under loads (position, (k,) N), forces in N at imposed displacements, (n_f, n_imposed, k))."""
+        """(motions in m under loads, forces in N at imposed displacements, (n_f, n_imposed, k)).
+
+        A load is (position, (k,) N or N m, whether it is a moment).
+        """
         division = divide(layout, self._omega2(frequencies), self.beam.loss_factor)
         unit, n_loads = self.beam.bending_stiffness / self.beam.length**3, len(loads[0][1]) if loads else 1
-        dtype = complex if any(np.iscomplexobj(values) for _, values in loads) else float
+        dtype = complex if any(np.iscomplexobj(values) for _, values, _ in loads) else float
         jumps = np.zeros((len(division.over), 4, n_loads), dtype=dtype)
-        for position, values in loads:
+        for position, values, moment in loads:
             ends = division.station_ends[:, layout.station_at(position / self.beam.length)]
-            jumps[ends, 3] += values / unit / division.sizes[:, 3:]
+            if moment:  # M jumps by the couple on the beam with the opposite sign
+                jumps[ends, 2] -= values / (unit * self.beam.length) / division.sizes[:, 2:3]
+            else:
+                jumps[ends, 3] += values / unit / division.sizes[:, 3:]
         try:
             states, forces = solve(division, jumps, imposed)
         except np.linalg.LinAlgError:
@@ -330,13 +335,17 @@ class ExactModel(BeamModel):
             rounds, rest = divmod(derivative, 4)
             return np.asarray(read(x.tobytes(), rest) * fourth(omegas[:, None], x) ** rounds)
 
-        def without_modes(forces: Sequence[PointForce], frequency_hz: float, loss: float) -> Callable[..., Any]:
+        def without_modes(forces: Sequence[PointLoad], frequency_hz: float, loss: float) -> Callable[..., Any]:
             field = ExactModel(replace(beam, loss_factor=loss)).harmonic(forces, frequency_hz)
-            loads = sum(phasor(one) * shapes(np.array([one.position]), 0)[:, 0] for one in forces)
+            orders = [int(isinstance(one, PointMoment)) for one in forces]
+            loads = sum(
+                phasor(one) * shapes(np.array([one.position]), order)[:, 0]
+                for one, order in zip(forces, orders, strict=True)
+            )
             part = loads / (omegas**2 * (1.0 + 1j * loss) - field.omega**2)
             return lambda x, derivative: field.shapes(x, derivative) - part @ shapes(x, derivative)
 
-        def tail(forces: Sequence[PointForce], frequency_hz: float, damping: Any) -> Callable[[Array, int], Any]:
+        def tail(forces: Sequence[PointLoad], frequency_hz: float, damping: Any) -> Callable[[Array, int], Any]:
             """The exact field less the part of the modes: the quasi-static response of the higher modes.
 
             This difference is finite at an undamped resonance of a mode, where the field does not exist. Its mean over
@@ -369,6 +378,7 @@ class ExactModel(BeamModel):
             omegas=omegas,
             shapes=shapes,
             loads=lambda position: shapes(np.array([position]), 0)[:, 0],
+            turning_loads=lambda position: shapes(np.array([position]), 1)[:, 0],
             edges=np.concatenate([np.zeros(1), *pieces]),
             degree=_TAYLOR_DEGREE,
             method=f"the first {n_modes} exact modes, higher modes quasi-static",

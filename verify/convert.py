@@ -38,24 +38,26 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
 
 def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
     """A sentence for every error; the constraints between fields are checked where each field is valid."""
-    table, inside = table_of(kind, data), list[str]()
+    tables, inside = structs_of(kind), list[str]()
+    if len(tables) > 1 and isinstance(data, dict):
+        tag, name = data.get("kind"), f"{where}.kind".lstrip(".")
+        if tag not in tables:
+            known = near_name(str(tag), tuple(tables)) if tag is not None else f"give one of {', '.join(tables)}"
+            yield f"{name} = {shown(tag)} is not known: {known}" if tag is not None else f"{name} is missing: {known}"
+            return
+        kind, tables = tables[tag], {tag: tables[tag]}
+        data = {key: value for key, value in data.items() if key != "kind"}
+    table = next(iter(tables.values()), None)
     lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
     if table is not None and isinstance(data, dict):
         fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
-        tag = table.__struct_config__.tag_field
-        if tag is not None and data.get(tag) != table.__struct_config__.tag:
-            tags = tuple(str(one.__struct_config__.tag) for one in structs_of(kind))
-            field = f"{where}.{tag}".lstrip(".")
-            given = f"{field} = {shown(data[tag])} is not known" if tag in data else f"{field} is missing"
-            yield f"{given}: {near_name(str(data.get(tag)), tags)}"
-            return
-        for key, value in ((key, value) for key, value in data.items() if key != tag):
+        for key, value in data.items():
             name = f"{where}.{key}".lstrip(".")
             if key in fields:
                 inside += _errors(value, fields[key].type, name)
             else:
                 inside.append(f"{name} is not a known key: {near_name(str(key), tuple(fields))}")
-        if not set(data) - set(fields) - {tag}:  # else a missing key may be the misspelt one
+        if not set(data) - set(fields):  # else a missing key may be the misspelt one
             missing = {k: type_name(field.type) for k, field in fields.items() if field.required and k not in data}
             gives = {key: f"one of {kind}" if " | " in kind else "it a value" for key, kind in missing.items()}
             inside += [f"{f'{where}.{key}'.lstrip('.')} is missing: give {give}" for key, give in gives.items()]
@@ -116,17 +118,15 @@ def metas_of(kind: Any) -> list[msgspec.Meta]:
     return [meta for arm in get_args(kind) for meta in metas_of(arm)] if get_origin(kind) in (Union, UnionType) else []
 
 
-def structs_of(kind: Any) -> list[type[msgspec.Struct]]:
-    """The structs among the members of a union."""
-    return [arm for arm in arms_of(kind) if isinstance(arm, type) and issubclass(arm, msgspec.Struct)]
+def table_of(kind: Any) -> type[msgspec.Struct] | None:
+    """The struct among the members of a union."""
+    return next(iter(structs_of(kind).values()), None)
 
 
-def table_of(kind: Any, data: Any = None) -> type[msgspec.Struct] | None:
-    """The struct among the members of a union; among several the one that the tag in `data` names, else the first."""
-    structs, tables = structs_of(kind), data if isinstance(data, dict) else {}
-    configs = [one.__struct_config__ for one in structs]
-    named = (s for s, one in zip(structs, configs, strict=True) if one.tag and tables.get(one.tag_field) == one.tag)
-    return next(named, structs[0] if structs else None)
+def structs_of(kind: Any) -> dict[str, type[msgspec.Struct]]:
+    """The structs among the members of a union by their tags, the values of `kind` in a table."""
+    tables = [arm for arm in arms_of(kind) if isinstance(arm, type) and issubclass(arm, msgspec.Struct)]
+    return {str(table.__struct_config__.tag): table for table in tables}
 
 
 def entry_of(kind: Any) -> Any:

@@ -295,11 +295,16 @@ class HermiteModel(DiscreteModel):
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """Cubics of all modes for motion in time, right-continuous at nodes."""
-        fields = {"shapes": self.line(vectors), "edges": self.mesh.nodes * self.unit, "degree": 3}
+        fields = {"shapes": self.line(vectors), "edges": self.edges, "degree": 3}
         if self.shear and self.beam.mass:
             at = np.array([mass.position for mass in self.beam.mass])
             fields["turns"] = lambda: (self.load_rows(at, rotation=True) @ vectors).T / self.unit
         return fields
+
+    @property
+    def edges(self) -> Array:
+        """Nodes, (N + 1,), m."""
+        return self.mesh.nodes * self.unit
 
     # --- Constants -----------------------------------------------------------------------------------------------
 

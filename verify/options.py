@@ -77,8 +77,10 @@ Start = Literal["rest", "steady"]
 """Initial state of a motion. rest: at rest, with the static deflection under a slider. steady: steady state under the
 drive."""
 
-DriveKind = Literal["force", "displacement"]
-"""Kind of a drive. force: imposed forces, N. displacement: imposed displacements, m."""
+DriveKind = Literal["force", "moment", "displacement", "voltage", "current"]
+DRIVE_UNITS = {"force": "N", "moment": "N m", "displacement": "m", "voltage": "V", "current": "A"}
+"""Kind of a drive. force, moment: imposed forces, N, and moments, N m. displacement: imposed displacements, m.
+voltage, current: of actuators, V and A."""
 
 Reference = Literal["closed form", "independent method", "published", "other code", "regression"]
 """Reference of a gate's expected value. closed form: a formula. independent method: another derivation. published: a

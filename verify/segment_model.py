@@ -300,7 +300,12 @@ class SegmentModel(ChainStructure):
             else line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
         )
         turns = rotations if self.beam.mass else None
-        return {"shapes": shapes, "edges": self.chain.nodes, "degree": 1 if raw else 3, "turns": turns}
+        return {"shapes": shapes, "edges": self.edges, "degree": 1 if raw else 3, "turns": turns}
+
+    @property
+    def edges(self) -> Array:
+        """Joints, (N + 1,), m."""
+        return self.chain.nodes
 
     # --- Buckling, order, waves ----------------------------------------------------------------------------------
 

@@ -191,6 +191,8 @@ def build_system(
     )
     loads = []
     for force in forces:
+        if not isinstance(force, PointForce):
+            raise InputError(f"forces has a {type(force).__name__}: a nonlinear chain takes a PointForce alone, give it")
         if force.position > system.length * (1.0 + 1e-12):
             raise InputError(f"force.position = {force.position!r} lies off the beam: give up to {system.length!r} m")
         if load == "lever":

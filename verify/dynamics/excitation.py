@@ -10,7 +10,7 @@ from verify.arrays import Array, ComplexArray
 from verify.errors import ResonanceError
 from verify.linear.field import phasor
 from verify.linear.time_basis import Ratio, TimeBasis
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointLoad
 from verify.validation import check_number
 
 RESONANCE = 1e-9
@@ -71,9 +71,9 @@ class Forced(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.asarray(self.forward.T @ psi + self.backward.T @ psi.conj())
 
 
-def modal_rows(basis: TimeBasis, forces: Sequence[PointForce], damping: Ratio) -> Rows:
+def modal_rows(basis: TimeBasis, forces: Sequence[PointLoad], damping: Ratio) -> Rows:
     """The modes of a basis under forces, with damping ratio `damping`, a number or (n,)."""
-    loads = sum((phasor(f) * basis.loads(f.position) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
+    loads = sum((phasor(f) * basis.modal_load(f) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
     damped = basis.omegas * np.sqrt(1.0 - np.square(damping))
     return Rows(
         rates=np.asarray(-damping * basis.omegas + 1j * damped),

@@ -14,7 +14,7 @@ from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS
 from verify.linear.surface import LEFT_BEAM, ContactRange
 from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointLoad, PointMoment
 
 if TYPE_CHECKING:
     from verify.linear.field import HarmonicField
@@ -154,14 +154,22 @@ def interleaved(amplitudes: ComplexArray) -> Array:
     return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), 2 * amplitudes.shape[1])
 
 
-def basis_of(beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline") -> TimeBasis:
-    """The free modes of a model by name. Raises InputError."""
-    return MODELS.named(model).build(beam, count).time_basis(modes=modes, line=line)
+def basis_of(
+    beam: Beam,
+    model: str,
+    count: int | None,
+    modes: int | None,
+    line: str = "spline",
+    loads: Sequence[PointLoad] = (),
+) -> TimeBasis:
+    """The free modes of a model by name, with nodes or elastic ends at moments among the loads. Raises InputError."""
+    moments = [load.position for load in loads if isinstance(load, PointMoment)]
+    return MODELS.named(model).build(beam, count).cut_at(moments).time_basis(modes=modes, line=line)
 
 
 def stages_from_rest(
     basis: TimeBasis,
-    forces: Sequence[PointForce],
+    forces: Sequence[PointLoad],
     omega: float,
     damping: Ratio,
     pieces: Sequence[Growth],
@@ -196,16 +204,14 @@ def steady_stage(
 ) -> Stage:
     """A beam in its steady state; the modes of `basis` start at rest and respond to contact forces."""
     beam, degree = harmonic.beam, 3
-    if harmonic.count is not None:
-        from verify.linear.mesh import divide
-
-        parts = divide(beam, harmonic.count)
-        edges = np.asarray(parts.nodes * parts.unit)
+    if harmonic.edges is not None:
+        edges = harmonic.edges
     else:
         softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
         cells = int(np.ceil(beam.length * abs(harmonic.wavenumber) * softest**0.25 / 0.3)) + 1
         jumps = [*np.cumsum([piece.length for piece in beam.pieces[:-1]])]
         jumps += [one.position for one in (*beam.attached, *harmonic.forces)]
+        jumps += harmonic.couples
         edges, degree = np.union1d(np.linspace(0.0, beam.length, cells + 1), jumps), EXACT_DEGREE
     if basis:
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
@@ -227,7 +233,7 @@ def _to_the_end(edges: Array, beam: Beam) -> Array:
 
 @lru_cache(maxsize=8)  # of all windows of a motor at a fixed position
 def damped_field(
-    model: str, count: int | None, beam: Beam, forces: tuple[PointForce, ...], hertz: float, damping: float | None
+    model: str, count: int | None, beam: Beam, forces: tuple[PointLoad, ...], hertz: float, damping: float | None
 ) -> "HarmonicField":
     """The steady field of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0

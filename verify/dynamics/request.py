@@ -15,10 +15,10 @@ from verify.dynamics.linear_system import Growth, Stage, cut
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown, written
 from verify.linear.mesh import part_counts
-from verify.linear.positions import forces_on, vector_on
+from verify.linear.positions import loads_on, vector_on
 from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
-from verify.problem.beam import Beam, PointForce, check_frequency
+from verify.problem.beam import Beam, PointLoad, check_frequency
 from verify.problem.slider import GRAVITY, Slider
 from verify.validation import as_tuple, check_integer, check_number, check_type, check_unmasked, python_scalar
 
@@ -43,7 +43,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A validated simulation, its time divided into steps."""
 
     beam: Beam
-    forces: tuple[PointForce, ...]
+    forces: tuple[PointLoad, ...]
     frequency_hz: float
     model: str
     count: int | None
@@ -128,7 +128,7 @@ def request_of(
     check_integer("samples", samples, 2, MOST_SAMPLES)
     check_damping(beam, modal_damping)
     kind, sliders = MODELS.named(model), () if slider is None else as_tuple("slider", slider, Slider)
-    driven = forces_on(beam, forces)
+    driven = loads_on(beam, forces, PointLoad)
     if not driven and not sliders:
         raise InputError("forces is empty: give at least one PointForce")
     feet, two_way = (bool(sliders) and sliders[0].contact is not None), (sliders and sliders[0].coupling == "two-way")

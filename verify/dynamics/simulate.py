@@ -13,7 +13,7 @@ from verify.dynamics.request import Envelope, Request, request_of
 from verify.dynamics.result import END, Motion, Statistics
 from verify.dynamics.slider_run import SliderRun
 from verify.dynamics.validity import margins_of
-from verify.linear.positions import Forces, Numbers
+from verify.linear.positions import Loads, Numbers
 from verify.linear.time_basis import TimeBasis
 from verify.options import Start
 from verify.problem.beam import Beam
@@ -26,7 +26,7 @@ Progress = Callable[[float], None]
 
 def simulate(
     beam: Beam,
-    forces: Forces,
+    forces: Loads,
     frequency_hz: float,
     duration: float,
     *,
@@ -56,8 +56,8 @@ def simulate(
     ----------
     beam : Beam
         Beam with supports and attachments.
-    forces : PointForce or sequence
-        Amplitudes in N, phases in degrees; may be empty with a slider.
+    forces : PointForce, PointMoment or sequence
+        Amplitudes in N or N m, phases in degrees; may be empty with a slider.
     frequency_hz : float
         Common frequency of the forces, Hz.
     duration : float
@@ -115,7 +115,7 @@ def simulate(
     basis = None
     if request.start == "rest" or request.two_way:
         line = request.sliders[0].line if request.sliders else "spline"
-        basis = basis_of(beam, model, count, request.modes, line)
+        basis = basis_of(beam, model, count, request.modes, line, request.forces)
     stages = _stages(request, basis)
     if not request.sliders:
         motion = _closed_form(request, stages, request.notes(basis))

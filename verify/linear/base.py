@@ -1,7 +1,7 @@
 """`BeamModel`, the interface of all models of a vibrating beam: a beam, a size, settings, and methods."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from typing import Any, ClassVar, Literal, TypeAlias
 
@@ -9,10 +9,10 @@ from verify.arrays import ComplexArray
 from verify.errors import InputError
 from verify.linear.field import HarmonicField, wavenumber
 from verify.linear.modes import Modes
-from verify.linear.positions import Forces, Numbers, forces_on
+from verify.linear.positions import Forces, Kind, Loads, Numbers, loads_on
 from verify.linear.time_basis import TimeBasis
 from verify.options import THEORIES
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.problem.device import Device
 from verify.validation import as_tuple, check_choice, check_integer, check_type
 
@@ -100,9 +100,9 @@ class BeamModel(ABC):
         raise self._has_no("modes")
 
     def harmonic(
-        self, forces: Forces, frequency_hz: Numbers, *, devices: Devices = (), modal_damping: float = 0.0
+        self, forces: Loads, frequency_hz: Numbers, *, devices: Devices = (), modal_damping: float = 0.0
     ) -> HarmonicField:
-        """The steady field under harmonic point forces, e^{+i omega t}, at one frequency or many.
+        """The steady field under harmonic point forces and moments, e^{+i omega t}, at one frequency or many.
 
         `devices` are impedances on the beam (one frequency only). Damping: the beam's loss factor, or `modal_damping`,
         the damping ratio of every mode. Raises InputError, and ResonanceError at an undamped resonance.
@@ -142,6 +142,10 @@ class BeamModel(ABC):
     def check_propagates(self, frequency_hz: float) -> None:  # noqa: B027
         """Raise NoFigureError for a frequency above the cut-off of the parts."""
 
+    def cut_at(self, positions: Iterable[float]) -> "BeamModel":
+        """The model with moments at positions, m: of a discrete model one with nodes or elastic ends there."""
+        return self
+
     def check_n_modes(self, n_modes: int) -> None:
         """Raise InputError unless the model has `n_modes` elastic modes."""
         check_integer("n_modes", n_modes, 1)
@@ -169,9 +173,11 @@ class BeamModel(ABC):
                         "sizes, youngs_modulus and density"
                     )
 
-    def check_stationed(self, forces: Forces, devices: Devices) -> tuple[tuple[PointForce, ...], Any]:
-        """(forces, devices) as tuples. Raises InputError for a position off the beam, no effect, and no forces."""
-        acting, stationed = forces_on(self.beam, forces), as_tuple("devices", devices, Device)
+    def check_stationed(
+        self, forces: Kind | Sequence[Kind], devices: Devices, kind: type[Kind] = PointLoad  # type: ignore[assignment]
+    ) -> tuple[tuple[Kind, ...], tuple[Device, ...]]:
+        """(loads, devices) as tuples. Raises InputError for a position off the beam, no effect, and no loads."""
+        acting, stationed = loads_on(self.beam, forces, kind), as_tuple("devices", devices, Device)
         for device in stationed:
             device.check_on(self.beam)
         if not acting and not any(device.amplitude for device in stationed):

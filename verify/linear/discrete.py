@@ -5,9 +5,9 @@ dimensionless: lengths in `unit`, stiffnesses in EI and masses in rho A unit.
 """
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import pi, sqrt
 from typing import Any
 
@@ -17,12 +17,12 @@ from msgspec import structs
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.linear.base import BeamModel, Devices
-from verify.linear.field import HarmonicField, phasor, point_force
+from verify.linear.field import HarmonicField, acting_on, phasor, point_force
 from verify.linear.modes import Modes
-from verify.linear.positions import Forces, Numbers, as_vector, frequencies_on, vector_on
+from verify.linear.positions import Forces, Loads, Numbers, as_vector, frequencies_on, vector_on
 from verify.linear.system import FEW, LOST, SUPERPOSED, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_supported
-from verify.problem.beam import PointForce
+from verify.problem.beam import PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
 from verify.validation import check_choice, check_number
@@ -80,6 +80,11 @@ class DiscreteModel(BeamModel):
     @abstractmethod
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """Fields `shapes`, `edges`, `degree` of `TimeBasis`, and `turns` where bodies do not follow the slope."""
+
+    @property
+    @abstractmethod
+    def edges(self) -> Array:
+        """Ends of the pieces on which deflections are polynomials, (pieces + 1,), m."""
 
     @property
     @abstractmethod
@@ -193,6 +198,7 @@ class DiscreteModel(BeamModel):
             beam=self.beam,
             omegas=np.sqrt(values) * self._omega_unit,
             loads=lambda position: np.asarray((self.load_rows(np.array([position])) @ vectors)[0]),
+            turning_loads=lambda x: np.asarray((self.load_rows(np.array([x]), rotation=True) @ vectors)[0] / self.unit),
             method="all modes",
             ratios=ratios,
             **self.time_line(vectors, line),
@@ -201,14 +207,14 @@ class DiscreteModel(BeamModel):
     # --- Harmonic motion -----------------------------------------------------------------------------------------
 
     def harmonic(
-        self, forces: Forces, frequency_hz: Numbers, *, devices: Devices = (), modal_damping: float = 0.0
+        self, forces: Loads, frequency_hz: Numbers, *, devices: Devices = (), modal_damping: float = 0.0
     ) -> HarmonicField:
-        """The steady field under harmonic point forces.
+        """The steady field under harmonic point forces and moments.
 
         Many frequencies: superposition of all modes, unless damping couples them.
         """
         acting, stationed = self.check_stationed(forces, devices)
-        if (cut := self._cut_at(stationed)) is not None:
+        if (cut := self._cut_for((*acting, *stationed))) is not self:
             field = cut.harmonic(acting, frequency_hz, devices=stationed, modal_damping=modal_damping)
             return structs.replace(field, beam=self.beam)
         check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
@@ -244,8 +250,8 @@ class DiscreteModel(BeamModel):
 
         Deflections of a chain have other weights than forces: the constraints are scaled to the deflections.
         """
-        drives, stationed = self.check_stationed(displacements, devices)
-        if (cut := self._cut_at(stationed)) is not None:
+        drives, stationed = self.check_stationed(displacements, devices, PointForce)
+        if (cut := self._cut_for(stationed)) is not self:
             return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
         if np.ndim(frequency_hz):
             raise InputError("frequency_hz has several values: give one frequency with imposed displacements")
@@ -299,27 +305,35 @@ class DiscreteModel(BeamModel):
             result[i] = self.line(response)(read, 0)
         return result
 
-    def _loads(self, forces: Sequence[PointForce], own: Sequence[PointForce]) -> ComplexArray:
-        """Dimensionless loads of forces and of active devices, (n, 1)."""
+    def _loads(self, acting: Sequence[PointLoad], own: Sequence[PointForce]) -> ComplexArray:
+        """Dimensionless loads of forces, moments and active devices, (n, 1)."""
         loads = np.zeros((self.n_unknowns, 1), dtype=complex)
-        for rows, acting in ((self.load_rows, forces), (self.device_rows, own)):
-            if acting:
-                weights = rows(np.array([force.position for force in acting])).T
-                loads += weights @ np.array([[phasor(force)] for force in acting])
+        moments = [load for load in acting if isinstance(load, PointMoment)]
+        forces = [load for load in acting if not isinstance(load, PointMoment)]
+        turning = partial(self.load_rows, rotation=True)
+        each = ((self.load_rows, forces, 1.0), (turning, moments, self.unit), (self.device_rows, own, 1.0))
+        for rows, some, lever in each:
+            if some:
+                weights = rows(np.array([load.position for load in some])).T
+                loads += weights @ np.array([[phasor(load) / lever] for load in some])
         return np.asarray(loads * (self.unit**3 / self.beam.bending_stiffness))
 
-    def _cut_at(self, devices: Sequence[Device]) -> "DiscreteModel | None":
-        """The model with negligible bodies at devices against rotation; None if it has bodies at all of them.
+    def cut_at(self, positions: Iterable[float]) -> "DiscreteModel":
+        """The model with negligible bodies at positions, m; itself if it has bodies at all of them.
 
-        Bodies place nodes, and elastic joints at the ends; a couple at any other position is of order 1 or 2.
+        Bodies place nodes, and elastic joints at the ends; a moment at any other position is of order 1 or 2.
         """
         beam, negligible = self.beam, 1e-15 * self.beam.mass_per_length * self.unit**3
         bodies = {mass.position for mass in beam.mass if mass.rotary_inertia}
-        positions = sorted({device.position for device in devices if device.turning} - bodies)
-        if not positions:
-            return None
-        mass = [PointMass(position=position, rotary_inertia=negligible) for position in positions]
+        missing = sorted(set(positions) - bodies)
+        if not missing:
+            return self
+        mass = [PointMass(position=position, rotary_inertia=negligible) for position in missing]
         return replace(self, beam=structs.replace(beam, mass=(*beam.mass, *mass)))  # type: ignore[type-var]
+
+    def _cut_for(self, acting: Sequence[PointLoad | Device]) -> "DiscreteModel":
+        """`cut_at` moments and devices against rotation."""
+        return self.cut_at(one.position for one in acting if getattr(one, "turning", isinstance(one, PointMoment)))
 
     def _many(self, omegas: Array) -> bool:
         """Whether all modes cost less than one factorisation per frequency."""
@@ -356,7 +370,7 @@ class DiscreteModel(BeamModel):
                 if at is not None]  # fmt: skip
 
     def _field(
-        self, parts: ComplexArray, frequency_hz: Any, forces: tuple[PointForce, ...], devices: Sequence[Device]
+        self, parts: ComplexArray, frequency_hz: Any, loads: tuple[PointLoad, ...], devices: Sequence[Device]
     ) -> HarmonicField:
         """The field for elastic and rigid-body unknowns (2, n_frequencies, n); of one frequency if a number.
 
@@ -386,6 +400,11 @@ class DiscreteModel(BeamModel):
 
             return read
 
+        def conjugate(load: PointLoad) -> complex:
+            at, turning = np.array([load.position]), isinstance(load, PointMoment)
+            row = self.load_rows(at, rotation=True) / self.unit if turning else self.device_rows(at)
+            return complex((row @ parts[:, 0].sum(axis=0))[0])
+
         moving = parts if self.stable_system.n_rigid else parts[:1]
         deflections, rotations = ([line(part.T) for part in moving] for line in (self.line, self.rotation_line))
         return HarmonicField(
@@ -393,9 +412,10 @@ class DiscreteModel(BeamModel):
             count=self.count,
             beam=self.beam,
             frequency_hz=float(frequency_hz) if one else as_vector("frequency_hz", frequency_hz),
-            forces=forces,
             shapes=joined(deflections, 0),
             theory=self.theory,
+            edges=self.edges,
             rotation_shapes=None if rotations[0] is None else joined(rotations, 1),
-            couples=tuple(device.position for device in devices if device.turning),
+            conjugate=conjugate,
+            **acting_on(loads, devices),
         )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from math import sqrt
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -10,7 +11,8 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 from verify.linear.positions import Numbers, positions_on, reshape_like
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
+from verify.problem.device import Device
 
 
 class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -34,8 +36,12 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     theory: str = "euler-bernoulli"
     rotation_shapes: Callable[[Array, int], ComplexArray] | None = None
     """Section rotation psi with the arguments of `shapes`, rad; None where it is the slope w'."""
+    edges: Array | None = None
+    """Ends of the pieces on which the deflection of a discrete model is a polynomial, m; None of the exact beam."""
     couples: tuple[float, ...] = ()
-    """Positions of devices against rotation, m, whose couples are not in `forces`."""
+    """Positions of moments and of devices against rotation, m, whose couples are not in `forces`."""
+    conjugate: Callable[[PointLoad], complex] | None = None
+    """`displacement`, single frequency; None where it is the deflection or the rotation of the section."""
 
     @property
     def omega(self) -> float:
@@ -62,6 +68,17 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def rotation(self, x: Numbers) -> ComplexArray:
         """Complex rotation of the section at x (m), of the same shape, rad: w' without shear. Raises InputError."""
         return reshape_like(self.rotations(positions_on("x", x, self.beam.length).ravel(), 0), x)
+
+    def displacement(self, load: PointLoad) -> complex:
+        """Displacement on which a load does work: deflection at a force, m, rotation at a moment, rad.
+
+        Single frequency only. Discrete models have the weights of a device there, so that displacements due to unit
+        loads of two devices or moments are reciprocal, and those at the load itself keep the order of the model.
+        """
+        if self.conjugate is not None:
+            return self.conjugate(load)
+        read = self.rotation if isinstance(load, PointMoment) else self.deflection
+        return complex(read(load.position)[0])
 
     def rotations(self, x: Array, derivative: int) -> ComplexArray:
         """Derivative of the section rotation at x (n,), (n,), rad per m^derivative.
@@ -132,7 +149,18 @@ def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
     def rotations(x: Array, derivative: int) -> ComplexArray:
         return np.asarray(sum(weight * field.rotations(x, derivative) for weight, field in parts))
 
-    return replace(first, shapes=shapes, rotation_shapes=None if first.rotation_shapes is None else rotations)
+    def conjugate(load: PointLoad) -> complex:
+        return sum(weight * field.displacement(load) for weight, field in parts)
+
+    turned = None if first.rotation_shapes is None else rotations
+    return replace(first, shapes=shapes, rotation_shapes=turned, conjugate=conjugate)
+
+
+def acting_on(loads: Sequence[PointLoad], devices: Sequence[Device]) -> dict[str, tuple[Any, ...]]:
+    """The fields `forces` and `couples` of a `HarmonicField` under loads with devices."""
+    forces = tuple(load for load in loads if isinstance(load, PointForce))
+    couples = [load.position for load in loads if isinstance(load, PointMoment)]
+    return {"forces": forces, "couples": (*couples, *(device.position for device in devices if device.turning))}
 
 
 def unit_response(beam: Beam, frequency_hz: float) -> float:
@@ -141,8 +169,8 @@ def unit_response(beam: Beam, frequency_hz: float) -> float:
     return float(length**3 / beam.bending_stiffness)
 
 
-def phasor(force: PointForce) -> complex:
-    """Complex amplitude of a force, N."""
+def phasor(force: PointLoad) -> complex:
+    """Complex amplitude of a load, N or N m."""
     return complex(force.amplitude * np.exp(1j * np.deg2rad(force.phase_deg)))
 
 

@@ -7,13 +7,17 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError, shown
-from verify.problem.beam import Beam, PointForce, check_frequency
+from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment, check_frequency
+from verify.problem.supports import check_free
 from verify.validation import as_tuple, check_position
 
 Numbers: TypeAlias = float | Sequence[float] | Array
 """A number, a list or an array."""
 Forces: TypeAlias = PointForce | Sequence[PointForce]
 """One force, or several."""
+Loads: TypeAlias = PointLoad | Sequence[PointLoad]
+"""One force or moment, or several."""
+Kind = TypeVar("Kind", bound=PointLoad)
 Values = TypeVar("Values", bound=np.ndarray[Any, Any])
 SLACK = 1e-12
 """Distance of a position beyond an end, relative to the length, that is rounding."""
@@ -58,11 +62,13 @@ def reshape_like(values: Values, x: Numbers) -> Values:
     return values if len(shape) < 2 else values.reshape(values.shape[:-1] + shape)
 
 
-def forces_on(beam: Beam, forces: Forces) -> tuple[PointForce, ...]:
-    """One or several forces as a tuple. Raises InputError for a position off the beam and for other types."""
-    acting = as_tuple("forces", forces, PointForce)
+def loads_on(beam: Beam, forces: Kind | Sequence[Kind], kind: type[Kind]) -> tuple[Kind, ...]:
+    """One or several loads of a kind as a tuple. Raises InputError for a position off the beam and for other types."""
+    acting = as_tuple("forces", forces, kind)
     for force in acting:
         check_position("force.position", force.position, beam.length)
+        if isinstance(force, PointMoment):
+            check_free("force", force.position, beam.length, beam.supports, {}, {"amplitude": force.amplitude})
     return acting
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
 from verify.linear.positions import Numbers, positions_on, reshape_like
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointLoad, PointMoment
 
 Ratio: TypeAlias = float | Array
 """Damping ratio of all modes, or of each mode, (n,)."""
@@ -31,13 +31,15 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     `Modes`: positive next to the left end."""
     loads: Callable[[float], Array]
     """Position in metres -> (n,), the load of every mode under a unit transverse force there."""
+    turning_loads: Callable[[float], Array]
+    """Position in metres -> (n,), the load of every mode under a unit moment there."""
     edges: Array
     """(pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`."""
     degree: int
     """Degree of the polynomials of the shapes."""
     method: str
     """Origin of the modes, for a summary."""
-    tail: Callable[[Sequence[PointForce], float, Ratio], Callable[[Array, int], ComplexArray]] | None = None
+    tail: Callable[[Sequence[PointLoad], float, Ratio], Callable[[Array, int], ComplexArray]] | None = None
     """Steady response of the truncated modes: (forces, frequency_hz, damping) -> (x, derivative) -> (len(x),) complex.
 
     None where no mode is truncated.
@@ -47,6 +49,10 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     None where all stiffness is lossy: half the loss factor for every mode."""
     turns: Callable[[], Array] | None = None
     """() -> (n, bodies): rotation of the bodies of `beam.mass`; None where it is the slope of the shapes there."""
+
+    def modal_load(self, load: PointLoad) -> Array:
+        """Load of every mode under a force or moment of unit amplitude, (n,)."""
+        return self.turning_loads(load.position) if isinstance(load, PointMoment) else self.loads(load.position)
 
     def body_turns(self) -> Array:
         """Rotation of the bodies of `beam.mass`, (n, bodies), 1/(sqrt(kg) m)."""

@@ -27,7 +27,7 @@ from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.linear.surface import section_at
 from verify.options import Start
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointLoad
 from verify.problem.slider import Slider
 
 Figure = Literal["force", "normal force", "fractions", "powers"]
@@ -53,7 +53,7 @@ class MotorCase(Struct, frozen=True, kw_only=True):
     """A slider with feet on a driven beam, and the model of the beam; fields as in `simulate`."""
 
     beam: Beam
-    forces: tuple[PointForce, ...]
+    forces: tuple[PointLoad, ...]
     frequency_hz: float
     slider: Slider
     model: str

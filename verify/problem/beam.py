@@ -188,19 +188,27 @@ def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
         )
 
 
-class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A transverse harmonic point force, amplitude cos(omega t + phase).
+class PointLoad(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A harmonic load at a point, amplitude cos(omega t + phase): a `PointForce` or a `PointMoment`.
 
-    Raises InputError for a value that is not finite and a negative position. Functions that take a beam and a force
+    Raises InputError for a value that is not finite and a negative position. Functions that take a beam and a load
     check that the position is on the beam.
     """
 
     position: Annotated[float, unit("m from the left end", ge=0)]
     """x, m from the left end."""
-    amplitude: Annotated[float, unit("N")] = 1.0
-    """N."""
+    amplitude: Annotated[float, unit("N, of a moment N m")] = 1.0
+    """N; of a moment N m."""
     phase_deg: Annotated[float, unit("degrees")] = 0.0
     """Phase, degrees (e^{+i omega t})."""
 
     def __post_init__(self) -> None:
         validate(self, "force")
+
+
+class PointForce(PointLoad, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A transverse harmonic point force; see `PointLoad`."""
+
+
+class PointMoment(PointLoad, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A harmonic point moment, positive in the sense of a positive slope w'; see `PointLoad`."""

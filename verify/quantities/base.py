@@ -114,10 +114,11 @@ class Quantity:
     def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
         """The value for arguments that are plain data. Raises InputError."""
         bound = self.bind(arguments)
-        if not self.devices and "beam" in self.reads and scene.devices:
+        if not self.devices and "beam" in self.reads and (also := scene.beside):
+            at = scene.devices[0].position if scene.devices else scene.shunts[0][0]
             raise InputError(
-                f"quantity = {self.name!r} does not model drive.device, and the scene has one at "
-                f"{scene.devices[0].position:g} m: leave drive.device out, or use a quantity of the steady wave"
+                f"quantity = {self.name!r} does not model {also}, and the scene has one at {at:g} m: leave {also} out, "
+                "or use a quantity of the steady wave"
             )
         length = scene.beam.length
         for name, x in arguments.items():

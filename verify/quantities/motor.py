@@ -34,12 +34,13 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         from verify.motor.steady_state import MotorCase
 
         opt.check_count(self.model, self.count)
-        opt.check_forces(scene, "a motor", self.theory)
+        opt.check_theory("a motor", self.theory)
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("slider.contact is missing: add [slider] with mass, mu and [slider.contact] to the scene")
         settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__ if name != "theory"}
-        forces, hertz = opt.DriveOptions().forces(scene), opt.drive_frequency(scene)
-        return MotorCase(beam=scene.beam, forces=forces, frequency_hz=hertz, slider=scene.slider, **settings)
+        hertz = opt.drive_frequency(scene)
+        there = scene.in_time(opt.DriveOptions().forces(scene), hertz)
+        return MotorCase(beam=there.beam, forces=there.loads, frequency_hz=hertz, slider=scene.slider, **settings)
 
 
 def cached(cache: "SolutionCache", function: Callable[..., Any], *arguments: Any) -> Any:

@@ -159,13 +159,17 @@ def drive_frequency(scene: Scene, frequency_hz: float | None = None) -> float:
     return float(hertz)
 
 
-def check_forces(scene: Scene, subject: str, theory: options.Theory = "euler-bernoulli") -> None:
-    """Raise InputError for a drive by displacements, or a theory that `subject` does not have."""
+def check_forces(scene: Scene, subject: str) -> None:
+    """Raise InputError for a drive that is not by forces."""
+    if scene.drive is not None and scene.drive.kind != "force":
+        raise InputError(f"drive.kind = {scene.drive.kind!r}: {subject} takes imposed forces, give kind = 'force'")
+
+
+def check_theory(subject: str, theory: options.Theory) -> None:
+    """Raise InputError for a theory that `subject` does not have."""
     if theory != "euler-bernoulli":
         both = "leave it out and compare wave.standing_wave_ratio by both theories"
         raise InputError(f"theory = {theory!r}: {subject} has Euler-Bernoulli theory alone, {both}")
-    if scene.drive is not None and scene.drive.kind != "force":
-        raise InputError(f"drive.kind = {scene.drive.kind!r}: {subject} takes imposed forces, give kind = 'force'")
 
 
 def not_default(group: msgspec.Struct, without: Sequence[str] = ()) -> Settings:

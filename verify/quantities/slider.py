@@ -72,7 +72,7 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     opt.check_count(by.model, by.count)
     if by.modes is not None and by.count is not None:
         raise InputError(f"modes = {by.modes!r} is for model = analytic: {by.model} uses all its modes, leave it out")
-    opt.check_forces(scene, "motion in time", by.theory)
+    opt.check_theory("motion in time", by.theory)
     start = by.start or (motion.start if motion else "rest")
     if soft is None:
         soft = motion.soft_start_periods if motion and start == "rest" else None
@@ -80,7 +80,8 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
     forces, hertz = by.forces(scene, by.force), opt.drive_frequency(scene, by.frequency_hz)
     own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "soft_start_periods": soft}
-    driven = {"beam": scene.beam, "forces": forces, "frequency_hz": hertz, "duration": time}
+    there = scene.in_time(forces, hertz)
+    driven = {"beam": there.beam, "forces": there.loads, "frequency_hz": hertz, "duration": time}
     return {**driven, **own, "modal_damping": damping}
 
 

@@ -8,6 +8,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options
+from verify.actuators.patch import Patch
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
@@ -54,12 +55,19 @@ def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: in
     of_case = (*opt.DriveOptions.__struct_fields__, "loss_factor", "drive", "model", "count")
     settings = dict(opt.check_settings(model, opt.not_default(options, without=of_case)))
     beam = scene.beam if options.loss_factor is None else replace(scene.beam, loss_factor=options.loss_factor)
+    kind = options.drive or (scene.drive.kind if scene.drive else "force")
+    forces, actuator = options.forces(scene), scene.drive.actuator if scene.drive else None
+    if isinstance(actuator, Patch) and (scene.shunts or kind in ("voltage", "current")):
+        driven = [force.position for force in forces] if kind in ("voltage", "current") else []
+        actuator, beam = actuator.bonded(beam), actuator.on(beam, [*driven, *(x for x, _ in scene.shunts)])
     return DrivenCase(
         model=MODELS.named(model).build(beam, count, **settings),
-        forces=options.forces(scene),
+        forces=forces,
         frequency_hz=opt.drive_frequency(scene, options.frequency_hz),
-        kind=options.drive or (scene.drive.kind if scene.drive else "force"),
+        kind=kind,
         devices=tuple(scene.devices),
+        actuator=actuator,
+        shunts=scene.shunts,
     )
 
 
@@ -133,9 +141,9 @@ def power_imbalance(
     """Relative residual of the power balance: left force - losses up to the middle of the window - energy flux."""
     from verify.travelling_wave import power_imbalance
 
-    if any(device.turning for device in scene.devices):
-        raise InputError("drive.device: a power balance takes transverse devices, leave rotational terms out")
     case = driven_case(scene, options)
+    if case.places[1]:
+        raise InputError("drive.device: a power balance takes transverse devices and drives, leave rotational terms out")
     return power_imbalance(driven_field(scene, cache, options), measured(case, cache, window))
 
 
@@ -289,6 +297,8 @@ def _reflection_on_beam(scene: Scene, x: float, impedance: complex, hertz: float
     from verify.travelling_wave import measure, middle_half
 
     opt.check_forces(scene, "an absorbing device")
+    if scene.shunts:
+        raise InputError("drive.shunt: the reflection of a device is computed without shunts, leave them out")
     tolerance = 1e-9 * scene.beam.length
     forces = [force for force in scene.forces if abs(force.position - x) > tolerance]
     devices = [one for one in scene.devices if abs(one.position - x) > tolerance]

@@ -6,6 +6,7 @@ Lengths along the beam are to scale. Heights are not; sections keep their order 
 from typing import Any
 
 from verify.formatting import with_unit
+from verify.options import DRIVE_UNITS
 from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
 
@@ -27,7 +28,7 @@ def beam_figure(scene: Any) -> Figure:
     sketch = _Sketch(scene, MatplotlibFigure().subplots())
     beam = scene.beam
     counts = {"sections": beam.section, "masses": beam.mass, "springs": beam.spring, "forces": scene.forces}
-    counts |= {"devices": scene.devices, "sliders": (scene.slider,) if scene.slider else ()}
+    counts |= {"devices": scene.devices, "shunts": scene.shunts, "sliders": (scene.slider,) if scene.slider else ()}
     there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
     return Figure(
         id="beam",
@@ -68,7 +69,11 @@ class _Sketch:
         for device in scene.devices:
             words = [f"{value:.4g} {u}" for name, u in DEVICE_UNITS.items() if (value := getattr(device, name))]
             self.dashpot(self.at(device.position), self.half(device.position), words)
-        unit = "m" if scene.drive is not None and scene.drive.kind == "displacement" else "N"
+        for x, load in scene.shunts:
+            parts = (("resistance", "Ω"), ("inductance", "H"), ("capacitance", "F"))
+            words = [f"{value:.4g} {u}" for name, u in parts if (value := getattr(load, name)) is not None]
+            self.dashpot(self.at(x), self.half(x), words)
+        unit = DRIVE_UNITS[scene.drive.kind] if scene.drive is not None else "N"
         for force in scene.forces:
             phase = f", {force.phase_deg:g}°" if force.phase_deg else ""
             x, y = self.at(force.position), self.half(force.position) + self.load(scene, force.position)

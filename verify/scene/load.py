@@ -155,7 +155,7 @@ def type_at(key: str) -> Any:
         if (entry := entry_of(kind)) is not None:
             kind = entry  # the step is an id or a number
             continue
-        fields = (field for table in structs_of(kind) for field in msgspec.structs.fields(table))
+        fields = [field for table in structs_of(kind).values() for field in msgspec.structs.fields(table)]
         kind = next((field.type for field in fields if field.encode_name == step), None)
     return kind
 

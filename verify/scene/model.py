@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from math import inf
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
+from verify.actuators.patch import Patch
+from verify.actuators.shunt import Load
 from verify.actuators.transducers import Transducer
 from verify.errors import InputError, raise_all
 from verify.options import DriveKind, Reference
@@ -17,6 +19,9 @@ from verify.problem.supports import check_free
 from verify.studies.base import studies_of
 from verify.validation import check_number, unit
 
+if TYPE_CHECKING:
+    from verify.actuators.on_beam import BeamInTime
+
 
 class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A point force, positioned from one end of the beam."""
@@ -26,7 +31,7 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     measured_from: Literal["left", "right"] = "left"
     """End of the beam from which `position` is measured."""
     amplitude: float = 1.0
-    """N, or m where the drive imposes displacements."""
+    """N, N m, m, V or A by the kind of the drive."""
     phase_deg: float = 0.0
     """Phase of cos(omega t + phase), degrees."""
 
@@ -51,6 +56,20 @@ class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True)
         return device
 
 
+class SceneShunt(Load, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A passive actuator with an electrical load, of the same design as the drive's, positioned from one end."""
+
+    position: Annotated[float, unit("m")]
+    """Of its tip, or of the middle of a patch, m from the end that `measured_from` names."""
+    measured_from: Literal["left", "right"] = "left"
+    """End of the beam from which `position` is measured."""
+
+    def on(self, beam: Beam) -> tuple[float, Load]:
+        """Position from the left end, m, and load. Raises InputError for a position off the beam."""
+        load = Load(**{name: getattr(self, name) for name in Load.__struct_fields__})
+        return _from_left("drive.shunt.position", self.position, self.measured_from, beam), load
+
+
 def _from_left(field: str, position: float, side: str, beam: Beam) -> float:
     """Distance from the left end of a position measured from one end. Raises InputError off the beam."""
     check_number(field, position, "metres")
@@ -60,23 +79,28 @@ def _from_left(field: str, position: float, side: str, beam: Beam) -> float:
 
 
 class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Harmonic excitation at one frequency: point forces, or displacements imposed at points."""
+    """Harmonic excitation at one frequency: forces, moments or displacements at points, or actuators."""
 
     frequency_hz: Annotated[float, unit("Hz")]
     """Hz."""
     kind: DriveKind = "force"
-    """Meaning of the amplitudes: N, or m. The paper does not say; its frequency rule fits forces."""
+    """Meaning of the amplitudes: N, N m, m, V or A. The paper does not say; its frequency rule fits forces."""
     force: tuple[SceneForce, ...] = ()
-    """Point forces, or imposed displacements."""
+    """Point forces, moments, imposed displacements, or voltages or currents of actuators, by `kind`."""
+    actuator: Transducer | Patch | None = None
+    """Design of all actuators, for `kind` voltage or current and for shunts: stack, bar-33, bar-31, langevin, patch."""
+    shunt: tuple[SceneShunt, ...] = ()
+    """Passive actuators with an electrical load: in the steady state only."""
     device: tuple[SceneDevice, ...] = ()
     """Impedances on the beam beside the forces, absorbing or driving: in the steady state only."""
-    actuator: Transducer | None = None
-    """Piezoelectric transducer, whose electrical quantities are those named actuator."""
 
     def __post_init__(self) -> None:
         check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)
-        if self.device and self.kind != "force":
+        if self.device and self.kind == "displacement":
             raise InputError(f"drive.kind = {self.kind!r}: with a drive.device the drive is by forces, give 'force'")
+        if self.actuator is None and (self.shunt or self.kind in ("voltage", "current")):
+            cause = "drive.shunt" if self.shunt else f"drive.kind = {self.kind!r}"
+            raise InputError(f"drive.actuator is missing: {cause} needs the design of an actuator, give it a kind")
 
 
 class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -228,18 +252,20 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         try:
             if self.drive is not None:
                 check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
-            forces, _ = self.forces, self.devices
-            for force in forces if self.drive is not None and self.drive.kind == "force" else ():
-                supports, amplitude = self.beam.supports, {"amplitude": force.amplitude}
-                check_free("drive.force", force.position, self.beam.length, supports, amplitude)
+            forces, _, _ = self.forces, self.devices, self.shunts
+            for force in forces if self.drive is not None and self.drive.kind != "displacement" else ():
+                amplitude, patched = {"amplitude": force.amplitude}, isinstance(self.drive.actuator, Patch)
+                turning = self.drive.kind == "moment" or (patched and self.drive.kind != "force")
+                acts = ({}, amplitude) if turning else (amplitude, {})
+                check_free("drive.force", force.position, self.beam.length, self.beam.supports, *acts)
             if self.slider is not None:
                 self.slider.initial_position(self.beam)
         except InputError as error:
             yield from error.sentences
             return
         for name, study in (self.studies | dict(studies_of(self))).items():
-            if self.devices and name in self.studies and not study.devices:
-                yield f"drive.device: [{name}] does not model it, leave out [{name}] or drive.device"
+            if (also := self.beside) and name in self.studies and not study.devices:
+                yield f"{also}: [{name}] does not model it, leave out [{name}] or {also}"
             try:
                 study.check(self)
             except InputError as error:
@@ -259,6 +285,23 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def devices(self) -> tuple[Device, ...]:
         """Devices of the drive in the beam's coordinate."""
         return tuple(device.on(self.beam) for device in self.drive.device) if self.drive else ()
+
+    @property
+    def shunts(self) -> "tuple[tuple[float, Load], ...]":
+        """(position from the left end, m, load) of the drive's shunts."""
+        return tuple(shunt.on(self.beam) for shunt in self.drive.shunt) if self.drive else ()
+
+    @property
+    def beside(self) -> str:
+        """The field of the drive that only quantities of the steady wave model: a device or a shunt; else empty."""
+        return "drive.device" if self.devices else "drive.shunt" if self.shunts else ""
+
+    def in_time(self, forces: tuple[PointForce, ...], frequency_hz: float) -> "BeamInTime":
+        """Beam and loads of the drive in time, with these amplitudes. Raises InputError for displacements."""
+        from verify.actuators.on_beam import beam_in_time
+
+        kind, actuator = (self.drive.kind, self.drive.actuator) if self.drive else ("force", None)
+        return beam_in_time(self.beam, kind, forces, actuator, frequency_hz)
 
     @property
     def bare(self) -> "Scene":

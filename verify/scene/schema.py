@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from verify.convert import description_of, structs_of
+from verify.convert import description_of, entry_of, structs_of
 from verify.errors import InputError, near_name
 from verify.quantities.base import QUANTITIES
 from verify.scene.model import Scene
@@ -26,10 +26,11 @@ def sections() -> dict[str, type[msgspec.Struct]]:
 
     def add(kind: type[msgspec.Struct], where: str) -> None:
         for field in msgspec.structs.fields(kind):
-            entry = next((arg for arg in getattr(field.type, "__args__", ()) if structs_of(arg)), field.type)
-            tables = structs_of(field.type) or structs_of(entry)
-            for table in tables:  # a union's by their tags: drive.actuator.stack
-                name = where + field.encode_name + (f".{table.__struct_config__.tag}" if len(tables) > 1 else "")
+            tables = structs_of(entry_of(field.type) or field.type)
+            for tag, table in tables.items():
+                if table in found.values():  # a material of several actuators
+                    continue
+                name = f"{where}{field.encode_name}" + (f".{tag}" if len(tables) > 1 else "")
                 found[name] = table
                 add(table, f"{name}.")
 
@@ -54,8 +55,6 @@ def scene_schema(section: str = TOP) -> dict[str, Any]:
         for key, meaning in descriptions(kind).items():
             own = table["properties"][key]
             table["properties"][key] = {**({"allOf": [own]} if "$ref" in own else own), "description": meaning}
-        if (tag := kind.__struct_config__.tag_field) is not None:
-            table["properties"][tag]["description"] = "Kind of this table."
     for name in ("Gate", "Claim"):
         tables[name]["properties"]["quantity"]["enum"] = sorted(QUANTITIES)
     top = tables["Scene"]["properties"]

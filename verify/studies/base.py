@@ -60,7 +60,7 @@ def studies_of(scene: "Scene") -> list[tuple[str, Study]]:
         found.pop("motion", None)
     if scene.claim:
         found.setdefault("claims", STUDIES["claims"]())
-    if "wave" not in found and len(scene.forces) == 2 and not scene.devices:
+    if "wave" not in found and len(scene.forces) == 2 and not scene.beside:
         wave = STUDIES["wave"]()
         with suppress(InputError):
             wave.check(scene)

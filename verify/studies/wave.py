@@ -55,10 +55,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         if len(scene.forces) != 2 or scene.drive is None:
             raise InputError("wave: the study needs a [drive] with two forces, add them")
-        MODELS[EXACT].build(scene.beam)
+        case = driven_case(scene, FieldOptions())
         positions, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
         try:
-            check_span(scene.beam, positions, middle_half(scene.beam))
+            check_span(case.beam, [*positions, *case.places[0]], middle_half(case.beam), case.places[1])
             check_waves(scene.beam, frequency, middle_half(scene.beam))
         except WindowError as error:
             raise WindowError(
@@ -88,11 +88,11 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for model, count in [(EXACT, None), *((model, count) for model in models for count in counts)]:
             row: Row = {"name": sized_title(model, count), "model": model, "N": count}
             progress(row["name"])
-            rows.append(row | _waves(replace(exact, model=MODELS[model].build(scene.beam, count)), cache))
+            rows.append(row | _waves(replace(exact, model=MODELS[model].build(exact.beam, count)), cache))
         fields = {EXACT: driven(exact, cache)}
         for model in models:
-            fields[model] = driven(replace(exact, model=MODELS[model].build(scene.beam, n)), cache)
-        other = replace(exact, kind="displacement" if exact.kind == "force" else "force")
+            fields[model] = driven(replace(exact, model=MODELS[model].build(exact.beam, n)), cache)
+        other = replace(exact, kind="displacement" if exact.kind == "force" and not exact.shunts else "force")
         direction = -1 if rows[0]["drive"]["crest_speed"] > 0.0 else 1  # crests move against the wave
         ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact, direction=direction)
 

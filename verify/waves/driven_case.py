@@ -1,16 +1,21 @@
 """A driven beam: model, drive and devices; superposition of the waves of its actuators."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
+from verify.actuators.on_beam import ActuatedBeam, Mounted, on_beam
+from verify.actuators.patch import Patch
+from verify.actuators.port import Actuator
+from verify.actuators.shunt import Load
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.linear.base import BeamModel
-from verify.linear.field import HarmonicField, unit_response, wavenumber
-from verify.problem.beam import Beam, PointForce
+from verify.linear.field import HarmonicField, phasor, unit_response, wavenumber
+from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.waves.two_waves import ROUNDING, wave_basis, window_rule, zero_field
 from verify.waves.window import Window, check_span, check_waves
@@ -20,26 +25,41 @@ if TYPE_CHECKING:
 
 
 class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
-    """One model under harmonic forces, or imposed displacements, at one frequency.
+    """One model under harmonic loads of one kind at one frequency, with devices and shunted actuators.
 
-    Raises InputError for a device off the beam or on a support, and for active devices with imposed displacements.
+    Raises InputError for a device off the beam or on a support, for active devices with a drive of another kind than
+    force, for shunts with imposed displacements, and for voltages or currents without an actuator.
     """
 
     model: BeamModel
     forces: tuple[PointForce, ...]
-    """Amplitudes in N, or in m where `kind` is displacement."""
+    """Amplitudes in N, N m, m, V or A by `kind`."""
     frequency_hz: float
     kind: str = "force"
     devices: tuple[Device, ...] = ()
+    actuator: Actuator | None = None
+    """Of voltages, currents and shunts; patches are part of the model's beam."""
+    shunts: tuple[tuple[float, Load], ...] = ()
+    """(position, m, electrical load) of passive actuators."""
 
     def __post_init__(self) -> None:
         for device in self.devices:
             device.check_on(self.beam)
             if device.amplitude and self.kind != "force":
+                imposed = {"displacement": "imposed displacements"}.get(self.kind, f"a drive by {self.kind}")
                 raise InputError(
-                    f"drive.kind = {self.kind!r}: a device has no force under imposed displacements, leave "
-                    "drive.device.amplitude out"
+                    f"drive.kind = {self.kind!r}: a device has no force under {imposed}, leave drive.device.amplitude "
+                    "out"
                 )
+        if self.shunts and self.kind == "displacement":
+            raise InputError("drive.kind = 'displacement': shunts take another kind, give 'force' or 'voltage'")
+        if self.actuator is None and (self.shunts or self.electrical):
+            raise InputError(f"drive.kind = {self.kind!r} and shunts need a drive.actuator: give one, or kind = 'force'")
+
+    @property
+    def electrical(self) -> bool:
+        """Whether the amplitudes are voltages or currents."""
+        return self.kind in ("voltage", "current")
 
     @property
     def beam(self) -> Beam:
@@ -59,8 +79,40 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     def field(self, forces: tuple[PointForce, ...], frequency_hz: float) -> HarmonicField:
         """The field under other forces (displacements) at another frequency. Raises InputError."""
         self.model.check_propagates(frequency_hz)
-        solve = self.model.harmonic if self.kind == "force" else self.model.imposed
-        return solve(forces, frequency_hz, devices=self.passive)
+        if self.kind == "displacement":
+            return self.model.imposed(forces, frequency_hz, devices=self.passive)
+        if self.electrical or self.shunts:
+            return self.actuated(forces, frequency_hz).field
+        return self.model.harmonic(self._loads(forces), frequency_hz, devices=self.passive)
+
+    def actuated(self, forces: tuple[PointForce, ...], frequency_hz: float) -> ActuatedBeam:
+        """The field and the ports of the actuators, driven ones first. Raises InputError."""
+        mounted = [*self._driven(forces), *self._shunted]
+        loads = () if self.electrical else self._loads(forces)
+        return on_beam(self.model, mounted, frequency_hz, forces=loads, devices=self.passive)
+
+    @property
+    def places(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Positions of transverse forces, and of moments, of the drive, devices and shunts, m."""
+        loads = [*(() if self.electrical else self._loads(self.acting))]
+        loads += [load for one in (*self._driven(self.acting), *self._shunted) for load in one.loads(self.beam)]
+        turning = [load.position for load in loads if isinstance(load, PointMoment)]
+        across = [load.position for load in loads if isinstance(load, PointForce)]
+        across += [device.position for device in self.passive if device.across]
+        return tuple(across), (*turning, *(device.position for device in self.passive if device.turning))
+
+    def _loads(self, forces: Sequence[PointForce]) -> tuple[PointLoad, ...]:
+        return tuple(PointMoment(**asdict(one)) for one in forces) if self.kind == "moment" else tuple(forces)
+
+    def _driven(self, forces: Sequence[PointForce]) -> list[Mounted]:
+        if self.actuator is None or not self.electrical:
+            return []
+        return [Mounted(actuator=self.actuator, position=f.position, **{self.kind: phasor(f)}) for f in forces]
+
+    @property
+    def _shunted(self) -> list[Mounted]:
+        assert self.actuator is not None or not self.shunts
+        return [Mounted(actuator=self.actuator, position=x, load=load) for x, load in self.shunts]  # type: ignore[arg-type]
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber in the model, 1/m: by its discrete dispersion if known, else that of the beam.
@@ -81,7 +133,7 @@ def driven(case: DrivenCase, cache: "SolutionCache") -> HarmonicField:
 
 
 class UnitWaves(msgspec.Struct, frozen=True, eq=False):
-    """The two waves in a window per unit force (displacement) of each of n_a actuators, at n frequencies.
+    """The two waves in a window per unit amplitude of each of n_a actuators, at n frequencies.
 
     NaN at a frequency without a fit: an undamped resonance, beyond the cut-off, or a window that is too short.
     """
@@ -92,9 +144,9 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
     k: ComplexArray
     """(n,), 1/m."""
     forward: ComplexArray
-    """A+ at the middle of the window, (n, n_a), m/N or m/m."""
+    """A+ at the middle of the window, (n, n_a), m per unit of the drive's amplitudes."""
     backward: ComplexArray
-    """A- at the middle of the window, (n, n_a), m/N or m/m."""
+    """A- at the middle of the window, (n, n_a), m per unit of the drive's amplitudes."""
     missing: tuple[NoFigureError, ...]
     """The reason for each frequency without waves."""
 
@@ -104,8 +156,8 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
         NaN where the motion is within rounding. Raises NoFigureError where it is at all frequencies.
         """
         scale = np.ones((len(self.k), 1))
-        if self.case.kind == "force":
-            scale[:, 0] = [unit_response(self.case.beam, float(f)) for f in self.frequencies_hz]
+        if self.case.kind != "displacement":
+            scale[:, 0] = [_unit_scale(self.case, float(f)) for f in self.frequencies_hz]
         forward, backward = ((wave[:, None, :] @ drives)[:, 0, :] for wave in (self.forward, self.backward))
         moves = np.maximum(abs(forward), abs(backward)) > ROUNDING * scale * abs(drives).sum(axis=-2)
         if not moves.any():
@@ -116,8 +168,8 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
 def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitWaves:
     """Unit waves of a case's actuators, including active devices. Raises InputError for an invalid window."""
     beam, theory, highest = case.beam, case.model.theory, float(frequencies_hz.max())
-    positions, couples = [force.position for force in case.acting], [d.position for d in case.passive if d.turning]
-    check_span(beam, [*positions, *(d.position for d in case.passive if d.across)], window, couples, theory)
+    positions, (across, turning) = [force.position for force in case.acting], case.places
+    check_span(beam, across if case.kind == "force" else [*across, *positions], window, turning, theory)
     rule = window_rule(window, wavenumber(beam, highest, theory).real)
     responses = _unit_responses(case, frequencies_hz, positions, rule.x)
     k, missing = np.full(len(frequencies_hz), np.nan, dtype=complex), list[NoFigureError]()
@@ -142,9 +194,24 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
     return UnitWaves(case, frequencies_hz, k, forward, backward, tuple(missing))
 
 
+def _unit_scale(case: DrivenCase, hertz: float) -> float:
+    """Scale of the deflection per unit amplitude, for comparison with rounding."""
+    response, omega = unit_response(case.beam, hertz), 2.0 * np.pi * hertz
+    if case.kind == "moment":
+        return response * abs(wavenumber(case.beam, hertz))
+    if case.actuator is None or not case.electrical:
+        return response
+    port = case.actuator.port(omega)
+    factor, own = (port.force_factor, port.short_impedance)
+    if case.kind == "current":
+        factor, own = factor / port.blocked_admittance, port.loaded_impedance()
+    turns = abs(wavenumber(case.beam, hertz)) if isinstance(case.actuator, Patch) else 1.0
+    return float(abs(factor) * turns / (1.0 / response + omega * abs(own)))
+
+
 def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[float], x: Array) -> ComplexArray:
     """Deflection at x, (n, n_a, len(x)), per unit force, or displacement with all others zero; NaN at resonances."""
-    if case.kind == "force" and not case.passive:
+    if case.kind == "force" and not case.passive and not case.shunts:
         return case.model.receptance(positions, frequencies_hz, x)
     responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
     for i, hertz in enumerate(frequencies_hz.tolist()):

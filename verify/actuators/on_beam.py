@@ -1,0 +1,246 @@
+"""Actuators on a driven beam: superposition of the fields of their mechanical ports at one frequency.
+
+Each port, a force at a point or the pair of moments at the ends of a patch, has a field of the beam under its unit load.
+These fields have the mobilities M between the ports, v = v0 + M F, where v0 is due to other loads. The electrical
+condition reduces a two-port F = B V - Z v, I = Y V + B v to F = F0 - Z_e v:
+
+    voltage V:  F0 = B V,      Z_e = Z
+    current I:  F0 = (B/Y) I,  Z_e = Z + B^2/Y
+    load Y_el:  F0 = 0,        Z_e = Z + B^2/(Y + Y_el)
+
+hence (1 + Z_e M) F = F0 - Z_e v0. A very stiff actuator imposes the displacement; its velocity, a difference of large
+terms, loses as many digits as Z_e M has.
+"""
+
+from collections.abc import Sequence
+from math import pi
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec.structs import asdict, replace
+
+from verify.actuators.patch import Patch
+from verify.actuators.port import Actuator, Port
+from verify.actuators.shunt import Load
+from verify.errors import InputError, ResonanceError
+from verify.linear.base import BeamModel, Devices
+from verify.linear.field import HarmonicField, combined, phasor, point_force
+from verify.linear.positions import Loads, frequencies_on, loads_on
+from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
+from verify.problem.device import Device
+from verify.problem.point_attachments import PointMass, PointSpring
+from verify.validation import as_tuple, check_position
+
+QUASI_STATIC = 0.05
+"""Largest relative error of an actuator's reduction to a spring and a mass."""
+
+
+class Mounted(msgspec.Struct, frozen=True, kw_only=True):
+    """An actuator on a beam, with one electrical condition: a voltage, a current (0: open electrodes) or a load."""
+
+    actuator: Actuator
+    position: float
+    """Of its tip, or of the middle of a patch, m from the left end."""
+    voltage: complex | None = None
+    """Amplitude, V; 0: short-circuited electrodes."""
+    current: complex | None = None
+    """Amplitude of the current into the actuator, A."""
+    load: Load | None = None
+    """Electrical load."""
+
+    def __post_init__(self) -> None:
+        if sum(one is not None for one in (self.voltage, self.current, self.load)) != 1:
+            raise InputError(f"actuator at position = {self.position!r} m: give one of voltage, current and load")
+
+    def loads(self, beam: Beam) -> tuple[PointLoad, ...]:
+        """The load of its mechanical port for F = 1. Raises InputError off the beam, and at a fixed point of it."""
+        if not isinstance(self.actuator, Patch):
+            check_position("actuator.position", self.position, beam.length)
+            Device(position=self.position, amplitude=1.0).check_on(beam)
+            return (PointForce(position=self.position),)
+        half = 0.5 * self.actuator.length
+        ends = self.position - half, self.position + half
+        for end in ends:
+            check_position("actuator.position, an end of the patch,", end, beam.length)
+        return PointMoment(position=ends[1]), PointMoment(position=ends[0], amplitude=-1.0)
+
+    def source(self, port: Port, omega: float) -> tuple[complex, complex]:
+        """(F0, Z_e) of F = F0 - Z_e v."""
+        if self.voltage is not None:
+            return port.force_factor * self.voltage, port.short_impedance
+        if self.current is not None:
+            return port.force_factor / port.blocked_admittance * self.current, port.loaded_impedance()
+        return 0.0, port.loaded_impedance(self.load.admittance(omega))
+
+
+class ActuatorState(msgspec.Struct, frozen=True, kw_only=True):
+    """Complex amplitudes at the ports of an actuator, and its mean powers."""
+
+    voltage: complex
+    """V."""
+    current: complex
+    """A, into the actuator."""
+    force: complex
+    """N on the beam; N m of a patch."""
+    velocity: complex
+    """m/s of the beam; rad/s of a patch."""
+    power_in: float
+    """Electrical power, W; negative where the actuator returns power."""
+    power_out: float
+    """Mechanical power to the beam, W; negative where the beam drives the actuator."""
+    loss: float
+    """W, by the losses of the ports; power_in = power_out + loss."""
+
+
+class ActuatedBeam(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A beam with actuators in its steady state."""
+
+    field: HarmonicField
+    actuators: tuple[ActuatorState, ...]
+
+    @property
+    def absorbed(self) -> float:
+        """Power of the actuators to the beam, W: what beam and devices dissipate less the power of other loads."""
+        return sum(one.power_out for one in self.actuators)
+
+
+def on_beam(
+    model: BeamModel,
+    actuators: Mounted | Sequence[Mounted],
+    frequency_hz: float,
+    *,
+    forces: Loads = (),
+    devices: Devices = (),
+) -> ActuatedBeam:
+    """The steady field of a beam with actuators, under other harmonic loads and with passive devices.
+
+    Raises InputError for an actuator off the beam, two at one place or an active device, and ResonanceError at an
+    undamped resonance of the beam without its actuators.
+    """
+    mounted, others = as_tuple("actuators", actuators, Mounted), loads_on(model.beam, forces, PointLoad)
+    passive = as_tuple("devices", devices, Device)
+    if any(device.amplitude for device in passive):
+        raise InputError("devices: a device beside actuators has no force of its own, give a PointForce")
+    loads = [one.loads(model.beam) for one in mounted]
+    if len(set(loads)) < len(loads):
+        raise InputError("actuators: two are at one position, move one")
+    omega = 2.0 * pi * float(frequencies_on(model.beam, frequency_hz)[0])
+    # one model with nodes at all moments, so that its displacements are reciprocal
+    cut = model.cut_at(one.position for one in (*others, *sum(loads, ())) if isinstance(one, PointMoment))
+
+    def field(load: tuple[PointLoad, ...]) -> HarmonicField:
+        # the weights of a transverse port are those of a device, which include the beam's compliance at its own place
+        own = [Device(position=one.position, amplitude=1.0) for one in load if isinstance(one, PointForce)]
+        turning = [one for one in load if isinstance(one, PointMoment)]
+        return cut.harmonic(turning, frequency_hz, devices=(*passive, *own))
+
+    try:
+        units = [field(load) for load in loads]
+        rest = [cut.harmonic(others, frequency_hz, devices=passive)] if others else []
+    except ResonanceError as error:
+        raise ResonanceError(
+            f"{error}; the fields of actuators are superposed on the beam without them, whose resonance this is"
+        ) from None
+    moved = np.array([[_displacement(one, load) for one in (*units, *rest)] for load in loads]) * 1j * omega
+    p, ports = len(loads), [one.actuator.port(omega) for one in mounted]
+    free = moved[:, p] if rest else np.zeros(p)
+    blocked, impedance = np.array([one.source(port, omega) for one, port in zip(mounted, ports, strict=True)]).T
+    applied = np.linalg.solve(np.eye(p) + impedance[:, None] * moved[:, :p], blocked - impedance * free)
+    velocity = free + moved[:, :p] @ applied
+    parts = [*zip(applied.tolist(), units, strict=True), *((1.0, one) for one in rest)]
+    whole, sums = combined(parts), dict[float, complex]()
+    for weight, one in parts:
+        for force in one.forces:
+            sums[force.position] = sums.get(force.position, 0.0) + weight * phasor(force)
+    whole = replace(
+        whole,
+        beam=model.beam,
+        forces=tuple(point_force(at, value) for at, value in sums.items()),
+        couples=tuple(sorted({at for _, one in parts for at in one.couples})),
+    )
+    states = map(_state, mounted, ports, applied.tolist(), velocity.tolist(), [omega] * p)
+    return ActuatedBeam(field=whole, actuators=tuple(states))
+
+
+def _displacement(field: HarmonicField, loads: tuple[PointLoad, ...]) -> complex:
+    """Displacement on which a port's load does work."""
+    return sum(load.amplitude * field.displacement(load) for load in loads)
+
+
+def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: float) -> ActuatorState:
+    b, y, z = port.force_factor, port.blocked_admittance, port.short_impedance
+    voltage, current = mounted.voltage, mounted.current
+    if voltage is None:
+        load = 0.0 if mounted.load is None else mounted.load.admittance(omega)
+        voltage = ((current or 0.0) - b * v) / (y + load)
+    if current is None:
+        current = y * voltage + b * v
+    # of a complex B a part of V and v is lost as well
+    lost = y.real * abs(voltage) ** 2 + z.real * abs(v) ** 2 + 2.0 * complex(b).imag * (voltage * np.conj(v)).imag
+    return ActuatorState(
+        voltage=complex(voltage),
+        current=complex(current),
+        force=force,
+        velocity=v,
+        power_in=float(0.5 * (voltage * np.conj(current)).real),
+        power_out=float(0.5 * (force * np.conj(v)).real),
+        loss=float(0.5 * lost),
+    )
+
+
+class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
+    """A beam and its loads in time that are equivalent to a drive."""
+
+    beam: Beam
+    loads: tuple[PointLoad, ...]
+    error: float = 0.0
+    """Relative error of an actuator's reduction to a spring and a mass, about (omega/omega_1)^2."""
+
+
+def beam_in_time(
+    beam: Beam, kind: str, forces: Sequence[PointForce], actuator: Actuator | None, frequency_hz: float
+) -> BeamInTime:
+    """The beam and the loads that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
+
+    Far below its resonance an actuator is a spring and a mass (of a slender bar a third of its own), the coefficients
+    of i omega Z_e in powers of omega^2; a current sees the stiffness of open electrodes. A patch is a part of the
+    section. Force factors are those of the steady state. Raises InputError for displacements, the current of a patch,
+    and an error of the reduction above `QUASI_STATIC`, losses of the actuator included.
+    """
+    if kind == "force":
+        return BeamInTime(beam=beam, loads=tuple(forces))
+    if kind == "moment":
+        return BeamInTime(beam=beam, loads=tuple(PointMoment(**asdict(one)) for one in forces))
+    if actuator is None or (kind == "current" and isinstance(actuator, Patch)):
+        what = "displacements" if actuator is None else "currents of a patch"
+        raise InputError(f"drive.kind = {kind!r}: a beam moves in time under no {what}, give 'force' or 'voltage'")
+    omega = 2.0 * pi * frequency_hz
+    if isinstance(actuator, Patch):
+        whole, patch = actuator.on(beam, [one.position for one in forces]), actuator.bonded(beam)
+        turning = [Mounted(actuator=patch, position=one.position, voltage=phasor(one)) for one in forces]
+        volts = complex(patch.port(omega).force_factor).real
+        loads = [replace(load, amplitude=volts * force.amplitude * load.amplitude, phase_deg=force.phase_deg)
+                 for one, force in zip(turning, forces, strict=True) for load in one.loads(whole)]  # fmt: skip
+        return BeamInTime(beam=whole, loads=tuple(loads))
+
+    def dynamic(at: Any) -> Any:
+        port = actuator.port(at)
+        return 1j * at * (port.loaded_impedance() if kind == "current" else port.short_impedance)
+
+    low = omega * np.array([0.1, 0.2, 0.3])
+    stiffness, mass, _ = np.linalg.solve(np.vander((low / omega) ** 2, increasing=True), dynamic(low).real).tolist()
+    whole, port = complex(dynamic(np.array([omega]))[0]), actuator.port(omega)
+    error = abs(whole - (stiffness + mass)) / abs(whole)
+    if error > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
+        raise InputError(
+            f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} (at "
+            f"most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
+        )
+    factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
+    places = dict.fromkeys(one.position for one in forces)
+    springs = (PointSpring(position=x, stiffness=stiffness) for x in places)
+    masses = (PointMass(position=x, mass=-mass / omega**2) for x in places)
+    whole = replace(beam, spring=(*beam.spring, *springs), mass=(*beam.mass, *masses))
+    loads = [point_force(one.position, factor * phasor(one)) for one in forces]
+    return BeamInTime(beam=whole, loads=tuple(loads), error=error)

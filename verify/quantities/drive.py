@@ -1,0 +1,91 @@
+"""Quantities of actuators on a driven beam: force per volt, power, and the wave under voltages."""
+
+from math import pi
+from typing import TYPE_CHECKING, Annotated
+
+from msgspec import Meta
+from msgspec.structs import replace
+
+from verify.errors import InputError
+from verify.quantities import options as opt
+from verify.quantities.base import Scene, quantity
+from verify.quantities.waves import DRIVEN, Direction, FieldOptions, Window, driven_case, measured
+
+if TYPE_CHECKING:
+    from verify.actuators.port import Port
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.travelling_wave import DrivenCase
+
+Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.force, then in drive.shunt, from 1")]
+
+
+def _port(scene: Scene, frequency_hz: float | None) -> "tuple[Port, float]":
+    """(port of the scene's actuator, rad/s)."""
+    from verify.actuators.patch import Patch
+
+    actuator = scene.drive.actuator if scene.drive else None
+    if actuator is None:
+        raise InputError("drive.actuator is missing: give the design of an actuator, its kind and sizes")
+    omega = 2.0 * pi * opt.drive_frequency(scene, frequency_hz)
+    return (actuator.bonded(scene.beam) if isinstance(actuator, Patch) else actuator).port(omega), omega
+
+
+@quantity("drive.force_per_volt", unit="N/V", reads=DRIVEN, devices=True)
+def force_per_volt(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
+    """Magnitude of the blocked force of an actuator per volt; of a patch, N m/V."""
+    return float(abs(_port(scene, frequency_hz)[0].force_factor))
+
+
+@quantity("drive.impedance_ratio", unit="1", reads=DRIVEN, devices=True)
+def impedance_ratio(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
+    """omega |Z| of a short-circuited actuator over EI k^3: far above 1 it imposes displacements, far below forces."""
+    from verify.linear.field import lossless_wavenumber
+
+    port, omega = _port(scene, frequency_hz)
+    k = abs(lossless_wavenumber(scene.beam, omega / (2.0 * pi)))
+    return float(omega * abs(port.short_impedance) / (scene.beam.bending_stiffness * k**3))
+
+
+def _voltages(options: FieldOptions) -> FieldOptions:
+    return replace(options, drive="voltage") if options.drive is None else options
+
+
+@quantity("wave.voltage_ratio", unit="1", reads=DRIVEN, devices=True)
+def voltage_ratio(
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
+) -> float:
+    """Standing-wave ratio with the drive's amplitudes as voltages of its actuators."""
+    return measured(driven_case(scene, _voltages(options)), cache, window).standing_wave_ratio
+
+
+@quantity("wave.voltage_direction", unit="1", reads=DRIVEN, devices=True)
+def voltage_direction(
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
+) -> float:
+    """Direction of the stronger wave under voltages: +1 towards +x, -1 towards -x."""
+    return float(measured(driven_case(scene, _voltages(options)), cache, window).waves.direction)
+
+
+@quantity("wave.pure_voltage_phase", unit="deg", reads=DRIVEN, devices=True)
+def pure_voltage_phase(
+    scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
+) -> float:
+    """Phase lead of the second of two equal voltages with least reflection, in (-180, 180] degrees."""
+    from verify.travelling_wave import best_drive
+
+    case = driven_case(scene, _voltages(options))
+    best = best_drive(case, window, direction=1 if direction == "+x" else -1)
+    best.check_exists()
+    return best.equal_phase_deg
+
+
+@quantity("drive.power", unit="W", reads=DRIVEN, devices=True)
+def power(scene: Scene, options: FieldOptions, *, actuator: Number = 1) -> float:
+    """Mean electrical power into an actuator; negative where it returns power to its source or feeds a load."""
+    case: DrivenCase = driven_case(scene, options)
+    if case.kind == "displacement" or not (case.electrical or case.shunts):
+        raise InputError(f"drive.kind = {case.kind!r}: no actuator takes electrical power, give 'voltage' or 'current'")
+    states = case.actuated(case.acting, case.frequency_hz).actuators
+    if actuator > len(states):
+        raise InputError(f"actuator = {actuator!r}: the drive has {len(states)} actuators, give at most that")
+    return states[actuator - 1].power_in
