@@ -24,6 +24,8 @@ class Layer(NamedTuple):
 
 
 class Answer(NamedTuple):
+    """Force, current and dissipated power."""
+
     force: complex  # on the structure at the tip
     current: complex
     loss: float  # dissipated power, integrated over the volume
@@ -60,15 +62,17 @@ def respond(layers, omega, *, base, voltage, tip):
         weight = layer.area * h * _W[:, None]
         for element in range(ELEMENTS):
             u = (number * ELEMENTS + element) * P + np.arange(P + 1)
-            strain, field = np.zeros((P + 1, k.shape[0])), np.zeros((P + 1, k.shape[0]))
-            strain[:, u] = _DN / h
+            own = np.concatenate([u, total + u, [2 * total]])
+            strain, field = np.zeros((P + 1, own.size)), np.zeros((P + 1, own.size))
+            strain[:, : P + 1] = _DN / h
             if layer.gap:
                 field[:, -1] = 1.0 / layer.gap
             elif layer.d:
-                field[:, total + u] = -_DN / h
-            k += strain.T @ (weight * (c * strain - e * field)) - field.T @ (weight * (e * strain + eps * field))
+                field[:, P + 1 : -1] = -_DN / h
+            k[np.ix_(own, own)] += strain.T @ (weight * (c * strain - e * field))
+            k[np.ix_(own, own)] -= field.T @ (weight * (e * strain + eps * field))
             k[np.ix_(u, u)] -= omega**2 * layer.density * _N.T @ (weight * _N)
-            parts.append((layer.s, d, layer.eps, weight[:, 0], c * strain - e * field, field))
+            parts.append((own, layer.s, d, layer.eps, weight[:, 0], c * strain - e * field, field))
     passive = [i for i in range(total, 2 * total) if not k[i, i]]
     known |= dict.fromkeys(passive, 0.0) | ({0: 0.0} if np.isinf(base) else {})
     k[0, 0] += 0.0 if np.isinf(base) else base
@@ -78,8 +82,8 @@ def respond(layers, omega, *, base, voltage, tip):
     x[fixed] = [known[i] for i in fixed]
     x[free] = np.linalg.solve(k[np.ix_(free, free)], -k[np.ix_(free, fixed)] @ x[fixed])
     reaction, loss = k @ x, 0.0
-    for s, d, eps, weight, stress, field in parts:
-        t, f = stress @ x, field @ x
+    for own, s, d, eps, weight, stress, field in parts:
+        t, f = stress @ x[own], field @ x[own]
         density = -s.imag * abs(t) ** 2 - 2.0 * np.imag(d) * (t * f.conj()).real - np.imag(eps) * abs(f) ** 2
         loss += 0.5 * omega * np.sum(weight * density)
     charged = [i for i in known if i >= total and known[i] == voltage and i not in passive]

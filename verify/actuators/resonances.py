@@ -5,7 +5,7 @@ The frequencies are those without losses. The count of W. Wittrick and F. Willia
 resonance and is left out.
 """
 
-from math import gcd, pi, sqrt
+from math import gcd, pi, sqrt, tan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from verify.actuators.port import Actuator
@@ -16,8 +16,9 @@ from verify.validation import check_integer, check_type
 if TYPE_CHECKING:
     from verify.arrays import Array
 
-SPLIT = 0.381966  # node within each line, so that its clamped modes coincide with no mode of the transducer
-UNCOUPLED = 1e-9  # relative distance of resonance and antiresonance, k_eff^2/2, below which a mode is not electrical
+SPLIT = 0.381966  # node within each line, whose clamped modes then coincide with no mode of the transducer
+POLISHED = 1e-7  # relative half width in which a frequency is polished
+UNCOUPLED = 1e-8  # relative distance of resonance and antiresonance, k_eff^2/2, below which a mode is not electrical
 
 
 class Branch(NamedTuple):
@@ -58,7 +59,7 @@ def branch(actuator: Longitudinal, mode: int = 1) -> Branch:
     C v^2). The branches of all resonances and the clamped capacitance in parallel are the exact circuit.
     """
     frequency = resonances(actuator, mode)[-1]
-    step = 1e-8 * frequency  # along the imaginary axis: the error is of second order, and nothing cancels
+    step = 1e-10 * frequency  # along the imaginary axis: the error is of second order, and nothing cancels
     inductance = float((impedance(actuator.lossless, frequency + 1j * step) / 1j).imag / (4.0 * pi * step))
     return Branch(1.0 / (float(2.0 * pi * frequency) ** 2 * inductance), inductance)
 
@@ -66,13 +67,14 @@ def branch(actuator: Longitudinal, mode: int = 1) -> Branch:
 def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
     """(resonances, antiresonances), the first `count` of each, Hz. Raises InputError."""
     import numpy as np
-    from scipy.optimize import bisect
+    from scipy.optimize import bisect, brentq
 
     check_type("actuator", actuator, Longitudinal)
     check_integer("count", count, 1)
-    parts, rigid = actuator.lossless.parts(), int(actuator.base == "free")
-    scale = pi / sum(line.length / complex(line.speed).real for line in parts if line is not None)
-    lowest = 1e-6 * scale  # below it the count is lost in rounding
+    lossless, rigid = actuator.lossless, int(actuator.base == "free")
+    parts = lossless.parts()
+    scale = 3.0 / sum(line.length / complex(line.speed).real for line in parts if line is not None)
+    lowest = 1e-6 * scale  # below it the count is lost in rounding, as at multiples of pi/3 scale
 
     def mode(number: int, is_open: bool) -> float:
         """Angular frequency of an elastic mode, from 1."""
@@ -89,16 +91,28 @@ def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
             upper *= 2.0
         return float(bisect(excess, lowest, upper, xtol=1e-15 * scale, rtol=1e-15))
 
-    total = 2 * count
+    def polished(omega: float, is_open: bool) -> float:
+        """Frequency in Hz: the zero of the reactance or the susceptance, as the count may lose half its digits."""
+
+        def rising(f: float) -> float:
+            port = lossless.port(2.0 * pi * f)
+            zero, pole = port.short_impedance, port.blocked_admittance * port.short_impedance + port.force_factor**2
+            return complex(pole / zero if is_open else zero / pole).imag
+
+        f = omega / (2.0 * pi)
+        low, high = f * (1.0 - POLISHED), f * (1.0 + POLISHED)
+        return brentq(rising, low, high, xtol=1e-15 * f, rtol=1e-15) if rising(low) * rising(high) < 0.0 else f
+
+    short, open_ = list[float](), list[float]()
     while True:
-        short = np.array([mode(number, False) for number in range(1, total + 1)])
-        open_ = np.array([mode(number, True) for number in range(1, total + 1)])
+        short.append(mode(len(short) + 1, False))
+        open_.append(mode(len(open_) + 1, True))
         # the electrodes add stiffness of rank 1: an uncoupled mode is as far up in `open_` as in `short`, or one before
-        uncoupled = np.isclose(short[:, None], open_, rtol=UNCOUPLED, atol=0.0)
-        electrical = short[~uncoupled.any(axis=1)][:count], open_[:-1][~uncoupled.any(axis=0)[:-1]][:count]
-        if min(map(len, electrical)) == count:
-            return electrical[0] / (2.0 * pi), electrical[1] / (2.0 * pi)
-        total *= 2
+        alike = np.isclose(np.array(short)[:, None], open_, rtol=UNCOUPLED, atol=0.0)
+        coupled = np.array(short)[~alike.any(axis=1)][:count], np.array(open_)[:-1][~alike.any(axis=0)[:-1]][:count]
+        if min(map(len, coupled)) == count:
+            found = [np.array([polished(omega, bool(i)) for omega in some]) for i, some in enumerate(coupled)]
+            return found[0], found[1]
 
 
 def _modes_below(actuator: Longitudinal, parts: Parts, omega: float, is_open: bool) -> int:
@@ -119,20 +133,22 @@ def _modes_below(actuator: Longitudinal, parts: Parts, omega: float, is_open: bo
         for share, size in ((SPLIT, 1), (1.0 - SPLIT, 1)) if layers == 1 else ((1.0, group), (1.0, layers - group)):
             half = 0.5 * omega * share * line.length / complex(line.speed).real
             rigidity = omega * complex(line.impedance).real
-            stretch, shift = rigidity / np.tan(half), -rigidity * np.tan(half)
+            stretch, shift = rigidity / tan(half), -rigidity * tan(half)  # of both ends apart, and of both alike
+            own, transfer = 0.5 * (stretch + shift), 0.5 * (stretch - shift)
+            count += size * int(2.0 * half // pi)
             if layers > 1:  # its speed is that with open electrodes; closed ones soften it
                 stretch -= 2.0 * electrical
-            within = np.cos(np.arange(1, size) * pi / size)
-            count += size * int(2.0 * half // pi) + int(np.sum(stretch * (1.0 - within) + shift * (1.0 + within) < 0.0))
-            phase = 2.0 * np.arctan(np.sqrt(complex(-shift / stretch)))
-            scale = 0.5 * (stretch - shift) * np.sin(phase)
-            own, transfer = (scale / np.tan(size * phase)).real, (scale / np.sin(size * phase)).real
+                within = np.cos(np.arange(1, size) * pi / size)
+                count += int(np.sum(stretch * (1.0 - within) + shift * (1.0 + within) < 0.0))
+                phase = 2.0 * np.arctan(np.sqrt(complex(-shift / (stretch or 1e-300))))
+                scale = 0.5 * (stretch - shift) * np.sin(phase)
+                own, transfer = (scale / np.tan(size * phase)).real, (scale / np.sin(size * phase)).real
             stiffness[node : node + 2, node : node + 2] += [[own, -transfer], [-transfer, own]]
             node += 1
     first = 0 if parts.back is None else 2
     softening = -electrical if active.along and active.layers == 1 else 0.0
     across = softening + (electrical / active.layers if is_open else 0.0)
-    stiffness[np.ix_([first, first + 2], [first, first + 2])] += across * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    stiffness[np.ix_([first, first + 2], [first, first + 2])] += [[across, -across], [-across, across]]
     stiffness[0, 0] += actuator.base if isinstance(actuator.base, float) else 0.0
     fixed = int(actuator.base == "fixed")
     free = stiffness[fixed : node + 1, fixed : node + 1]
