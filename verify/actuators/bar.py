@@ -17,12 +17,9 @@ from verify.actuators.port import Number, Port
 class Line(msgspec.Struct, frozen=True, kw_only=True):
     """A passive bar in longitudinal vibration."""
 
-    impedance: complex
-    """Zc = rho v A, kg/s."""
-    speed: complex
-    """v, m/s."""
-    length: float
-    """l, m."""
+    impedance: complex  # Zc = rho v A, kg/s
+    speed: complex  # v, m/s
+    length: float  # l, m
 
     def input_impedance(self, omega: Any, load: Any) -> Any:
         """Impedance of one face whose other face has the impedance `load`, kg/s; None is a rigid load."""
@@ -47,14 +44,10 @@ class ThreePort(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     Its mechanical part is in terms of a + b and a - b, which are free of cancellation in bars short against the wave.
     """
 
-    symmetric: Number
-    """a + b, with short-circuited electrodes, kg/s."""
-    antisymmetric: Number
-    """a - b, kg/s."""
-    force_factor: Number
-    """N, N/V."""
-    blocked_admittance: Number
-    """Y = i omega C0, S."""
+    symmetric: Number  # a + b, with short-circuited electrodes, kg/s
+    antisymmetric: Number  # a - b, kg/s
+    force_factor: Number  # N, N/V
+    blocked_admittance: Number  # Y = i omega C0, S
 
     @property
     def matrix(self) -> Any:
@@ -93,17 +86,12 @@ class ThreePort(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 class PiezoLine(Line, frozen=True, kw_only=True):
     """A piezoelectric bar, or a layer of a stack; its speed is that with open (33) or closed electrodes (31)."""
 
-    capacitance: complex
-    """C0 with both faces clamped, F."""
-    force_factor: complex
-    """N = h C0, N/V."""
-    along: bool
-    """Whether the wave runs along the field (33)."""
+    capacitance: complex  # C0 with both faces clamped, F
+    force_factor: complex  # N = h C0, N/V
+    along: bool  # whether the wave runs along the field (33)
     form: Form = "mason"
-    branches: int = 20
-    """Number of branches of the circuit."""
-    layers: int = 1
-    """Number of equal layers."""
+    branches: int = 20  # number of branches of the circuit
+    layers: int = 1  # number of equal layers
 
     def three_port(self, omega: Any) -> ThreePort:
         """The three-port of all layers at angular frequencies omega, rad/s."""

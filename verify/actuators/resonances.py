@@ -24,10 +24,8 @@ UNCOUPLED = 1e-8  # relative distance of resonance and antiresonance, k_eff^2/2,
 class Branch(NamedTuple):
     """A resonance as a series branch of the equivalent circuit."""
 
-    capacitance: float
-    """C_n, F."""
-    inductance: float
-    """L_n, H."""
+    capacitance: float  # C_n, F
+    inductance: float  # L_n, H
 
 
 def resonances(actuator: Longitudinal, count: int = 1) -> "Array":
@@ -73,35 +71,29 @@ def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
     check_integer("count", count, 1)
     lossless, rigid = actuator.lossless, int(actuator.base == "free")
     parts = lossless.parts()
-    scale = 3.0 / sum(line.length / complex(line.speed).real for line in parts if line is not None)
-    lowest = 1e-6 * scale  # below it the count is lost in rounding, as at multiples of pi/3 scale
+    # the count is lost in rounding far below the first mode, and at half waves of a line: 0.48 is not 0.5
+    scale = 0.48 / sum(line.length / complex(line.speed).real for line in parts if line is not None)
+    lowest = 1e-6 * scale
 
     def mode(number: int, is_open: bool) -> float:
-        """Angular frequency of an elastic mode, from 1."""
+        """Frequency of an elastic mode, from 1, Hz."""
 
-        def excess(omega: float) -> float:
-            return _modes_below(actuator, parts, omega, is_open) - rigid - number + 0.5
-
-        if excess(lowest) > 0.0:
-            raise InputError(
-                f"actuator.base = {actuator.base!r}: the spring is too soft to tell from none, give 'free'"
-            )
-        upper = scale
-        while excess(upper) < 0.0:
-            upper *= 2.0
-        return float(bisect(excess, lowest, upper, xtol=1e-15 * scale, rtol=1e-15))
-
-    def polished(omega: float, is_open: bool) -> float:
-        """Frequency in Hz: the zero of the reactance or the susceptance, as the count may lose half its digits."""
+        def excess(f: float) -> float:
+            return _modes_below(actuator, parts, 2.0 * pi * f, is_open) - rigid - number + 0.5
 
         def rising(f: float) -> float:
             port = lossless.port(2.0 * pi * f)
             zero, pole = port.short_impedance, port.blocked_admittance * port.short_impedance + port.force_factor**2
             return complex(pole / zero if is_open else zero / pole).imag
 
-        f = omega / (2.0 * pi)
-        low, high = f * (1.0 - POLISHED), f * (1.0 + POLISHED)
-        return brentq(rising, low, high, xtol=1e-15 * f, rtol=1e-15) if rising(low) * rising(high) < 0.0 else f
+        if excess(lowest) > 0.0:
+            raise InputError(f"actuator.base = {actuator.base!r}: so soft a spring is lost in rounding, give 'free'")
+        upper = scale
+        while excess(upper) < 0.0:
+            upper *= 2.0
+        f = float(bisect(excess, lowest, upper, xtol=1e-15 * scale, rtol=1e-15))
+        low, high = f * (1.0 - POLISHED), f * (1.0 + POLISHED)  # where nodes coincide, the count loses half the digits
+        return float(brentq(rising, low, high, xtol=1e-15 * f, rtol=1e-15)) if rising(low) < 0.0 < rising(high) else f
 
     short, open_ = list[float](), list[float]()
     while True:
@@ -111,8 +103,7 @@ def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
         alike = np.isclose(np.array(short)[:, None], open_, rtol=UNCOUPLED, atol=0.0)
         coupled = np.array(short)[~alike.any(axis=1)][:count], np.array(open_)[:-1][~alike.any(axis=0)[:-1]][:count]
         if min(map(len, coupled)) == count:
-            found = [np.array([polished(omega, bool(i)) for omega in some]) for i, some in enumerate(coupled)]
-            return found[0], found[1]
+            return coupled
 
 
 def _modes_below(actuator: Longitudinal, parts: Parts, omega: float, is_open: bool) -> int:

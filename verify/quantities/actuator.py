@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
+from verify.actuators import resonances
 from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.quantities.base import Scene, quantity
@@ -26,38 +27,28 @@ def _transducer(scene: Scene) -> Longitudinal:
 @quantity("actuator.resonance", unit="Hz", reads=DRIVE)
 def resonance(scene: Scene, *, n: Resonance = 1) -> float:
     """Frequency of the transducer with short-circuited electrodes, without losses."""
-    from verify.actuators.resonances import resonances
-
-    return float(resonances(_transducer(scene), n)[-1])
+    return float(resonances.resonances(_transducer(scene), n)[-1])
 
 
 @quantity("actuator.antiresonance", unit="Hz", reads=DRIVE)
 def antiresonance(scene: Scene, *, n: Resonance = 1) -> float:
     """Frequency of the transducer with open electrodes, without losses."""
-    from verify.actuators.resonances import antiresonances
-
-    return float(antiresonances(_transducer(scene), n)[-1])
+    return float(resonances.antiresonances(_transducer(scene), n)[-1])
 
 
 @quantity("actuator.coupling", unit="1", reads=DRIVE)
 def coupling(scene: Scene, *, n: Resonance = 1) -> float:
     """Effective electromechanical coupling factor, sqrt(1 - (f_r/f_a)^2)."""
-    from verify.actuators.resonances import coupling
-
-    return coupling(_transducer(scene), n)
+    return resonances.coupling(_transducer(scene), n)
 
 
 @quantity("actuator.impedance", unit="ohm", reads=DRIVE)
 def impedance(scene: Scene, *, frequency_hz: Hertz) -> complex:
     """Electrical impedance of the transducer with its losses."""
-    from verify.actuators.resonances import impedance
-
-    return complex(impedance(_transducer(scene), frequency_hz))
+    return complex(resonances.impedance(_transducer(scene), frequency_hz))
 
 
 @quantity("actuator.branch", unit="F or H", reads=DRIVE)
 def branch(scene: Scene, *, n: Resonance = 1, element: Element = "capacitance") -> float:
     """Capacitance or inductance of a branch of the equivalent circuit (Butterworth and Van Dyke)."""
-    from verify.actuators.resonances import branch
-
-    return float(getattr(branch(_transducer(scene), n), element))
+    return float(getattr(resonances.branch(_transducer(scene), n), element))
