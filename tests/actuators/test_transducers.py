@@ -192,14 +192,14 @@ def test_forms_agree(actuator, base):
 
 def test_truncation_of_the_circuit():
     w = 2.0 * pi * 40e3
-    line = replace(ACROSS, form="circuit", branches=7).parts().active
+    line = replace(ACROSS, form="circuit", branches=7).parts.active
     exact, circuit = (1.0 / replace(line, form=form).three_port(w).symmetric for form in ("mason", "circuit"))
     assert abs(circuit / exact - 1.0) == pytest.approx(line.truncation(w), rel=1e-9)
     assert 1e-6 < line.truncation(w) < 1e-4
 
 
 def test_three_port_is_masons():
-    w, one, line = 2.0 * pi * 53e3, PZT4.derived, LONG.parts().active
+    w, one, line = 2.0 * pi * 53e3, PZT4.derived, LONG.parts.active
     theta, t = w * LONG.length / line.speed, one.d33 / (one.eps33 * one.s33_open) / (1j * w)
     a, b = line.impedance / (1j * np.tan(theta)), line.impedance / (1j * np.sin(theta))
     clamped = LONG.length / (1j * w * one.eps33 * (1.0 - one.k33**2) * LONG.area)

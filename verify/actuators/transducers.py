@@ -3,6 +3,7 @@
 A base, a passive or piezoelectric line, and the tip, whose outward velocity and force are the mechanical port.
 """
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypeAlias
 
 import msgspec
@@ -30,7 +31,7 @@ class Parts(NamedTuple):
     front: "Line | None"
 
 
-class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
     """What all longitudinal transducers share. Raises InputError for values outside their limits."""
 
     material: MaterialName | PiezoMaterial = "pzt-4"
@@ -52,7 +53,7 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         validate(self, "actuator")
         _ = self.ceramic
 
-    @property
+    @cached_property
     def ceramic(self) -> PiezoMaterial:
         """The material with the transducer's own losses. Raises InputError where they make it a source of energy."""
         material = PIEZO[self.material] if isinstance(self.material, str) else self.material
@@ -64,20 +65,21 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """The transducer without losses."""
         return replace(self, **dict.fromkeys(LOSSES, 0.0))
 
+    @cached_property
     def parts(self) -> Parts:
         """Its lines from base to tip."""
         raise NotImplementedError
 
     def port(self, omega: Any) -> Port:
         """The port at the tip at angular frequencies omega (rad/s), a number or (n,)."""
-        back, active, front = self.parts()
+        back, active, front = self.parts
         base = {"fixed": None, "free": 0.0}[self.base] if isinstance(self.base, str) else self.base / (1j * omega)
         port = active.three_port(omega).port(base if back is None else back.input_impedance(omega, base))
         return port if front is None else front.after(omega, port)
 
     def _rings(self, layers: int, thickness: float, area: float, layering: Layering) -> "PiezoLine":
-        one, each = (layers, 1) if layering == "one-bar" else (1, layers)
-        return self._piezo("33", length=one * thickness, area=area, gap=thickness, layers=each)
+        length, layers = (layers * thickness, 1) if layering == "one-bar" else (thickness, layers)
+        return self._piezo("33", length=length, area=area, gap=thickness, layers=layers)
 
     def _piezo(self, direction: Direction, **sizes: Any) -> "PiezoLine":
         from verify.actuators.bar import piezo_line
@@ -93,6 +95,7 @@ class Bar33(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     area: Annotated[float, unit("m^2", gt=0)]
     """Area of its section, m^2."""
 
+    @cached_property
     def parts(self) -> Parts:
         """The bar."""
         return Parts(None, self._piezo("33", length=self.length, area=self.area, gap=self.length), None)
@@ -108,6 +111,7 @@ class Bar31(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     thickness: Annotated[float, unit("m", gt=0)]
     """Distance of the electrodes, m."""
 
+    @cached_property
     def parts(self) -> Parts:
         """The bar."""
         area, gap = self.width * self.thickness, self.thickness
@@ -133,6 +137,7 @@ class Stack(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     base: Base = "fixed"
     """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
 
+    @cached_property
     def parts(self) -> Parts:
         """The layers."""
         return Parts(None, self._rings(self.layers, self.layer_thickness, self.area, self.layering), None)
@@ -188,6 +193,7 @@ class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         masses = {name: replace(mass, loss_factor=0.0) for name in ("front", "back") if (mass := getattr(self, name))}
         return replace(self, **dict.fromkeys(LOSSES, 0.0), **masses)
 
+    @cached_property
     def parts(self) -> Parts:
         """Back mass, rings, front mass."""
         rings = self._rings(self.rings, self.ring_thickness, self.area, self.layering)
