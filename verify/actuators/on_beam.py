@@ -127,8 +127,9 @@ def on_beam(
     if len(set(loads)) < len(loads):
         raise InputError("actuators: two are at one position, move one")
     omega = 2.0 * pi * float(frequencies_on(model.beam, frequency_hz)[0])
-    # one model with nodes at all moments, so that its displacements are reciprocal
-    cut = model.cut_at(one.position for one in (*others, *sum(loads, ())) if isinstance(one, PointMoment))
+    # one model for all fields, so that its displacements are reciprocal, with nodes of elements at all ports
+    cut = model.cut_at([one.position for load in loads for one in load])
+    cut = cut.cut_at(one.position for one in others if isinstance(one, PointMoment))
 
     def field(load: tuple[PointLoad, ...]) -> HarmonicField:
         # the weights of a transverse port are those of a device, which include the beam's compliance at its own place
@@ -196,7 +197,7 @@ class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
     beam: Beam
     loads: tuple[PointLoad, ...]
     error: float = 0.0
-    """Relative error of an actuator's reduction to a spring and a mass, about (omega/omega_1)^2."""
+    """Relative error of an actuator's dynamic stiffness as a spring and a mass, its losses included."""
 
 
 def beam_in_time(

@@ -143,7 +143,7 @@ class BeamModel(ABC):
         """Raise NoFigureError for a frequency above the cut-off of the parts."""
 
     def cut_at(self, positions: Iterable[float]) -> "BeamModel":
-        """The model with moments at positions, m: of a discrete model one with nodes or elastic ends there."""
+        """The model for moments or actuators at positions, m: elements with nodes, chains with elastic ends there."""
         return self
 
     def check_n_modes(self, n_modes: int) -> None:
