@@ -89,9 +89,10 @@ def test_a_beam_from_rest_reaches_its_steady_state_under_a_moment(model, count):
     loads = (MOMENT, PointForce(position=0.52, amplitude=2.1, phase_deg=-40.0))
     own = {"model": model, "count": count, "at": X, "modal_damping": 0.11, "samples": 2}
     run = simulate(HELD, loads, HERTZ, 1200 / HERTZ, soft_start_periods=7, **own)
-    steady = simulate(HELD, loads, HERTZ, 1200 / HERTZ, start="steady", **own)
-    off = 0.02 if model == "analytic" else 1e-8  # the steady exact beam has a loss factor
-    close(run.deflection[-1], steady.deflection[-1], off)
+    # the steady exact beam has a loss factor: its modes are compared with those of many elements
+    other = own if count else own | {"model": "fem", "count": 90}
+    steady = simulate(HELD, loads, HERTZ, 1200 / HERTZ, start="steady", **other)
+    close(run.deflection[-1], steady.deflection[-1], 1e-8 if count else 3e-5)
 
 
 def test_a_moment_that_has_no_effect_or_no_model_is_refused():
