@@ -32,6 +32,7 @@ LIGHT = Slider(mass=1e-6, mu=0.003, slope=2100.0, position=0.271, speed=3e-4, pr
 HEAVY = replace(RIDER, mass=0.02, coupling="two-way")
 TOUCHING = Contact(stiffness=6.1e4, damping=13.0)
 POINT = replace(RIDER, mass=0.003, law="coulomb", slope=None, speed=-1.3e-4, preload=0.31, contact=TOUCHING)
+TRANSDUCER = Stack(layers=7, layer_thickness=4e-4, area=2.3e-5, dielectric_loss=0.004)
 ENDED = Device(position=0.647, stiffness=910.0, mass=0.0071, dashpot=1.3)
 FORCES = (PointForce(position=0.0411, amplitude=1.3, phase_deg=17.0), PointForce(position=0.6727, phase_deg=101.0))
 AT_ONCE = {"start": "rest", "soft_start_periods": 0.0, "modal_damping": None, "steps_per_period": 40}
@@ -57,6 +58,7 @@ SCENES = {
     "motor": scene_of(DAMPED, replace(POINT, coupling="one-way")),
     "device": scene_of(DAMPED, devices=(ENDED,)),
     "stacks": scene_of(DAMPED, actuator=STACK, kind="voltage"),
+    "stack": scene_of(STRIP, actuator=TRANSDUCER),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
@@ -115,6 +117,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slider.winkler_speed_ratio": ("bare", {"contact_half_angle": 1.1}), "slider.layer_efficiency": ("bare", LAYER),
     "friction.coulomb_decrement": ("bare", {"mass": 0.31, "stiffness": 47.0, "force": 0.7}),
     "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}),
+    **{f"actuator.{name}": ("stack", {}) for name in ("resonance", "antiresonance", "coupling", "branch")},
+    "actuator.impedance": ("stack", {"frequency_hz": 7e4}),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}), "contact.restitution": ("bare", {"damping_ratio": 0.2}),
     "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
     "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),

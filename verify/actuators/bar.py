@@ -17,14 +17,11 @@ from verify.actuators.port import Number, Port
 class Line(msgspec.Struct, frozen=True, kw_only=True):
     """A passive bar in longitudinal vibration."""
 
-    impedance: complex
-    """Zc = rho v A, kg/s."""
-    speed: complex
-    """v, m/s."""
-    length: float
-    """l, m."""
+    impedance: complex  # Zc = rho v A, kg/s
+    speed: complex  # v, m/s
+    length: float  # l, m
 
-    def seen_through(self, omega: Any, load: Any) -> Any:
+    def input_impedance(self, omega: Any, load: Any) -> Any:
         """Impedance of one face whose other face has the impedance `load`, kg/s; None is a rigid load."""
         own = self.impedance / (1j * np.tan(omega * self.length / self.speed))
         return own if load is None else (self.impedance**2 + own * load) / (own + load)
@@ -47,14 +44,10 @@ class ThreePort(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     Its mechanical part is in terms of a + b and a - b, which are free of cancellation in bars short against the wave.
     """
 
-    symmetric: Number
-    """a + b, with short-circuited electrodes, kg/s."""
-    antisymmetric: Number
-    """a - b, kg/s."""
-    force_factor: Number
-    """N, N/V."""
-    blocked_admittance: Number
-    """Y = i omega C0, S."""
+    symmetric: Number  # a + b, with short-circuited electrodes, kg/s
+    antisymmetric: Number  # a - b, kg/s
+    force_factor: Number  # N, N/V
+    blocked_admittance: Number  # Y = i omega C0, S
 
     @property
     def matrix(self) -> Any:
@@ -62,6 +55,20 @@ class ThreePort(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         own, transfer = 0.5 * (self.symmetric + self.antisymmetric), 0.5 * (self.symmetric - self.antisymmetric)
         own, transfer, n, y = np.broadcast_arrays(own, transfer, self.force_factor, self.blocked_admittance)
         return np.moveaxis(np.array([[own, transfer, n], [transfer, own, n], [-n, -n, y]]), (0, 1), (-2, -1))
+
+    def repeated(self, layers: int) -> "ThreePort":
+        """Equal layers mechanically in series and electrically in parallel (G. Martin, JASA 36:1366, 1964).
+
+        With short-circuited electrodes they are a periodic line, whose impedance and phase are those of a layer.
+        """
+        tangent = np.sqrt(-self.antisymmetric / self.symmetric + 0j)
+        characteristic, tangent = 1j * tangent * self.symmetric, np.tan(layers * np.arctan(tangent))
+        return ThreePort(
+            symmetric=characteristic / (1j * tangent),
+            antisymmetric=1j * characteristic * tangent,
+            force_factor=self.force_factor,
+            blocked_admittance=layers * self.blocked_admittance,
+        )
 
     def port(self, base: Any) -> Port:
         """The port at face 2, where face 1 has the impedance `base` (kg/s): 0 is free, None is fixed."""
@@ -77,27 +84,27 @@ class ThreePort(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 class PiezoLine(Line, frozen=True, kw_only=True):
-    """A piezoelectric bar; its speed is that with open electrodes (33) or with closed ones (31)."""
+    """A piezoelectric bar, or a layer of a stack; its speed is that with open (33) or closed electrodes (31)."""
 
-    capacitance: complex
-    """C0 with both faces clamped, F."""
-    force_factor: complex
-    """N = h C0, N/V."""
-    along: bool
-    """Whether the wave runs along the field (33)."""
+    capacitance: complex  # C0 with both faces clamped, F
+    force_factor: complex  # N = h C0, N/V
+    along: bool  # whether the wave runs along the field (33)
     form: Form = "mason"
-    branches: int = 20
-    """Number of branches of the circuit."""
+    branches: int = 20  # number of branches of the circuit
+    layers: int = 1  # number of equal layers
 
     def three_port(self, omega: Any) -> ThreePort:
-        """The three-port at angular frequencies omega, rad/s, by the bar's form.
+        """The three-port of all layers at angular frequencies omega, rad/s."""
+        single = self._klm(omega) if self.form == "klm" else self._mason(omega)
+        return single if self.layers == 1 else single.repeated(self.layers)
 
-        Mason's is [F1 F2 V] = [[a b t], [b a t], [t t 1/(i omega C0)]] [v1 v2 I] along the field, a = Zc/(i tan
+    def _mason(self, omega: Any) -> ThreePort:
+        """Mason's three-port, or its circuit: the series of its tangent.
+
+        It is [F1 F2 V] = [[a b t], [b a t], [t t 1/(i omega C0)]] [v1 v2 I] along the field, a = Zc/(i tan
         theta), b = Zc/(i sin theta), t = h/(i omega), theta = omega l/v. Solved for I it has a negative capacitance
         -C0 in series with the mechanical branches; across the field it has none.
         """
-        if self.form == "klm":
-            return self._klm(omega)
         if self.form == "circuit":
             tangent, cotangent = self._series(omega)
         else:
@@ -161,8 +168,8 @@ def piezo_line(
 ) -> PiezoLine:
     """A bar of cross-section `area` (m^2); `gap` (m) is the distance of the electrodes.
 
-    C0 = epsT (1 - k^2) A l/gap^2 and N = d A/(sE gap), for a bar across the field as for n = l/gap parallel layers
-    along it: C0 -> n^2 C0 and h -> h/n of the bar with a single layer.
+    C0 = epsT (1 - k^2) A l/gap^2 and N = d A/(sE gap). A length of n gaps along the field is n layers as one bar: C0
+    -> n^2 C0 and h -> h/n of the bar with a single layer.
     """
     compliance, d, permittivity = material.bar_constants(direction)
     clamped, along = 1.0 - d**2 / (compliance * permittivity), direction == "33"

@@ -1,0 +1,288 @@
+"""Bars, stacks and Langevin transducers against closed forms and against finite elements of their single layers."""
+
+from math import inf, pi, sqrt
+
+import numpy as np
+import pytest
+from msgspec.structs import asdict, replace
+from scipy.optimize import brentq
+
+from tests.reference.piezo_bar import Layer, bar_constants, respond
+from verify.actuators.materials import EPS0, PIEZO
+from verify.actuators.resonances import antiresonances, branch, coupling, impedance, resonances
+from verify.actuators.transducers import Bar31, Bar33, EndMass, Langevin, Stack
+from verify.analysis.solution_cache import SolutionCache
+from verify.errors import InputError
+from verify.quantities import evaluate
+from verify.scene.load import scene_from
+
+PZT4 = PIEZO["pzt-4"]
+LOSSES = {"dielectric_loss": 0.004, "mechanical_loss": 0.002, "piezoelectric_loss": 0.003}
+ALUMINIUM = EndMass(length=0.045, youngs_modulus=71e9, density=2800.0)
+STEEL = EndMass(length=0.023, youngs_modulus=203e9, density=7810.0, area=7.1e-4)
+LONG = Bar33(length=0.02, area=9e-6)
+ACROSS = Bar31(length=0.02, width=0.003, thickness=0.0005)
+STACK = Stack(layers=20, layer_thickness=0.0005, area=25e-6)
+HALF_WAVE = Langevin(rings=2, ring_thickness=0.005, area=pi / 4 * (0.038**2 - 0.013**2), front=ALUMINIUM)
+UNEQUAL = Langevin(rings=3, ring_thickness=0.0042, area=8.3e-4, front=ALUMINIUM, back=STEEL, material="pzt-8")
+OTHERS = (
+    Bar33(length=0.017, area=1.1e-5, material="pzt-8"),
+    Bar31(length=0.023, width=0.0031, thickness=0.0007),
+    Stack(layers=5, layer_thickness=0.0021, area=2.3e-5),
+    UNEQUAL,
+)
+EACH = pytest.mark.parametrize("actuator", OTHERS, ids=lambda one: one.__struct_config__.tag)
+CAPACITANCE = PZT4.derived.eps33 * ACROSS.length * ACROSS.width / ACROSS.thickness  # free, of the bar across the field
+
+
+def layers_of(actuator):
+    """The layers of a transducer from its base to its tip, for the finite elements."""
+    material = actuator.ceramic
+    if isinstance(actuator, Bar31):
+        constants, area = material.bar_constants("31"), actuator.width * actuator.thickness
+        return [Layer(actuator.length, area, material.density, *constants, actuator.thickness)]
+    constants = (actuator.area, material.density, *material.bar_constants("33"))
+    if isinstance(actuator, Bar33):
+        return [Layer(actuator.length, *constants)]
+    if isinstance(actuator, Stack):
+        return [Layer(actuator.layer_thickness, *constants)] * actuator.layers
+    masses = [
+        Layer(m.length, m.area or actuator.area, m.density, 1.0 / (m.youngs_modulus * (1.0 + 1j * m.loss_factor)))
+        for m in (actuator.back or actuator.front, actuator.front)
+    ]
+    return [masses[0], *[Layer(actuator.ring_thickness, *constants)] * actuator.rings, masses[1]]
+
+
+# --- Materials
+
+
+def test_derived_constants_of_pzt4():
+    one = PZT4.derived
+    assert (one.s11, one.s33) == pytest.approx((12.309e-12, 15.607e-12), abs=5e-16)
+    assert (one.d31, one.d33) == pytest.approx((-123.82e-12, 291.30e-12), abs=5e-15)
+    assert (one.k33, one.k31) == pytest.approx((0.69337, 0.33186), abs=5e-6)
+    assert one.s33_open == pytest.approx(one.s33 - one.d33**2 / one.eps33, rel=1e-14)
+
+
+def test_pzt8_is_the_inverse_of_its_catalogue():
+    """Strain-charge constants of the Morgan catalogue; k33, k31 of it and of APC 880 (Navy III) are 0.64, 0.30."""
+    s, d, eps = PIEZO["pzt-8"].strain_charge
+    assert 1e12 * s[[0, 0, 0, 2, 3], [0, 1, 2, 2, 3]] == pytest.approx([11.5, -3.7, -4.8, 13.5, 31.9], rel=1e-3)
+    assert 1e12 * d[[2, 2, 0], [0, 2, 4]] == pytest.approx([-97.0, 225.0, 330.0], rel=1e-3)
+    assert eps[[0, 2], [0, 2]] / EPS0 == pytest.approx([1290.0, 1000.0], rel=1e-3)
+    assert (PIEZO["pzt-8"].derived.k33, PIEZO["pzt-8"].derived.k31) == pytest.approx((0.64, 0.30), abs=0.012)
+
+
+@pytest.mark.parametrize("name", PIEZO)
+@pytest.mark.parametrize("direction", ["33", "31"])
+def test_bar_constants_by_elimination_of_lateral_strains(name, direction):
+    m = PIEZO[name]
+    expected = bar_constants(m.c11, m.c12, m.c13, m.c33, m.e31, m.e33, EPS0 * m.eps33, direction == "33")
+    assert m.bar_constants(direction) == pytest.approx(expected, rel=1e-13)
+
+
+def test_own_material_and_its_losses():
+    own = replace(PZT4, c33=111e9)
+    lossy, lossless = replace(LONG, material=replace(own, **LOSSES)), replace(LONG, material=own)
+    assert resonances(lossy) == resonances(lossless) != resonances(LONG)
+    assert impedance(lossy, 5e4) == impedance(replace(lossless, **LOSSES), 5e4)
+    assert impedance(lossy, 5e4).real > 1e-3 * abs(impedance(lossy, 5e4))
+    wrong = {"c13": 130e9, "c12": -140e9, "piezoelectric_loss": 0.0042, "density": -1.0}
+    for (name, value), word in zip(wrong.items(), ("definite", "definite", "source of energy", "above 0"), strict=True):
+        with pytest.raises(InputError, match=word):
+            replace(own, **{**LOSSES, name: value})
+
+
+# --- Figures and closed forms
+
+
+def test_figures_to_their_printed_digits():
+    assert (resonances(LONG)[0], antiresonances(LONG)[0]) == pytest.approx((76534.907, 101406.271), abs=5e-4)
+    assert coupling(LONG) == pytest.approx(0.656029, abs=5e-7)
+    assert (resonances(ACROSS)[0], antiresonances(ACROSS)[0]) == pytest.approx((82279.702, 86211.110), abs=5e-4)
+    assert branch(ACROSS) == pytest.approx((121.141e-12, 30.88613e-3), rel=5e-6)
+    assert (resonances(HALF_WAVE)[0], antiresonances(HALF_WAVE)[0]) == pytest.approx((24870.3118, 26277.1686), abs=5e-5)
+
+
+def test_impedance_of_free_bars():
+    f, one = np.array([1e3, 41e3, 93e3, 277e3]), PZT4.derived
+    speed = 1.0 / sqrt(PZT4.density * one.s33_open)
+    x = pi * f * LONG.length / speed
+    clamped = one.eps33 * (1.0 - one.k33**2) * LONG.area / LONG.length
+    expected = (1.0 - one.k33**2 * np.tan(x) / x) / (2j * pi * f * clamped)
+    np.testing.assert_allclose(impedance(LONG, f), expected, rtol=1e-12)
+    assert antiresonances(LONG, 2) == pytest.approx([speed / 0.04, 3 * speed / 0.04], rel=1e-13)
+    ratio = resonances(LONG)[0] / antiresonances(LONG)[0]
+    assert one.k33**2 == pytest.approx(0.5 * pi * ratio * np.tan(0.5 * pi * (1.0 - ratio)), rel=1e-12)
+    x = pi * f * ACROSS.length * sqrt(PZT4.density * one.s11)
+    admittance = 2j * pi * f * CAPACITANCE * (1.0 + one.k31**2 * (np.tan(x) / x - 1.0))
+    np.testing.assert_allclose(1.0 / impedance(ACROSS, f), admittance, rtol=1e-12)
+
+
+def test_half_wave_langevin_equation():
+    one, metal = PZT4.derived, ALUMINIUM
+    ring = HALF_WAVE.ring_thickness * sqrt(PZT4.density * one.s33_open)
+    ratio = sqrt(metal.density * metal.youngs_modulus * one.s33_open / PZT4.density)
+    for frequencies, k in ((resonances(HALF_WAVE, 3), one.k33), (antiresonances(HALF_WAVE, 3), 0.0)):
+        theta, mass = (
+            2.0 * pi * frequencies * ring,
+            2.0 * pi * frequencies * metal.length * sqrt(metal.density / metal.youngs_modulus),
+        )
+        np.testing.assert_allclose(ratio * np.tan(mass) * np.tan(theta), 1.0 - k**2 * np.tan(theta) / theta, rtol=1e-11)
+
+
+def test_stack_below_its_resonance_and_as_a_wave():
+    one, length, w = PZT4.derived, 0.01, 2.0 * pi * np.array([40.0, 4000.0, 4276.0])
+    port = STACK.port(w)
+    np.testing.assert_allclose(port.force_factor, one.d33 * STACK.area / (one.s33 * STACK.layer_thickness), rtol=1e-12)
+    assert port.force_factor == pytest.approx(0.93321, abs=5e-6)
+    dynamic = (1j * w * port.short_impedance).real
+    assert dynamic[0] == pytest.approx(STACK.area / (one.s33 * length), rel=1e-6)
+    mass = (dynamic[0] - dynamic[1]) / (w[1] ** 2 - w[0] ** 2)
+    assert mass == pytest.approx(PZT4.density * STACK.area * length / 3.0, rel=1e-3)
+    bending = (70e9 * 0.02 * 0.001**3 / 12.0) ** 0.25 * (2700.0 * 0.02 * 0.001 * w[2] ** 2) ** 0.75  # EI k^3
+    assert w[2] * abs(port.short_impedance[2]) / bending == pytest.approx(554.0, abs=0.5)
+    thin = replace(STACK, layers=400, layer_thickness=2.5e-5)  # a wave with the speed of short-circuited electrodes
+    assert resonances(thin)[0] == pytest.approx(1.0 / sqrt(PZT4.density * one.s33) / (4.0 * length), rel=1e-5)
+    bar = replace(STACK, layering="one-bar")
+    assert bar.port(w[2]).short_impedance == pytest.approx(port.short_impedance[2], rel=1e-6)
+    assert resonances(bar)[0] == pytest.approx(76534.907, abs=5e-4)  # a quarter of the wave of the free bar of 20 mm
+
+
+# --- Finite elements
+
+
+@pytest.mark.parametrize("base", ["fixed", "free", 3.1e7])
+@pytest.mark.parametrize("losses", [{}, LOSSES], ids=["lossless", "lossy"])
+@EACH
+def test_port_and_power_equal_those_of_finite_elements(actuator, losses, base):
+    one = replace(actuator, base=base, **losses)
+    if losses and actuator is UNEQUAL:
+        one = replace(one, back=replace(STEEL, loss_factor=0.0013))
+    for frequency, voltage, tip in ((7.1e3, 3.0 - 2.0j, 0.01 + 0.02j), (61e3, -1.3j, 0.7 - 0.1j)):
+        w = 2.0 * pi * frequency
+        stiffness = {"fixed": inf, "free": 0.0}.get(base, base)
+        reference, port = respond(layers_of(one), w, base=stiffness, voltage=voltage, tip=tip), one.port(w)
+        force = port.force_factor * voltage - port.short_impedance * tip
+        current = port.blocked_admittance * voltage + port.force_factor * tip
+        assert (force, current) == pytest.approx((reference.force, reference.current), rel=1e-8)
+        lost = 0.5 * (voltage * np.conj(current)).real - 0.5 * (force * np.conj(tip)).real
+        scale = 0.5 * (abs(voltage * current) + abs(force * tip))
+        assert lost == pytest.approx(reference.loss, abs=1e-9 * scale)
+        assert lost > 1e-6 * scale if losses else abs(lost) < 1e-12 * scale
+
+
+# --- Forms
+
+
+@pytest.mark.parametrize("base", ["fixed", "free", 3.1e7])
+@EACH
+def test_forms_agree(actuator, base):
+    mason, w = replace(actuator, base=base, **LOSSES), 2.0 * pi * np.array([300.0, 21e3, 87e3, 331e3])
+    expected = asdict(mason.port(w))
+    for name, value in asdict(replace(mason, form="klm").port(w)).items():
+        np.testing.assert_allclose(value, expected[name], rtol=1e-12)
+    errors = [
+        max(np.max(abs(value / expected[name] - 1.0)) for name, value in asdict(one.port(w)).items())
+        for one in (replace(mason, form="circuit", branches=n) for n in (40, 80))
+    ]
+    assert errors[0] < 1e-3
+    assert 2.8 < np.log2(errors[0] / errors[1]) < 3.2
+
+
+def test_truncation_of_the_circuit():
+    w = 2.0 * pi * 40e3
+    line = replace(ACROSS, form="circuit", branches=7).parts().active
+    exact, circuit = (1.0 / replace(line, form=form).three_port(w).symmetric for form in ("mason", "circuit"))
+    assert abs(circuit / exact - 1.0) == pytest.approx(line.truncation(w), rel=1e-9)
+    assert 1e-6 < line.truncation(w) < 1e-4
+
+
+def test_three_port_is_masons():
+    w, one, line = 2.0 * pi * 53e3, PZT4.derived, LONG.parts().active
+    theta, t = w * LONG.length / line.speed, one.d33 / (one.eps33 * one.s33_open) / (1j * w)
+    a, b = line.impedance / (1j * np.tan(theta)), line.impedance / (1j * np.sin(theta))
+    clamped = LONG.length / (1j * w * one.eps33 * (1.0 - one.k33**2) * LONG.area)
+    velocities, current = [0.3 + 0.1j, -0.2j], 0.07 - 0.04j
+    f1, f2, voltage = np.array([[a, b, t], [b, a, t], [t, t, clamped]]) @ [*velocities, current]
+    assert line.three_port(w).matrix @ [*velocities, voltage] == pytest.approx(np.array([f1, f2, current]), rel=1e-12)
+
+
+# --- Resonances
+
+
+def test_branches_of_the_bar_across_the_field():
+    k = PZT4.derived.k31
+    inductance = ACROSS.length**2 * PZT4.density * PZT4.derived.s11 / (8.0 * k**2 * CAPACITANCE)
+    for n in (1, 2, 5):
+        assert branch(ACROSS, n) == pytest.approx(
+            (8.0 * k**2 * CAPACITANCE / ((2 * n - 1) * pi) ** 2, inductance), rel=1e-10
+        )
+
+
+@pytest.mark.parametrize("actuator", [replace(UNEQUAL, base=3e8), STACK, LONG], ids=["langevin", "stack", "bar"])
+def test_branches_add_up_to_the_admittance(actuator):
+    branches, s = [branch(actuator, n) for n in range(1, 6)], 2j * pi * np.array([2e3, 11e3, 37e3])
+    total = (1.0 / impedance(actuator, s.imag / (2.0 * pi)) / s).real
+    rest = (
+        total - sum(c / (1.0 + s**2 * inductance * c) for c, inductance in branches).real
+    )  # clamped, and of the branches left out
+    assert np.ptp(rest) < 4e-3 * rest.mean() < 0.1 * np.ptp(total)
+
+
+@pytest.mark.parametrize("base", ["fixed", "free", 4.4e8])
+@pytest.mark.parametrize(
+    "actuator",
+    [UNEQUAL, replace(HALF_WAVE, back=replace(ALUMINIUM, length=0.0451)), replace(STACK, layers=7)],
+    ids=["unequal", "nearly symmetric", "stack"],
+)
+def test_no_resonance_is_missed(actuator, base):
+    one = replace(actuator, base=base)
+    poles, zeros = resonances(one, 6), antiresonances(one, 6)
+    assert np.all(poles < zeros)
+    assert np.all(zeros[:-1] < poles[1:])
+    f = np.unique(np.concatenate([np.geomspace(500.0, zeros[-1], 20_001), poles * (1 - 1e-9), poles * (1 + 1e-9)]))
+    susceptance = (1.0 / impedance(one, f)).imag
+    falls = np.flatnonzero((susceptance[:-1] > 0.0) & (susceptance[1:] < 0.0))  # it rises everywhere else (Foster)
+    roots = [brentq(lambda x: impedance(one, x).imag, f[i], f[i + 1], xtol=1e-9, rtol=1e-15) for i in falls]
+    assert poles == pytest.approx(roots, rel=1e-11)
+
+
+def test_modes_that_the_voltage_does_not_excite_are_left_out():
+    assert resonances(ACROSS, 3) == pytest.approx(resonances(ACROSS)[0] * np.array([1.0, 3.0, 5.0]), rel=1e-12)
+    assert coupling(ACROSS, 2) < coupling(ACROSS)
+    with pytest.raises(InputError, match="soft a spring"):
+        resonances(replace(LONG, base=1e-9))
+    with pytest.raises(InputError, match="count = 0"):
+        resonances(LONG, 0)
+
+
+# --- Scenes
+
+
+def test_quantities_of_a_scene():
+    beam = {"length": 0.5, "width": 0.02, "thickness": 0.001, "youngs_modulus": 70e9, "density": 2700.0}
+
+    def value(name, actuator, **arguments):
+        scene = scene_from({"name": "a", "beam": beam, "drive": {"frequency_hz": 4276.0, "actuator": actuator}})
+        return evaluate(f"actuator.{name}", arguments, scene, SolutionCache(scene.beam))
+
+    mass = {"length": 0.045, "youngs_modulus": 71e9, "density": 2800.0}
+    table = {"kind": "langevin", "rings": 2, "ring_thickness": 0.005, "area": HALF_WAVE.area, "front": mass}
+    assert value("resonance", table) == resonances(HALF_WAVE)[0]
+    assert value("antiresonance", table, n=2) == antiresonances(HALF_WAVE, 2)[1]
+    lossy = replace(HALF_WAVE, mechanical_loss=0.002, dielectric_loss=0.004)
+    table |= {"mechanical_loss": 0.002, "dielectric_loss": 0.004}
+    assert value("impedance", table, frequency_hz=24e3) == impedance(lossy, 24e3)
+    bar = {"kind": "bar-31", "length": 0.02, "width": 0.003, "thickness": 0.0005}
+    assert value("branch", bar, element="inductance") == branch(ACROSS).inductance
+    assert value("coupling", {"kind": "bar-33", "length": 0.02, "area": 9e-6}) == coupling(LONG)
+    wrong = {
+        "kind": ("bar-13", "did you mean"),
+        "area": (1e-6, "actuator.area is not a known key"),
+        "base": (-1.0, "above 0"),
+    }
+    wrong["material"] = ({**asdict(PZT4), "c44": -1.0}, "definite")
+    for key, (word, sentence) in wrong.items():
+        with pytest.raises(InputError, match=sentence):
+            value("coupling", {**bar, key: word})
