@@ -47,8 +47,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Beam", "Bent", "Contact", "Device", "ExactModel", "Foot", "FreeVibration", "HarmonicField", "HermiteModel",
-    "InputError", "Modes", "Motion", "PointForce", "PointMass", "PointMoment", "PointSpring", "Section", "SegmentModel", "Slider",
-    "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_scene", "simulate", "travelling_wave",
+    "InputError", "Modes", "Motion", "PointForce", "PointMass", "PointMoment", "PointSpring", "Section", "SegmentModel",
+    "Slider", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_scene", "simulate",
+    "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
 

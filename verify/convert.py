@@ -38,16 +38,15 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
 
 def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
     """A sentence for every error; the constraints between fields are checked where each field is valid."""
-    tables, inside = structs_of(kind), list[str]()
-    if len(tables) > 1 and isinstance(data, dict):
-        tag, name = data.get("kind"), f"{where}.kind".lstrip(".")
-        if tag not in tables:
-            known = near_name(str(tag), tuple(tables)) if tag is not None else f"give one of {', '.join(tables)}"
-            yield f"{name} = {shown(tag)} is not known: {known}" if tag is not None else f"{name} is missing: {known}"
+    table, inside = table_of(kind), list[str]()
+    if len(tables := structs_of(kind)) > 1 and isinstance(data, dict):
+        table = kind = tables.get(data.get("kind", ""))
+        if table is None:
+            word, names = data.get("kind"), tuple(tables)
+            known = f" = {shown(word)} is not known: {near_name(str(word), names)}"
+            yield f"{where}.kind{known}" if word else f"{where}.kind is missing: give one of {', '.join(names)}"
             return
-        kind, tables = tables[tag], {tag: tables[tag]}
         data = {key: value for key, value in data.items() if key != "kind"}
-    table = next(iter(tables.values()), None)
     lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
     if table is not None and isinstance(data, dict):
         fields = {field.encode_name: field for field in msgspec.structs.fields(table)}

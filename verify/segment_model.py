@@ -139,6 +139,7 @@ class SegmentModel(ChainStructure):
             masses=masses,
             inertias=inertias,
             elastic=self.attached.elastic,
+            flexibilities=lengths / self.links.stiffnesses if self.beam.stepped else None,
             reading_factors=reading_factors(self.attached.elastic, self.n_segments, self.wall)
             if any(self.attached.elastic)
             else None,

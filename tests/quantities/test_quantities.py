@@ -1,11 +1,10 @@
 """Every quantity: a finite value on one scene, bad input refused, and no argument without effect."""
 
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 from verify.actuators.transducers import Stack
 from verify.analysis.solution_cache import Bracket, SolutionCache
@@ -19,6 +18,8 @@ from verify.problem.point_attachments import PointMass
 from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
 from verify.quantities.base import as_plain, as_text
+from verify.scene.model import Drive, Scene, SceneDevice, SceneForce
+from verify.studies.motion import Motion
 from verify.travelling_wave import measure
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
@@ -37,13 +38,15 @@ FORCES = (PointForce(position=0.0411, amplitude=1.3, phase_deg=17.0), PointForce
 AT_ONCE = {"start": "rest", "soft_start_periods": 0.0, "modal_damping": None, "steps_per_period": 40}
 
 
-def scene_of(beam, slider=None, duration=None, devices=()):
-    drive = SimpleNamespace(frequency_hz=731.0, kind="force")
-    motion = SimpleNamespace(duration=duration, **AT_ONCE) if duration else None
-    return SimpleNamespace(beam=beam, drive=drive, forces=FORCES, devices=devices, slider=slider, motion=motion)
+def scene_of(beam, slider=None, duration=None, devices=(), **drive):
+    forces, on_it = (SceneForce(**asdict(force)) for force in FORCES), (SceneDevice(**asdict(one)) for one in devices)
+    drive = Drive(frequency_hz=731.0, force=tuple(forces), device=tuple(on_it), **drive)
+    studies = {"motion": Motion(duration=duration, **AT_ONCE)} if duration else {}
+    return Scene(name="case", beam=beam, drive=drive, slider=slider, studies=studies)
 
 
-BARE = SimpleNamespace(beam=STRIP, drive=None, forces=(), devices=(), slider=None, motion=None)
+BARE = Scene(name="bare", beam=STRIP)
+STACK = Stack(layers=7, layer_thickness=3.1e-4, area=2.3e-7, mechanical_loss=0.01)
 SCENES = {
     "bare": BARE,
     "clamped": scene_of(replace(STRIP, supports=("clamped", "pinned"))),
@@ -54,7 +57,8 @@ SCENES = {
     "undamped": scene_of(STRIP, LIGHT, 7e-4),
     "motor": scene_of(DAMPED, replace(POINT, coupling="one-way")),
     "device": scene_of(DAMPED, devices=(ENDED,)),
-    "stack": SimpleNamespace(beam=STRIP, drive=SimpleNamespace(actuator=TRANSDUCER), devices=(), slider=None),
+    "stacks": scene_of(DAMPED, actuator=STACK, kind="voltage"),
+    "stack": scene_of(STRIP, actuator=TRANSDUCER),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
@@ -79,7 +83,9 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "wave.signed_area_spread": ("driven", {"window": [0.2, 0.5]}), "wave.axis_ratio": ("driven", {"x": 0.31}),
     **{f"wave.{name}": ("driven", {"window": [0.2, 0.5]}) for name in ("best_ratio", "best_ratio_phase")},
     "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
-    "wave.best_ratio": ("driven", {}), "wave.best_ratio_phase": ("driven", {}),
+    **{f"wave.{name}": ("stacks", {}) for name in ("voltage_ratio", "voltage_direction", "pure_voltage_phase")},
+    "drive.power": ("stacks", {"actuator": 2}), "drive.force_per_volt": ("stacks", {}),
+    "drive.impedance_ratio": ("stacks", {}), "wave.best_ratio": ("driven", {}), "wave.best_ratio_phase": ("driven", {}),
     "wave.order": ("driven", {"model": "fem", "counts": [20, 40, 80]}),
     "wave.lumped_swr": ("bare", {"x": 0.31, "modes": [5, 6]}),
     "wave.fastest_crests": ("driven", {"limit": 0.7}), "wave.absorber_impedance": ("driven", {"position": 0.083}),

@@ -1,7 +1,7 @@
 """Actuators on a driven beam: superposition of the fields of their mechanical ports at one frequency.
 
-Each port, a force at a point or the pair of moments at the ends of a patch, has a field of the beam under its unit load.
-These fields have the mobilities M between the ports, v = v0 + M F, where v0 is due to other loads. The electrical
+Each port, a force at a point or the pair of moments at the ends of a patch, has a field of the beam under its unit
+load. These fields have the mobilities M between the ports, v = v0 + M F, where v0 is due to other loads. The electrical
 condition reduces a two-port F = B V - Z v, I = Y V + B v to F = F0 - Z_e v:
 
     voltage V:  F0 = B V,      Z_e = Z
@@ -67,10 +67,11 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
 
     def source(self, port: Port, omega: float) -> tuple[complex, complex]:
         """(F0, Z_e) of F = F0 - Z_e v."""
+        factor: Any = port.force_factor
         if self.voltage is not None:
-            return port.force_factor * self.voltage, port.short_impedance
-        if self.current is not None:
-            return port.force_factor / port.blocked_admittance * self.current, port.loaded_impedance()
+            return factor * self.voltage, complex(port.short_impedance)
+        if self.load is None:
+            return factor / port.blocked_admittance * self.current, port.loaded_impedance()
         return 0.0, port.loaded_impedance(self.load.admittance(omega))
 
 
@@ -126,8 +127,9 @@ def on_beam(
     if len(set(loads)) < len(loads):
         raise InputError("actuators: two are at one position, move one")
     omega = 2.0 * pi * float(frequencies_on(model.beam, frequency_hz)[0])
-    # one model with nodes at all moments, so that its displacements are reciprocal
-    cut = model.cut_at(one.position for one in (*others, *sum(loads, ())) if isinstance(one, PointMoment))
+    # one model for all fields, so that its displacements are reciprocal, with nodes of elements at all ports
+    cut = model.cut_at([one.position for load in loads for one in load])
+    cut = cut.cut_at(one.position for one in others if isinstance(one, PointMoment))
 
     def field(load: tuple[PointLoad, ...]) -> HarmonicField:
         # the weights of a transverse port are those of a device, which include the beam's compliance at its own place
@@ -169,18 +171,18 @@ def _displacement(field: HarmonicField, loads: tuple[PointLoad, ...]) -> complex
 
 
 def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: float) -> ActuatorState:
-    b, y, z = port.force_factor, port.blocked_admittance, port.short_impedance
-    voltage, current = mounted.voltage, mounted.current
-    if voltage is None:
-        load = 0.0 if mounted.load is None else mounted.load.admittance(omega)
-        voltage = ((current or 0.0) - b * v) / (y + load)
-    if current is None:
-        current = y * voltage + b * v
+    b, y, z = (complex(one) for one in (port.force_factor, port.blocked_admittance, port.short_impedance))
+    if mounted.voltage is None:
+        load = 0.0 if mounted.load is None else complex(mounted.load.admittance(omega))
+        voltage = ((mounted.current or 0.0) - b * v) / (y + load)
+    else:
+        voltage = complex(mounted.voltage)
+    current = y * voltage + b * v if mounted.current is None else complex(mounted.current)
     # of a complex B a part of V and v is lost as well
-    lost = y.real * abs(voltage) ** 2 + z.real * abs(v) ** 2 + 2.0 * complex(b).imag * (voltage * np.conj(v)).imag
+    lost = y.real * abs(voltage) ** 2 + z.real * abs(v) ** 2 + 2.0 * b.imag * (voltage * np.conj(v)).imag
     return ActuatorState(
-        voltage=complex(voltage),
-        current=complex(current),
+        voltage=voltage,
+        current=current,
         force=force,
         velocity=v,
         power_in=float(0.5 * (voltage * np.conj(current)).real),
@@ -195,7 +197,7 @@ class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
     beam: Beam
     loads: tuple[PointLoad, ...]
     error: float = 0.0
-    """Relative error of an actuator's reduction to a spring and a mass, about (omega/omega_1)^2."""
+    """Relative error of an actuator's dynamic stiffness as a spring and a mass, its losses included."""
 
 
 def beam_in_time(
@@ -230,8 +232,8 @@ def beam_in_time(
 
     low = omega * np.array([0.1, 0.2, 0.3])
     stiffness, mass, _ = np.linalg.solve(np.vander((low / omega) ** 2, increasing=True), dynamic(low).real).tolist()
-    whole, port = complex(dynamic(np.array([omega]))[0]), actuator.port(omega)
-    error = abs(whole - (stiffness + mass)) / abs(whole)
+    exact, port = complex(dynamic(np.array([omega]))[0]), actuator.port(omega)
+    error = abs(exact - (stiffness + mass)) / abs(exact)
     if error > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
         raise InputError(
             f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} (at "

@@ -45,6 +45,7 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     capacitance: Annotated[float, unit("F")] | None = None
     """C, F; negative for an active circuit."""
     connection: Literal["series", "parallel"] = "series"
+    """Connection of the parts with each other."""
 
     def __post_init__(self) -> None:
         validate(self, "shunt")

@@ -14,7 +14,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
 from verify.options import LINKS, TIPS, Joints, Links, Load, Tip, Wall
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
@@ -144,7 +144,7 @@ class ChainState:
 def build_system(
     beam: Beam,
     n_segments: int,
-    forces: Sequence[PointForce] = (),
+    forces: Sequence[PointLoad] = (),
     frequency_hz: float = 0.0,
     *,
     load: Load = "lever",
@@ -192,7 +192,7 @@ def build_system(
     loads = []
     for force in forces:
         if not isinstance(force, PointForce):
-            raise InputError(f"forces has a {type(force).__name__}: a nonlinear chain takes a PointForce alone, give it")
+            raise InputError(f"forces has a {type(force).__name__}: a nonlinear chain takes PointForce alone, give it")
         if force.position > system.length * (1.0 + 1e-12):
             raise InputError(f"force.position = {force.position!r} lies off the beam: give up to {system.length!r} m")
         if load == "lever":

@@ -12,7 +12,7 @@ from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Kind, Loads, Numbers, loads_on
 from verify.linear.time_basis import TimeBasis
 from verify.options import THEORIES
-from verify.problem.beam import Beam, PointForce, PointLoad
+from verify.problem.beam import Beam, PointLoad
 from verify.problem.device import Device
 from verify.validation import as_tuple, check_choice, check_integer, check_type
 
@@ -143,7 +143,7 @@ class BeamModel(ABC):
         """Raise NoFigureError for a frequency above the cut-off of the parts."""
 
     def cut_at(self, positions: Iterable[float]) -> "BeamModel":
-        """The model with moments at positions, m: of a discrete model one with nodes or elastic ends there."""
+        """The model for moments or actuators at positions, m: elements with nodes, chains with elastic ends there."""
         return self
 
     def check_n_modes(self, n_modes: int) -> None:
@@ -174,7 +174,10 @@ class BeamModel(ABC):
                     )
 
     def check_stationed(
-        self, forces: Kind | Sequence[Kind], devices: Devices, kind: type[Kind] = PointLoad  # type: ignore[assignment]
+        self,
+        forces: Kind | Sequence[Kind],
+        devices: Devices,
+        kind: type[Kind] = PointLoad,  # type: ignore[assignment]
     ) -> tuple[tuple[Kind, ...], tuple[Device, ...]]:
         """(loads, devices) as tuples. Raises InputError for a position off the beam, no effect, and no loads."""
         acting, stationed = loads_on(self.beam, forces, kind), as_tuple("devices", devices, Device)

@@ -321,7 +321,7 @@ class DiscreteModel(BeamModel):
     def cut_at(self, positions: Iterable[float]) -> "DiscreteModel":
         """The model with negligible bodies at positions, m; itself if it has bodies at all of them.
 
-        Bodies place nodes, and elastic joints at the ends; a moment at any other position is of order 1 or 2.
+        Bodies place nodes, and elastic joints at the ends; elsewhere a moment is of order 1 or 2, a device of order 3.
         """
         beam, negligible = self.beam, 1e-15 * self.beam.mass_per_length * self.unit**3
         bodies = {mass.position for mass in beam.mass if mass.rotary_inertia}

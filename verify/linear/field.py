@@ -156,7 +156,7 @@ def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
     return replace(first, shapes=shapes, rotation_shapes=turned, conjugate=conjugate)
 
 
-def acting_on(loads: Sequence[PointLoad], devices: Sequence[Device]) -> dict[str, tuple[Any, ...]]:
+def acting_on(loads: Sequence[PointLoad], devices: Sequence[Device]) -> dict[str, Any]:
     """The fields `forces` and `couples` of a `HarmonicField` under loads with devices."""
     forces = tuple(load for load in loads if isinstance(load, PointForce))
     couples = [load.position for load in loads if isinstance(load, PointMoment)]

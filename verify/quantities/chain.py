@@ -10,7 +10,7 @@ from verify import options
 from verify.errors import InputError
 from verify.problem.beam import PointForce
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall
+from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall, check_forces
 from verify.quantities.slider import SliderOptions, TimeOptions, motion_arguments
 from verify.validation import unit
 
@@ -104,7 +104,7 @@ def _drive(scene: Scene, time: TimeOptions) -> tuple[tuple[PointForce, ...], flo
     """(forces, Hz, s) of an undamped motion from rest without soft start. Raises InputError for any other [motion]."""
     if scene.motion is None and time.soft_start_periods is None:
         time = replace(time, soft_start_periods=0.0)
-    opt.check_forces(scene, "a nonlinear chain")
+    check_forces(scene, "a nonlinear chain")
     request = motion_arguments(scene, time)
     for name, needed in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
         if (request[name] or 0.0) != needed:

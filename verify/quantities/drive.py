@@ -33,17 +33,17 @@ def _port(scene: Scene, frequency_hz: float | None) -> "tuple[Port, float]":
 @quantity("drive.force_per_volt", unit="N/V", reads=DRIVEN, devices=True)
 def force_per_volt(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
     """Magnitude of the blocked force of an actuator per volt; of a patch, N m/V."""
-    return float(abs(_port(scene, frequency_hz)[0].force_factor))
+    return abs(complex(_port(scene, frequency_hz)[0].force_factor))
 
 
 @quantity("drive.impedance_ratio", unit="1", reads=DRIVEN, devices=True)
 def impedance_ratio(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
-    """omega |Z| of a short-circuited actuator over EI k^3: far above 1 it imposes displacements, far below forces."""
+    """Dynamic stiffness omega |Z| of a short-circuited actuator over EI k^3: far above 1 it imposes displacements."""
     from verify.linear.field import lossless_wavenumber
 
     port, omega = _port(scene, frequency_hz)
     k = abs(lossless_wavenumber(scene.beam, omega / (2.0 * pi)))
-    return float(omega * abs(port.short_impedance) / (scene.beam.bending_stiffness * k**3))
+    return omega * abs(complex(port.short_impedance)) / (scene.beam.bending_stiffness * k**3)
 
 
 def _voltages(options: FieldOptions) -> FieldOptions:

@@ -143,7 +143,7 @@ def power_imbalance(
 
     case = driven_case(scene, options)
     if case.places[1]:
-        raise InputError("drive.device: a power balance takes transverse devices and drives, leave rotational terms out")
+        raise InputError("drive.device: a power balance takes transverse devices and forces, leave others out")
     return power_imbalance(driven_field(scene, cache, options), measured(case, cache, window))
 
 

@@ -253,11 +253,13 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             if self.drive is not None:
                 check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
             forces, _, _ = self.forces, self.devices, self.shunts
-            for force in forces if self.drive is not None and self.drive.kind != "displacement" else ():
-                amplitude, patched = {"amplitude": force.amplitude}, isinstance(self.drive.actuator, Patch)
-                turning = self.drive.kind == "moment" or (patched and self.drive.kind != "force")
-                acts = ({}, amplitude) if turning else (amplitude, {})
-                check_free("drive.force", force.position, self.beam.length, self.beam.supports, *acts)
+            kind, patched = (self.drive.kind, isinstance(self.drive.actuator, Patch)) if self.drive else ("", False)
+            turning = kind == "moment" or (patched and kind != "force")
+            for force in forces if kind != "displacement" else ():
+                acts = dict[str, float](), {"amplitude": force.amplitude}
+                check_free(
+                    "drive.force", force.position, self.beam.length, self.beam.supports, *acts[:: 1 if turning else -1]
+                )
             if self.slider is not None:
                 self.slider.initial_position(self.beam)
         except InputError as error:

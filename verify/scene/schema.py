@@ -52,7 +52,8 @@ def scene_schema(section: str = TOP) -> dict[str, Any]:
     for name, kind in kinds.items():
         table = tables[names[name].rpartition("/")[2]]
         table["description"] = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ")
-        for key, meaning in descriptions(kind).items():
+        tag = {"kind": "Kind of the table."} if kind.__struct_config__.tag else {}
+        for key, meaning in (descriptions(kind) | tag).items():
             own = table["properties"][key]
             table["properties"][key] = {**({"allOf": [own]} if "$ref" in own else own), "description": meaning}
     for name in ("Gate", "Claim"):

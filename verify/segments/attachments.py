@@ -64,7 +64,8 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
 def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
     """Weights of link rotations for a couple or a reading at positions (m), sparse (p, N), without end correction.
 
-    Lever rule: the link, at a joint the mean of both links. Reciprocal rule: linear between the links' middles.
+    Lever rule: the link, at a joint the mean of both links. Reciprocal rule: linear between the links' middles in the
+    bending compliance between them, so that a couple at a step of the beam bends the joint there as it bends the beam.
     """
     n = chain.n_segments
     if rule == "lever" or n < 3:
@@ -75,6 +76,11 @@ def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
         links = np.clip(np.searchsorted(middles, positions), 1, n - 1)
         before = links - 1
         share = np.clip((positions - middles[before]) / (middles[links] - middles[before]), 0.0, 1.0)
+        if chain.flexibilities is not None:
+            left, right = chain.flexibilities[before], chain.flexibilities[links]
+            past = (positions - chain.nodes[links]) / (chain.unit * 0.5)  # the joint, in half lengths of a link
+            past = np.clip(past / np.where(past < 0.0, chain.lengths[before], chain.lengths[links]), -1.0, 1.0)
+            share = (left + past * np.where(past < 0.0, left, right)) / (left + right)
     return sparse_rows(np.stack([before, links], axis=1), np.stack([1.0 - share, share], axis=1), n)
 
 

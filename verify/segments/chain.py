@@ -31,6 +31,9 @@ class Chain:
     reading_factors: Array | None = None
     """(N + 1,), factors on the reading corrections near elastic ends (`walls`); None: all 1."""
 
+    flexibilities: Array | None = None
+    """(N,), l/EI of the links of a stepped beam; None where it is proportional to their lengths."""
+
     @property
     def n_segments(self) -> int:
         """N."""

@@ -14,7 +14,7 @@ from verify.formatting import unit_of, with_unit
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
-from verify.studies.motion import Damping, check_driven, check_start, readings
+from verify.studies.motion import Damping, check_driven, check_start, readings, reduction_margins
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
@@ -116,13 +116,13 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             fields.append(
                 self._field(case, like, cache, lambda what: progress(f"{next(number)} of {self.steps}: {what}"))
             )
-        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache)
+        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache) + reduction_margins(scene)
         valid = verdict_of(margins).level != "not trusted"
         summary = _with_error("Free speed", first.free.speed, first.free.error, "m/s")
         summary += ", " + _with_error("stall force", still.means.force, still.errors.force, "N")
         return Result(
             summary=f"{summary} ({first.name})." if valid else "",
-            tables=[*_tables(fields), *([readings(scene)] if scene.motion else [])],
+            tables=[*_tables(fields), *([readings(scene)] if scene.motion and not first.case.beam.spring else [])],
             figures=_figures(fields, margins),
             warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
             margins=margins,

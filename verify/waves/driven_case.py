@@ -1,7 +1,7 @@
 """A driven beam: model, drive and devices; superposition of the waves of its actuators."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
@@ -54,7 +54,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
         if self.shunts and self.kind == "displacement":
             raise InputError("drive.kind = 'displacement': shunts take another kind, give 'force' or 'voltage'")
         if self.actuator is None and (self.shunts or self.electrical):
-            raise InputError(f"drive.kind = {self.kind!r} and shunts need a drive.actuator: give one, or kind = 'force'")
+            raise InputError(f"drive.kind = {self.kind!r}: it and shunts need a drive.actuator, give one, or 'force'")
 
     @property
     def electrical(self) -> bool:
@@ -107,7 +107,9 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     def _driven(self, forces: Sequence[PointForce]) -> list[Mounted]:
         if self.actuator is None or not self.electrical:
             return []
-        return [Mounted(actuator=self.actuator, position=f.position, **{self.kind: phasor(f)}) for f in forces]
+        amplitudes: list[dict[str, Any]] = [{self.kind: phasor(force)} for force in forces]
+        each = zip(forces, amplitudes, strict=True)
+        return [Mounted(actuator=self.actuator, position=force.position, **own) for force, own in each]
 
     @property
     def _shunted(self) -> list[Mounted]:
@@ -169,7 +171,7 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
     """Unit waves of a case's actuators, including active devices. Raises InputError for an invalid window."""
     beam, theory, highest = case.beam, case.model.theory, float(frequencies_hz.max())
     positions, (across, turning) = [force.position for force in case.acting], case.places
-    check_span(beam, across if case.kind == "force" else [*across, *positions], window, turning, theory)
+    check_span(beam, [*across, *positions], window, turning, theory)
     rule = window_rule(window, wavenumber(beam, highest, theory).real)
     responses = _unit_responses(case, frequencies_hz, positions, rule.x)
     k, missing = np.full(len(frequencies_hz), np.nan, dtype=complex), list[NoFigureError]()
@@ -202,11 +204,12 @@ def _unit_scale(case: DrivenCase, hertz: float) -> float:
     if case.actuator is None or not case.electrical:
         return response
     port = case.actuator.port(omega)
-    factor, own = (port.force_factor, port.short_impedance)
+    factor, own = abs(complex(port.force_factor)), abs(complex(port.short_impedance))
     if case.kind == "current":
-        factor, own = factor / port.blocked_admittance, port.loaded_impedance()
-    turns = abs(wavenumber(case.beam, hertz)) if isinstance(case.actuator, Patch) else 1.0
-    return float(abs(factor) * turns / (1.0 / response + omega * abs(own)))
+        factor, own = factor / abs(complex(port.blocked_admittance)), abs(complex(port.loaded_impedance()))
+    if isinstance(case.actuator, Patch):
+        return factor * response * abs(wavenumber(case.beam, hertz))
+    return factor / (1.0 / response + omega * own)
 
 
 def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[float], x: Array) -> ComplexArray:

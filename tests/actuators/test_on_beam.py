@@ -1,0 +1,250 @@
+"""Actuators on a beam: fields and ports against dense elements and devices, powers, orders, the sheet's figures, time."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from tests.beams import BEAMS, HELD, MODELS, PAPER, close, over
+from tests.reference.dense import Elements
+from tests.reference.stacks import Ceramic, Rod, solve
+from verify import Device, ExactModel, HermiteModel, PointForce, PointMoment, SegmentModel, simulate
+from verify.actuators.materials import PIEZO
+from verify.actuators.on_beam import Mounted, beam_in_time, on_beam
+from verify.actuators.patch import Patch
+from verify.actuators.shunt import Load, absorbing_load
+from verify.actuators.transducers import Stack
+from verify.errors import InputError, ResonanceError
+from verify.problem.device import of_impedance
+from verify.travelling_wave import DrivenCase, best_drive, matched_device, measure, middle_half
+
+BEAM, HERTZ = replace(BEAMS["clamped-pinned"], loss_factor=0.007), 733.0
+OMEGA, X = 2.0 * np.pi * HERTZ, np.linspace(0.03, 0.7, 17)
+SOFT = Stack(layers=11, layer_thickness=4.1e-4, area=2.3e-9, dielectric_loss=0.011, mechanical_loss=0.017,
+             piezoelectric_loss=0.009)  # fmt: skip
+CLEAN = SOFT.lossless
+FORCE = PointForce(position=0.52, amplitude=0.7, phase_deg=31.0)
+DEVICE = Device(position=0.61, dashpot=1.3, stiffness=910.0)
+SERIES = Load(resistance=3.1e5, inductance=47.0)
+PATCH = Patch(length=0.061, thickness=4e-4, width=0.02, sides=1)
+
+
+def mounted(actuator=SOFT):
+    return [
+        Mounted(actuator=actuator, position=0.0731, voltage=130.0 - 41.0j),
+        Mounted(actuator=actuator, position=0.2913, current=7e-6 + 2e-6j),
+        Mounted(actuator=actuator, position=0.4411, load=SERIES),
+    ]
+
+
+# --- Fields and ports ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 4e4])
+def test_stacks_on_elements_are_those_of_rods_and_charges(stiffness):
+    actuator, count = replace(SOFT, area=SOFT.area * stiffness), 14
+    s, d, epsilon = actuator.ceramic.bar_constants("33")
+    ceramic, sizes = Ceramic(s, d, epsilon, PIEZO["pzt-4"].density), (11, 4.1e-4, actuator.area)
+    drop = 1.0 / SERIES.admittance(OMEGA)
+    rods = [Rod(one.position, ceramic, *sizes, source=one.voltage or 0.0, drop=drop if one.load else 0.0,
+                current=one.current) for one in mounted()]  # fmt: skip
+    nodes = HermiteModel(BEAM, count).cut_at([one.position for one in mounted()]).modes(1).nodes
+    written = Elements(BEAM, nodes)
+    row = written.row(DEVICE.position, 0)
+    more = DEVICE.dynamic_stiffness(OMEGA) * np.outer(row, row)
+    expected = solve(BEAM, nodes, rods, HERTZ, X, written.load([FORCE]), more)
+    found = on_beam(HermiteModel(BEAM, count), mounted(actuator), HERTZ, forces=FORCE, devices=DEVICE)
+    close(found.field.deflection(X), expected.w, 2e-8)
+    for i, one in enumerate(found.actuators):
+        ports = [getattr(one, name) for name in ("voltage", "current", "velocity")]
+        close(np.array(ports), np.array([expected.voltage[i], expected.current[i], expected.velocity[i]]), 2e-8)
+        assert one.velocity == pytest.approx(expected.velocity[i], rel=1e-6)
+
+
+@over(MODELS)
+def test_stacks_on_every_model_are_devices_with_a_blocked_force(name):
+    model, port = MODELS[name](BEAM), replace(SOFT, area=25e-6).port(OMEGA)
+    loads = (0.0, 0.0, SERIES.admittance(OMEGA))
+    impedances = (port.short_impedance, port.loaded_impedance(), port.loaded_impedance(loads[2]))
+    blocked = (port.force_factor * (130.0 - 41.0j), port.force_factor / port.blocked_admittance * (7e-6 + 2e-6j), 0.0)
+    devices = [replace(of_impedance(one.position, complex(z), OMEGA), amplitude=abs(f), phase_deg=np.angle(f, deg=True))
+               for one, z, f in zip(mounted(), impedances, blocked, strict=True)]  # fmt: skip
+    found = on_beam(model, mounted(replace(SOFT, area=25e-6)), HERTZ, forces=FORCE).field
+    expected = model.cut_at([one.position for one in devices]).harmonic(FORCE, HERTZ, devices=devices)
+    close(found.deflection(X), expected.deflection(X), 1e-9)
+    close(found.slope(X), expected.slope(X), 1e-9)
+
+
+def test_a_patch_is_a_moment_at_either_end_and_its_shunt_a_spring_between_them():
+    beam, patch = PATCH.on(BEAM, 0.31), PATCH.bonded(BEAM)
+    port, ends = patch.port(OMEGA), (0.31 - 0.0305, 0.31 + 0.0305)
+    moments = [PointMoment(position=x, amplitude=sign * 17.0 * port.force_factor.real)
+               for x, sign in zip(ends, (-1.0, 1.0), strict=True)]  # fmt: skip
+    driven = on_beam(ExactModel(beam), Mounted(actuator=patch, position=0.31, voltage=17.0), HERTZ)
+    close(driven.field.deflection(X), ExactModel(beam).harmonic(moments, HERTZ).deflection(X), 1e-12)
+    nodes = HermiteModel(beam, 40).cut_at(ends).modes(1).nodes
+    written = Elements(beam, nodes)
+    row = written.row(ends[1], 1) - written.row(ends[0], 1)
+    spring = 1j * OMEGA * port.force_factor**2 / (port.blocked_admittance + SERIES.admittance(OMEGA))
+    values = written.harmonic(written.load([FORCE]), HERTZ, more=spring / (1j * OMEGA) * np.outer(row, row))
+    shunted = Mounted(actuator=patch, position=0.31, load=SERIES)
+    found = on_beam(HermiteModel(beam, 40), shunted, HERTZ, forces=FORCE)
+    close(found.field.deflection(X), written.values_at(values, X, 0), 1e-8)
+    assert found.actuators[0].velocity == pytest.approx(1j * OMEGA * (row @ values), rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("model", "counts", "actuator", "expected"),
+    [
+        (SegmentModel, (61, 122, 244, 488), SOFT, (4.0, 4.0)),
+        (HermiteModel, (15, 30, 60, 120), SOFT, (4.0, 4.0)),
+        (HermiteModel, (15, 30, 60, 120), PATCH.bonded(BEAM), (4.0, 4.0)),
+        # a moment at a step of a chain: order 1 in the rotation at its own place
+        (SegmentModel, (61, 122, 244, 488), PATCH.bonded(BEAM), (2.0, 1.0)),
+    ],
+)
+def test_orders_of_the_field_and_of_the_velocity_of_actuators(model, counts, actuator, expected):
+    beam = actuator.on(BEAM, [0.21, 0.45]) if isinstance(actuator, Patch) else BEAM
+    both = [Mounted(actuator=actuator, position=x, voltage=v) for x, v in ((0.21, 31.0), (0.45, 17.0j))]
+    x = np.array([0.04, 0.09, 0.33, 0.58, 0.69])
+
+    def figures(model):
+        found = on_beam(model, both, HERTZ)
+        return found.field.deflection(x), np.array([one.velocity for one in found.actuators])
+
+    exact = figures(ExactModel(beam))
+    errors = np.array([[abs(a - b).max() for a, b in zip(figures(model(beam, n)), exact, strict=True)] for n in counts])
+    assert np.log2(errors[0] / errors[-1]) / 3.0 == pytest.approx(expected, abs=0.5)
+    assert (errors[-1] < 0.03 * np.array([abs(one).max() for one in exact])).all()
+
+
+# --- Powers ----------------------------------------------------------------------------------------------------------
+
+
+@over(MODELS)
+@pytest.mark.parametrize("actuator", [SOFT, PATCH.bonded(BEAM)], ids=["stack", "patch"])
+def test_power_in_is_power_out_and_losses_and_a_lossless_beam_returns_it_all(name, actuator):
+    beam = replace(BEAM, loss_factor=0.0)
+    found = on_beam(MODELS[name](beam), mounted(actuator), HERTZ)
+    scale = max(abs(one.power_in) for one in found.actuators)
+    for one in found.actuators:
+        assert one.power_in == pytest.approx(one.power_out + one.loss, abs=1e-11 * scale)
+        assert one.loss >= 0.0
+    assert abs(found.absorbed) < 1e-9 * scale
+    shunt = found.actuators[2]
+    assert shunt.power_in == pytest.approx(-0.5 * 3.1e5 * abs(shunt.current) ** 2, rel=1e-9)
+
+
+def test_the_power_of_all_actuators_is_dissipated_in_bending_and_in_a_dashpot():
+    found = on_beam(ExactModel(BEAM), mounted(), HERTZ, devices=DEVICE)
+    edges = np.unique([*np.linspace(0.0, BEAM.length, 60), DEVICE.position, *(one.position for one in mounted())])
+    points, weights = np.polynomial.legendre.leggauss(8)
+    half = 0.5 * np.diff(edges)[:, None]
+    x, weights = (edges[:-1, None] + half * (points + 1.0)).ravel(), (half * weights).ravel()
+    bending = abs(found.field.derivative(x, 2)) ** 2 @ weights * BEAM.bending_stiffness
+    dashpot = DEVICE.dashpot * (OMEGA * abs(found.field.deflection(DEVICE.position)[0])) ** 2
+    assert found.absorbed == pytest.approx(0.5 * (OMEGA * BEAM.loss_factor * bending + dashpot), rel=1e-9)
+
+
+# --- The paper's beam ------------------------------------------------------------------------------------------------
+
+PAPER_HZ, D = 4276.0, 0.0116
+STACK = Stack(layers=20, layer_thickness=0.5e-3, area=25e-6)
+
+
+def paper(phase=90.0, volts=1.0, actuator=STACK, **more):
+    forces = (
+        PointForce(position=D, amplitude=volts),
+        PointForce(position=PAPER.length - D, amplitude=volts, phase_deg=phase),
+    )
+    model = ExactModel(PAPER)
+    return DrivenCase(model=model, forces=forces, frequency_hz=PAPER_HZ, actuator=actuator, kind="voltage", **more)
+
+
+def wave_of(case):
+    field = case.field(case.acting, PAPER_HZ)
+    return measure(field, middle_half(PAPER), field.wavenumber)
+
+
+def test_voltages_of_stiff_stacks_reverse_the_papers_wave():
+    port, k = STACK.port(2.0 * np.pi * PAPER_HZ), ExactModel(PAPER).wavenumber(PAPER_HZ).real
+    assert port.force_factor == pytest.approx(0.93321, abs=5e-6)
+    stiffness = 2.0 * np.pi * PAPER_HZ * abs(port.short_impedance)
+    assert stiffness / (PAPER.bending_stiffness * k**3) == pytest.approx(554.03, abs=0.01)
+    assert wave_of(paper()).standing_wave_ratio == pytest.approx(2.56564, abs=5e-6)
+    directions = [wave_of(paper(actuator=replace(STACK, area=25e-6 * part))).waves.direction for part in (2e-3, 4e-3)]
+    assert directions == [1, -1]
+    assert wave_of(paper()).waves.direction == -1
+    best = best_drive(paper())
+    assert best.equal_phase_deg == pytest.approx(-42.58828, abs=5e-6)
+    assert best.equal_reflection[0] < 1e-7
+
+
+def test_one_stack_takes_the_power_that_the_other_returns():
+    case = paper(volts=100.0)
+    first, second = case.actuated(case.acting, PAPER_HZ).actuators
+    assert second.power_in == pytest.approx(3.19474e-3, abs=5e-9)
+    assert first.power_in == pytest.approx(-second.power_in, rel=1e-9)
+    assert wave_of(case).energy_flux == pytest.approx(-second.power_in, rel=1e-8)
+
+
+def test_a_shunted_stack_absorbs_the_wave_and_a_thousandth_of_its_inductance_costs_a_third():
+    omega, end = 2.0 * np.pi * PAPER_HZ, matched_device(PAPER, PAPER_HZ, D)
+    load = absorbing_load(STACK.port(omega), end.impedance(omega), omega)
+    assert load.resistance == pytest.approx(4.66507, rel=1e-5)
+    assert load.inductance == pytest.approx(0.1222564, rel=1e-6)
+    reflected = []
+    for inductance in (load.inductance, 1.001 * load.inductance, 1.01 * load.inductance):
+        shunt = (PAPER.length - D, replace(load, inductance=inductance))
+        case = DrivenCase(model=ExactModel(PAPER), forces=(PointForce(position=D),), frequency_hz=PAPER_HZ,
+                          actuator=STACK, shunts=(shunt,))  # fmt: skip
+        reflected.append(wave_of(case).reflection)
+    assert reflected == pytest.approx([0.0, 0.332, 0.962], abs=1e-3)
+
+
+# --- Time ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("kind", "actuator", "off"), [("voltage", CLEAN, 2e-5), ("current", CLEAN, 2e-5), ("voltage", PATCH, 1e-9)]
+)
+def test_a_drive_in_time_has_the_steady_state_of_its_ports(kind, actuator, off):
+    beam, amplitudes, places = replace(BEAM, loss_factor=0.03), (110.0, 70.0 * np.exp(1j)), (0.21, 0.45)
+    forces = [PointForce(position=x, amplitude=abs(v), phase_deg=np.angle(v, deg=True))
+              for x, v in zip(places, amplitudes, strict=True)]  # fmt: skip
+    there = beam_in_time(beam, kind, forces, actuator, HERTZ)
+    whole, port = (actuator.on(beam, places), actuator.bonded(beam)) if actuator is PATCH else (beam, actuator)
+    driven = [Mounted(actuator=port, position=x, **{kind: v}) for x, v in zip(places, amplitudes, strict=True)]
+    field = on_beam(ExactModel(whole), driven, HERTZ).field
+    close(ExactModel(there.beam).harmonic(there.loads, HERTZ).deflection(X), field.deflection(X), off)
+    assert there.error < off
+    assert bool(there.error) == bool(there.beam.spring) == (actuator is CLEAN)
+    run = simulate(there.beam, there.loads, HERTZ, 800 / HERTZ, model="fem", count=20, soft_start_periods=9,
+                   modal_damping=0.2, at=X)  # fmt: skip
+    lossless = HermiteModel(replace(there.beam, loss_factor=0.0), 20)
+    steady = lossless.harmonic(there.loads, HERTZ, modal_damping=0.2).deflection(X)
+    close(run.deflection[-1], (steady * np.exp(1j * OMEGA * run.times[-1])).real)
+
+
+@pytest.mark.parametrize(
+    ("kind", "actuator", "message"),
+    [
+        ("displacement", None, "a beam moves in time under no displacements"),
+        ("current", PATCH, "a beam moves in time under no currents of a patch"),
+        ("voltage", replace(STACK, layers=4000), "in time it is a spring and a mass, which at 733 Hz errs by"),
+    ],
+)
+def test_what_has_no_equivalent_in_time_is_refused(kind, actuator, message):
+    with pytest.raises(InputError, match=message):
+        beam_in_time(BEAM, kind, [FORCE], actuator, HERTZ)
+
+
+def test_what_cannot_be_solved_is_refused():
+    one = Mounted(actuator=STACK, position=0.21, voltage=1.0)
+    with pytest.raises(InputError, match="two are at one position"):
+        on_beam(ExactModel(HELD), [one, replace(one, voltage=2.0)], HERTZ)
+    with pytest.raises(InputError, match="give one of voltage, current and load"):
+        replace(one, current=1.0)
+    with pytest.raises(InputError, match="on a clamped support"):
+        on_beam(ExactModel(HELD), replace(one, position=0.0), HERTZ)
+    with pytest.raises(ResonanceError, match="superposed on the beam without them"):
+        on_beam(ExactModel(HELD), one, float(ExactModel(HELD).modes(3).frequencies_hz[2]))
