@@ -180,7 +180,7 @@ def test_voltages_of_stiff_stacks_reverse_the_papers_wave():
 
 
 def test_one_stack_takes_the_power_that_the_other_returns():
-    case = paper(volts=100.0)
+    case = paper(volts=100.0, actuator=replace(STACK, layering="one-bar"))
     first, second = case.actuated(case.acting, PAPER_HZ).actuators
     assert second.power_in == pytest.approx(3.19474e-3, abs=5e-9)
     assert first.power_in == pytest.approx(-second.power_in, rel=1e-9)
