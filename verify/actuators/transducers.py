@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from verify.actuators.bar import Line, PiezoLine
 
 Base = Literal["fixed", "free"] | Annotated[float, unit("N/m", gt=0)]
-Layering = Literal["layers", "one-bar"]
 Loss = Annotated[Relative, unit("loss tangent", ge=0, lt=1)]
 LOSSES = ("dielectric_loss", "mechanical_loss", "piezoelectric_loss")
 
@@ -77,10 +76,6 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         port = active.three_port(omega).port(base if back is None else back.input_impedance(omega, base))
         return port if front is None else front.after(omega, port)
 
-    def _rings(self, layers: int, thickness: float, area: float, layering: Layering) -> "PiezoLine":
-        length, layers = (layers * thickness, 1) if layering == "one-bar" else (thickness, layers)
-        return self._piezo("33", length=length, area=area, gap=thickness, layers=layers)
-
     def _piezo(self, direction: Direction, **sizes: Any) -> "PiezoLine":
         from verify.actuators.bar import piezo_line
 
@@ -132,15 +127,17 @@ class Stack(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     """m."""
     area: Annotated[float, unit("m^2", gt=0)]
     """Area of its section, m^2."""
-    layering: Layering = "layers"
-    """layers: exact; one-bar: as a single bar, for frequencies well below the first resonance."""
+    layering: Literal["layers", "one-bar"] = "layers"
+    """layers: exact; one-bar: as a single bar, well below the first resonance."""
     base: Base = "fixed"
     """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
 
     @cached_property
     def parts(self) -> Parts:
         """The layers."""
-        return Parts(None, self._rings(self.layers, self.layer_thickness, self.area, self.layering), None)
+        joined, layers = (self.layers, 1) if self.layering == "one-bar" else (1, self.layers)
+        gap = self.layer_thickness
+        return Parts(None, self._piezo("33", length=joined * gap, area=self.area, gap=gap, layers=layers), None)
 
 
 class EndMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -184,8 +181,6 @@ class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Mass at the tip."""
     back: EndMass | None = None
     """Mass at the base; default: that of the tip."""
-    layering: Layering = "layers"
-    """layers: exact; one-bar: the rings as a single bar, equal for two rings between equal masses."""
 
     @property
     def lossless(self) -> "Langevin":
@@ -196,7 +191,8 @@ class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     @cached_property
     def parts(self) -> Parts:
         """Back mass, rings, front mass."""
-        rings = self._rings(self.rings, self.ring_thickness, self.area, self.layering)
+        gap = self.ring_thickness
+        rings = self._piezo("33", length=gap, area=self.area, gap=gap, layers=self.rings)
         return Parts((self.back or self.front).line(self.area), rings, self.front.line(self.area))
 
 
