@@ -24,7 +24,7 @@ class Line(msgspec.Struct, frozen=True, kw_only=True):
     length: float
     """l, m."""
 
-    def seen_through(self, omega: Any, load: Any) -> Any:
+    def input_impedance(self, omega: Any, load: Any) -> Any:
         """Impedance of one face whose other face has the impedance `load`, kg/s; None is a rigid load."""
         own = self.impedance / (1j * np.tan(omega * self.length / self.speed))
         return own if load is None else (self.impedance**2 + own * load) / (own + load)

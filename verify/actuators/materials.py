@@ -2,9 +2,10 @@
 
 from functools import cached_property
 from math import sqrt
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import msgspec
+from msgspec import Meta
 
 from verify.errors import InputError
 from verify.validation import Relative, unit, validate
@@ -20,6 +21,24 @@ Form = Literal["mason", "klm", "circuit"]
 """Mason's three-port, the model of Krimholtz, Leedom and Matthaei, or the circuit of Butterworth and Van Dyke."""
 
 
+Stiffness = Annotated[float, unit("Pa"), Meta(description="cE, Pa")]
+Stress = Annotated[float, unit("C/m^2"), Meta(description="e, C/m^2")]
+Permittivity = Annotated[float, unit("relative", gt=0), Meta(description="epsS over that of vacuum")]
+
+
+class Derived(NamedTuple):
+    """Constants of the strain-charge form that act in slender bars, without losses."""
+
+    s11: float  # sE11, 1/Pa
+    s33: float  # sE33, 1/Pa
+    s33_open: float  # sD33 = sE33 (1 - k33^2), 1/Pa
+    d31: float  # C/N
+    d33: float  # C/N
+    eps33: float  # epsT33, F/m
+    k31: float  # |d31| / sqrt(sE11 epsT33)
+    k33: float  # |d33| / sqrt(sE33 epsT33)
+
+
 class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
     """A ceramic poled along 3 (6mm): T = cE S - e^t E, D = e S + epsS E (IEEE Std 176-1987, Table 8).
 
@@ -28,28 +47,17 @@ class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     of an unstable material, and for a piezoelectric loss that makes it a source of energy.
     """
 
-    c11: Annotated[float, unit("Pa", gt=0)]
-    """cE11, Pa."""
-    c12: Annotated[float, unit("Pa")]
-    """cE12, Pa."""
-    c13: Annotated[float, unit("Pa")]
-    """cE13, Pa."""
-    c33: Annotated[float, unit("Pa", gt=0)]
-    """cE33, Pa."""
-    c44: Annotated[float, unit("Pa", gt=0)]
-    """cE44, Pa."""
-    e15: Annotated[float, unit("C/m^2")]
-    """C/m^2."""
-    e31: Annotated[float, unit("C/m^2")]
-    """C/m^2."""
-    e33: Annotated[float, unit("C/m^2")]
-    """C/m^2."""
-    eps11: Annotated[float, unit("relative to vacuum", gt=0)]
-    """epsS11 over that of vacuum."""
-    eps33: Annotated[float, unit("relative to vacuum", gt=0)]
-    """epsS33 over that of vacuum."""
-    density: Annotated[float, unit("kg/m^3", gt=0)]
-    """rho, kg/m^3."""
+    c11: Stiffness
+    c12: Stiffness
+    c13: Stiffness
+    c33: Stiffness
+    c44: Stiffness
+    e15: Stress
+    e31: Stress
+    e33: Stress
+    eps11: Permittivity
+    eps33: Permittivity
+    density: Annotated[float, unit("kg/m^3", gt=0), Meta(description="rho, kg/m^3")]
     dielectric_loss: Annotated[Relative, unit("tan delta", ge=0, lt=1)] = 0.0
     """tan delta of the free ceramic."""
     mechanical_loss: Annotated[Relative, unit("1/Q", ge=0, lt=1)] = 0.0
@@ -61,16 +69,15 @@ class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
     def __post_init__(self) -> None:
         validate(self, "material")
-        if self.c11 <= abs(self.c12) or (self.c11 + self.c12) * self.c33 <= 2.0 * self.c13**2:
+        if min(self.c44, self.c11 - abs(self.c12), (self.c11 + self.c12) * self.c33 - 2.0 * self.c13**2) <= 0.0:
             raise InputError(
-                f"material.c12 = {self.c12!r}, material.c13 = {self.c13!r}: the stiffness is not positive definite, "
-                "check the constants and their unit, Pa"
+                f"material.c11 = {self.c11!r}: c11 to c44 are not positive definite, check the constants and their unit"
             )
-        limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(abs(self.k33), abs(self.k31), 1e-300)
+        limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(self.derived.k33, self.derived.k31, 1e-300)
         if abs(self.piezoelectric_loss) > limit * (1.0 + 1e-12):
             raise InputError(
-                f"material.piezoelectric_loss = {self.piezoelectric_loss!r}: the bar would be a source of energy, give "
-                f"at most sqrt(dielectric_loss mechanical_loss)/k33 = {limit:.6g}"
+                f"material.piezoelectric_loss = {self.piezoelectric_loss!r} makes the bar a source of energy: give at "
+                f"most sqrt(dielectric_loss mechanical_loss)/k = {limit:.6g}"
             )
 
     @cached_property
@@ -84,57 +91,23 @@ class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
         e = np.zeros((3, 6))
         e[[0, 1], [4, 3]] = self.e15
         e[2, :3] = self.e31, self.e31, self.e33
-        compliance = np.linalg.inv(stiffness)
-        return compliance, e @ compliance, EPS0 * np.diag([self.eps11, self.eps11, self.eps33]) + e @ compliance @ e.T
+        d = e @ np.linalg.inv(stiffness)
+        return np.linalg.inv(stiffness), d, EPS0 * np.diag([self.eps11, self.eps11, self.eps33]) + d @ e.T
 
-    @property
-    def s11(self) -> float:
-        """sE11, 1/Pa."""
-        return float(self.strain_charge[0][0, 0])
-
-    @property
-    def s33(self) -> float:
-        """sE33, 1/Pa."""
-        return float(self.strain_charge[0][2, 2])
-
-    @property
-    def s33_open(self) -> float:
-        """sD33 = sE33 (1 - k33^2), 1/Pa."""
-        return self.s33 * (1.0 - self.k33**2)
-
-    @property
-    def d31(self) -> float:
-        """C/N."""
-        return float(self.strain_charge[1][2, 0])
-
-    @property
-    def d33(self) -> float:
-        """C/N."""
-        return float(self.strain_charge[1][2, 2])
-
-    @property
-    def eps33_free(self) -> float:
-        """epsT33, F/m."""
-        return float(self.strain_charge[2][2, 2])
-
-    @property
-    def k31(self) -> float:
-        """|d31| / sqrt(sE11 epsT33)."""
-        return abs(self.d31) / sqrt(self.s11 * self.eps33_free)
-
-    @property
-    def k33(self) -> float:
-        """|d33| / sqrt(sE33 epsT33)."""
-        return abs(self.d33) / sqrt(self.s33 * self.eps33_free)
+    @cached_property
+    def derived(self) -> Derived:
+        """Compliances, piezoelectric constants, permittivity and coupling factors of slender bars."""
+        s, d, eps = (one.tolist() for one in self.strain_charge)
+        s11, s33, d31, d33, eps33 = s[0][0], s[2][2], d[2][0], d[2][2], eps[2][2]
+        k31, k33 = abs(d31) / sqrt(s11 * eps33), abs(d33) / sqrt(s33 * eps33)
+        return Derived(s11, s33, s33 * (1.0 - k33**2), d31, d33, eps33, k31, k33)
 
     def bar_constants(self, direction: Direction) -> tuple[complex, complex, complex]:
         """(sE, d, epsT33) of a slender bar with losses: 1/Pa, C/N, F/m."""
-        compliance, d = (self.s33, self.d33) if direction == "33" else (self.s11, self.d31)
-        return (
-            compliance * (1.0 - 1j * self.mechanical_loss),
-            d * (1.0 - 1j * self.piezoelectric_loss),
-            self.eps33_free * (1.0 - 1j * self.dielectric_loss),
-        )
+        real = self.derived
+        compliance, d = (real.s33, real.d33) if direction == "33" else (real.s11, real.d31)
+        losses = (1.0 - 1j * one for one in (self.mechanical_loss, self.piezoelectric_loss, self.dielectric_loss))
+        return compliance * next(losses), d * next(losses), real.eps33 * next(losses)
 
 
 MaterialName = Literal["pzt-4", "pzt-8"]

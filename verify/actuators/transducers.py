@@ -11,13 +11,12 @@ from msgspec.structs import replace
 
 from verify.actuators.materials import PIEZO, Direction, Form, MaterialName, PiezoMaterial
 from verify.actuators.port import Actuator, Port
-from verify.errors import InputError
 from verify.validation import Relative, unit, validate
 
 if TYPE_CHECKING:
     from verify.actuators.bar import Line, PiezoLine
 
-Base = Literal["fixed", "spring", "free"]
+Base = Literal["fixed", "free"] | Annotated[float, unit("N/m", gt=0)]
 Loss = Annotated[Relative, unit("loss tangent", ge=0, lt=1)]
 LOSSES = ("dielectric_loss", "mechanical_loss", "piezoelectric_loss")
 
@@ -36,9 +35,7 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     material: MaterialName | PiezoMaterial = "pzt-4"
     """Piezoelectric ceramic: pzt-4, pzt-8, or a table of its constants."""
     base: Base = "free"
-    """Support of the far end: fixed, spring or free."""
-    base_stiffness: Annotated[float, unit("N/m", gt=0)] | None = None
-    """Stiffness of the spring at the base, N/m."""
+    """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
     dielectric_loss: Loss | None = None
     """tan delta of the free ceramic; default: the material's."""
     mechanical_loss: Loss | None = None
@@ -52,11 +49,6 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def __post_init__(self) -> None:
         validate(self, "actuator")
-        if (self.base == "spring") != (self.base_stiffness is not None):
-            raise InputError(
-                f"actuator.base = {self.base!r}, base_stiffness = {self.base_stiffness!r}: give base_stiffness with "
-                "base = 'spring', and only there"
-            )
         _ = self.ceramic
 
     @property
@@ -78,9 +70,8 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     def port(self, omega: Any) -> Port:
         """The port at the tip at angular frequencies omega (rad/s), a number or (n,)."""
         back, active, front = self.parts()
-        spring = None if self.base_stiffness is None else self.base_stiffness / (1j * omega)
-        base = {"fixed": None, "free": 0.0, "spring": spring}[self.base]
-        port = active.three_port(omega).port(base if back is None else back.seen_through(omega, base))
+        base = {"fixed": None, "free": 0.0}[self.base] if isinstance(self.base, str) else self.base / (1j * omega)
+        port = active.three_port(omega).port(base if back is None else back.input_impedance(omega, base))
         return port if front is None else front.after(omega, port)
 
     def _piezo(self, direction: Direction, **sizes: Any) -> "PiezoLine":
@@ -132,7 +123,7 @@ class Stack(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     area: Annotated[float, unit("m^2", gt=0)]
     """Area of its section, m^2."""
     base: Base = "fixed"
-    """Support of the far end: fixed, spring or free."""
+    """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
 
     def parts(self) -> Parts:
         """The stack as one bar."""
@@ -154,6 +145,9 @@ class EndMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     """Area of its section, m^2; default: that of the rings."""
     loss_factor: Loss = 0.0
     """E (1 + i eta)."""
+
+    def __post_init__(self) -> None:
+        validate(self, "actuator.mass")
 
     def line(self, area: float) -> "Line":
         """The mass as a line; `area` (m^2) is that of the rings."""
@@ -179,12 +173,6 @@ class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Mass at the tip."""
     back: EndMass | None = None
     """Mass at the base; default: that of the tip."""
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        for name in ("front", "back"):
-            if (mass := getattr(self, name)) is not None:
-                validate(mass, f"actuator.{name}")
 
     @property
     def lossless(self) -> "Langevin":
