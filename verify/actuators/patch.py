@@ -77,10 +77,19 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
                 check_number("patch.width", self.width, "metres, at most the beam's width", at_most=section.width)
 
     @property
+    def bonded_length(self) -> float:
+        """Distance of the two moments, m."""
+        return self.length
+
+    @property
+    def ceramic(self) -> PiezoMaterial:
+        """The material's constants."""
+        return PIEZO[self.material] if isinstance(self.material, str) else self.material
+
+    @property
     def _constants(self) -> tuple[complex, complex, complex]:
         """(s11E, e31 = d31/s11E, epsS = epsT33 (1 - k31^2)) of a narrow layer: 1/Pa, C/m^2, F/m."""
-        material = PIEZO[self.material] if isinstance(self.material, str) else self.material
-        s, d, permittivity = material.bar_constants("31")
+        s, d, permittivity = self.ceramic.bar_constants("31")
         return s, d / s, permittivity - d**2 / s
 
     def bonded(self, beam: Beam) -> "Patch":
@@ -100,8 +109,7 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         """The transformed section over the patch, real parts of its moduli. Raises InputError without a beam."""
         (width, _, h), t, n = self._sizes, self.thickness, self.sides
         bare = piece_of(set_fields(self.substrate), 1.0, "patch.substrate", 0.33)  # type: ignore[arg-type]
-        material = PIEZO[self.material] if isinstance(self.material, str) else self.material
-        layer, mass = (1.0 / self._constants[0]).real * width * t, material.density * width * t
+        layer, mass = (1.0 / self._constants[0]).real * width * t, self.ceramic.density * width * t
         axial, distance = bare.axial_stiffness + n * layer, 0.5 * (h + t)
         offset = layer * distance / axial if n == 1 else 0.0
         lever = distance - offset
@@ -159,7 +167,7 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         laminate = {
             name: getattr(section, name)
             for name in ("bending_stiffness", "mass_per_length", "rotary_inertia", "extreme_fibre")
-        }
+        } | {"shear_stiffness": beam.base_section.shear_stiffness}
         centres = sorted(positions) if hasattr(positions, "__iter__") else [positions]
         sections, end = list[Section](), 0.0
         for centre in centres:

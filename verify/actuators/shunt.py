@@ -20,8 +20,6 @@ from math import pi, sqrt
 from typing import Annotated, Any, Literal, cast, get_args
 
 import msgspec
-import numpy as np
-from numpy.polynomial import Polynomial
 
 from verify.actuators.port import Port
 from verify.errors import InputError
@@ -55,21 +53,18 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             )
 
     @property
-    def rational(self) -> tuple[Polynomial, Polynomial]:
-        """Numerator and denominator of the admittance (S) in s = i omega, without a common root at 0."""
-        r, l, c = self.resistance, self.inductance, self.capacitance
-        s = Polynomial([0.0, 1.0])
+    def rational(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Coefficients of the admittance's numerator and denominator in s = i omega, from the constant one."""
+        r, l_, c = self.resistance, self.inductance, self.capacitance
         if self.connection == "series":
-            total = (r or 0.0) + (l or 0.0) * s
-            return (Polynomial([1.0]), total) if c is None else (s, total * s + 1.0 / c)
-        total = (1.0 / r if r else 0.0) + (c or 0.0) * s
-        return (total, Polynomial([1.0])) if l is None else (total * s + 1.0 / l, s)
+            return ((1.0,), (r or 0.0, l_ or 0.0)) if c is None else ((0.0, 1.0), (1.0 / c, r or 0.0, l_ or 0.0))
+        total = (1.0 / r if r else 0.0, c or 0.0)
+        return (total, (1.0,)) if l_ is None else ((1.0 / l_, *total), (0.0, 1.0))
 
     def admittance(self, omega: Any) -> Any:
         """Current over voltage at angular frequencies (rad/s), S."""
-        above, below = self.rational
-        s = 1j * np.asarray(omega)
-        return (above(s) / below(s))[()]
+        above, below = (sum(c * (1j * omega) ** i for i, c in enumerate(row)) for row in self.rational)
+        return above / below
 
 
 class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
@@ -98,20 +93,22 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
 
     def stiffness(self, load: Load, omega: Any) -> Any:
         """1 + K^2 X, stiffness over that with short-circuited electrodes, at angular frequencies (rad/s)."""
-        own = 1j * np.asarray(omega) * self.capacitance
+        own = 1j * omega * self.capacitance
         return 1.0 + self.coupling**2 * own / (own + load.admittance(omega))
 
     def response(self, load: Load, omega: Any) -> Any:
         """H at angular frequencies (rad/s): deflection over the static one with short-circuited electrodes."""
-        return 1.0 / (self.stiffness(load, omega) - (np.asarray(omega) / self.omega) ** 2)
+        return 1.0 / (self.stiffness(load, omega) - (omega / self.omega) ** 2)
 
     def peak(self, load: Load) -> float:
         """Largest |H| over all frequencies, infinite without damping. Raises InputError for an unstable load."""
+        import numpy as np
+        from numpy.polynomial import Polynomial
         from scipy.optimize import minimize_scalar
 
         own = Polynomial([0.0, self.omega * self.capacitance])  # in s/omega, as all below
         s = Polynomial([0.0, 1.0])
-        above, below = (one(self.omega * s) for one in load.rational)
+        above, below = (Polynomial(one)(self.omega * s) for one in load.rational)
         if above.coef[0] == 0.0:  # a common root, which is no pole
             own, above = (Polynomial(one.coef[1:]) for one in (own, above))
         whole = own * below + above
@@ -131,9 +128,11 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         for i in 1 + np.flatnonzero((h[1:-1] >= h[:-2]) & (h[1:-1] >= h[2:])):
             step = 0.5 * (x[i + 1] - x[i - 1])
             middle = x[i - 1] + step  # its offset resolves a peak that is narrower than half the digits of x
-            best = minimize_scalar(
-                lambda t: -abs(self.response(load, middle + t * step)), bounds=(-1.0, 1.0), method="bounded"
-            )
+
+            def depth(t: float, middle: float = middle, step: float = step) -> float:
+                return -float(abs(self.response(load, middle + t * step)))
+
+            best = minimize_scalar(depth, bounds=(-1.0, 1.0), method="bounded")
             peaks.append(-best.fun)
         return float(max(peaks))
 
@@ -173,6 +172,8 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
 
     def _parallel(self) -> tuple[float, float]:
         """(p, r) of the parallel R-L circuit, from the quartic for t = (1 - b)/K^2, which is 1/4 at K = 0."""
+        import numpy as np
+
         u = self.coupling**2
         quartic = (
             *(64.0 * u**3, 16.0 * u**2 * (u - 16.0), u * (11.0 * u**2 - 32.0 * u + 320.0)),
@@ -183,9 +184,9 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         cubic = (-64.0 * u**2, -64.0 * u * (u - 5.0), -4.0 * (5.0 * u**2 - 42.0 * u + 112.0))
         detuning = u * np.polyval((*cubic, 16.0 + 31.0 * u - 13.0 * u**2), t.real) / 3.0
         detuning /= 13.0 * u**2 - 56.0 * u + 64.0  # delta^2 - 1
-        p, rest = 1.0 / (1.0 + detuning), u * t.real
+        p, rest = 1.0 / float(1.0 + detuning), float(u * t.real)
         half, product = p * (u + detuning), p * rest * (-2.0 * p * detuning - p * rest)
-        self._check(abs(t.imag) < 1e-9 and half**2 > product and 0.0 < rest < 1.0, "1.414")
+        self._check(bool(abs(t.imag) < 1e-9 and half**2 > product and 0.0 < rest < 1.0), "1.414")
         q = half + sqrt(half**2 - product)  # (p/r)^2/(2 p)
         return p, p / sqrt(2.0 * p * q)
 
@@ -226,5 +227,8 @@ def absorbing_load(port: Port, impedance: complex, omega: float) -> Load:
             f"impedance = {impedance!r} kg/s needs an electrical load of {z.real:.6g} ohm, which is active: give an "
             "impedance with a larger real part"
         )
-    reactive = {"inductance": z.imag / omega} if z.imag > 0.0 else {"capacitance": -1.0 / (omega * z.imag)}
-    return Load(resistance=z.real or None, **reactive)
+    return Load(
+        resistance=z.real or None,
+        inductance=z.imag / omega if z.imag > 0.0 else None,
+        capacitance=-1.0 / (omega * z.imag) if z.imag < 0.0 else None,
+    )
