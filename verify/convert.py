@@ -38,17 +38,24 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
 
 def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
     """A sentence for every error; the constraints between fields are checked where each field is valid."""
-    table, inside = table_of(kind), list[str]()
+    table, inside = table_of(kind, data), list[str]()
     lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
     if table is not None and isinstance(data, dict):
         fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
-        for key, value in data.items():
+        tag = table.__struct_config__.tag_field
+        if tag is not None and data.get(tag) != table.__struct_config__.tag:
+            tags = tuple(str(one.__struct_config__.tag) for one in structs_of(kind))
+            field = f"{where}.{tag}".lstrip(".")
+            given = f"{field} = {shown(data[tag])} is not known" if tag in data else f"{field} is missing"
+            yield f"{given}: {near_name(str(data.get(tag)), tags)}"
+            return
+        for key, value in ((key, value) for key, value in data.items() if key != tag):
             name = f"{where}.{key}".lstrip(".")
             if key in fields:
                 inside += _errors(value, fields[key].type, name)
             else:
                 inside.append(f"{name} is not a known key: {near_name(str(key), tuple(fields))}")
-        if not set(data) - set(fields):  # else a missing key may be the misspelt one
+        if not set(data) - set(fields) - {tag}:  # else a missing key may be the misspelt one
             missing = {k: type_name(field.type) for k, field in fields.items() if field.required and k not in data}
             gives = {key: f"one of {kind}" if " | " in kind else "it a value" for key, kind in missing.items()}
             inside += [f"{f'{where}.{key}'.lstrip('.')} is missing: give {give}" for key, give in gives.items()]
@@ -109,9 +116,17 @@ def metas_of(kind: Any) -> list[msgspec.Meta]:
     return [meta for arm in get_args(kind) for meta in metas_of(arm)] if get_origin(kind) in (Union, UnionType) else []
 
 
-def table_of(kind: Any) -> type[msgspec.Struct] | None:
-    """The struct among the members of a union."""
-    return next((arm for arm in arms_of(kind) if isinstance(arm, type) and issubclass(arm, msgspec.Struct)), None)
+def structs_of(kind: Any) -> list[type[msgspec.Struct]]:
+    """The structs among the members of a union."""
+    return [arm for arm in arms_of(kind) if isinstance(arm, type) and issubclass(arm, msgspec.Struct)]
+
+
+def table_of(kind: Any, data: Any = None) -> type[msgspec.Struct] | None:
+    """The struct among the members of a union; among several the one that the tag in `data` names, else the first."""
+    structs, tables = structs_of(kind), data if isinstance(data, dict) else {}
+    configs = [one.__struct_config__ for one in structs]
+    named = (s for s, one in zip(structs, configs, strict=True) if one.tag and tables.get(one.tag_field) == one.tag)
+    return next(named, structs[0] if structs else None)
 
 
 def entry_of(kind: Any) -> Any:

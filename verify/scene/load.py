@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from verify.convert import convert, entry_of, table_of, typed
+from verify.convert import convert, entry_of, structs_of, typed
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.problem.phrase import PREFIX, beam_table
@@ -155,8 +155,7 @@ def type_at(key: str) -> Any:
         if (entry := entry_of(kind)) is not None:
             kind = entry  # the step is an id or a number
             continue
-        table = table_of(kind)
-        fields = msgspec.structs.fields(table) if table is not None else ()
+        fields = (field for table in structs_of(kind) for field in msgspec.structs.fields(table))
         kind = next((field.type for field in fields if field.encode_name == step), None)
     return kind
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
+from verify.actuators.transducers import Transducer
 from verify.errors import InputError, raise_all
 from verify.options import DriveKind, Reference
 from verify.problem.beam import Beam, PointForce, check_frequency
@@ -69,6 +70,8 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Point forces, or imposed displacements."""
     device: tuple[SceneDevice, ...] = ()
     """Impedances on the beam beside the forces, absorbing or driving: in the steady state only."""
+    actuator: Transducer | None = None
+    """Piezoelectric transducer, whose electrical quantities are those named actuator."""
 
     def __post_init__(self) -> None:
         check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from verify.convert import description_of, table_of
+from verify.convert import description_of, structs_of
 from verify.errors import InputError, near_name
 from verify.quantities.base import QUANTITIES
 from verify.scene.model import Scene
@@ -26,10 +26,12 @@ def sections() -> dict[str, type[msgspec.Struct]]:
 
     def add(kind: type[msgspec.Struct], where: str) -> None:
         for field in msgspec.structs.fields(kind):
-            entry = next((arg for arg in getattr(field.type, "__args__", ()) if table_of(arg)), field.type)
-            if (table := table_of(entry)) is not None:
-                found[where + field.encode_name] = table
-                add(table, f"{where}{field.encode_name}.")
+            entry = next((arg for arg in getattr(field.type, "__args__", ()) if structs_of(arg)), field.type)
+            tables = structs_of(field.type) or structs_of(entry)
+            for table in tables:  # a union's by their tags: drive.actuator.stack
+                name = where + field.encode_name + (f".{table.__struct_config__.tag}" if len(tables) > 1 else "")
+                found[name] = table
+                add(table, f"{name}.")
 
     add(Scene, "")
     for name in STUDIES:
@@ -52,6 +54,8 @@ def scene_schema(section: str = TOP) -> dict[str, Any]:
         for key, meaning in descriptions(kind).items():
             own = table["properties"][key]
             table["properties"][key] = {**({"allOf": [own]} if "$ref" in own else own), "description": meaning}
+        if (tag := kind.__struct_config__.tag_field) is not None:
+            table["properties"][tag]["description"] = "Kind of this table."
     for name in ("Gate", "Claim"):
         tables[name]["properties"]["quantity"]["enum"] = sorted(QUANTITIES)
     top = tables["Scene"]["properties"]
