@@ -49,7 +49,9 @@ def enthalpy(patch, beam):
             total += da * modulus * np.outer(strain, strain)
             rho += da * (material.density if sign else beam.density) * np.array([1.0, z, z**2])
             if sign:
-                total -= da * (e * (np.outer(strain, field) + np.outer(field, strain)) + permittivity * np.outer(field, field))
+                total -= da * (
+                    e * (np.outer(strain, field) + np.outer(field, strain)) + permittivity * np.outer(field, field)
+                )
     kept, rest = [0, 1], [2, 3] + [4] * (patch.sides == 2)
     coupling = total[np.ix_(kept, rest)]
     return total[np.ix_(kept, kept)] - coupling @ np.linalg.solve(total[np.ix_(rest, rest)], coupling.T), rho

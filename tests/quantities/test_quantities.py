@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify.actuators.transducers import Stack
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
 from verify.dynamics.simulate import simulate
@@ -52,8 +53,10 @@ SCENES = {
     "undamped": scene_of(STRIP, LIGHT, 7e-4),
     "motor": scene_of(DAMPED, replace(POINT, coupling="one-way")),
     "device": scene_of(DAMPED, devices=(ENDED,)),
+    "actuated": scene_of(STRIP),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
+SCENES["actuated"].drive.actuator = Stack(layers=20, layer_thickness=5e-4, area=25e-6)
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
 BELT = {"mass": 0.31, "stiffness": 47.0, "static": 1.1, "kinetic": 0.7, "speed": 0.13}
 LAYER = {"contact_half_angle": 1.1, "speed_ratio": 0.71}
@@ -109,6 +112,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "friction.coulomb_decrement": ("bare", {"mass": 0.31, "stiffness": 47.0, "force": 0.7}),
     "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}), "contact.restitution": ("bare", {"damping_ratio": 0.2}),
+    **{f"shunt.{n}": ("bare", {"coupling": 0.17, "circuit": "parallel"}) for n in ("peak", "optimum")},
+    **{f"shunt.{n}": ("actuated", {"position": 0.083}) for n in ("absorber", "reflection")},
     "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
     "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),
 }

@@ -121,8 +121,9 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         if (poles.real > -1e-13 * abs(poles)).any():
             return float("inf")
         # a maximum lies within some widths of a pole, where the sinh puts most points
-        around = abs(poles.imag) + abs(poles.real) * np.sinh(np.linspace(-4.0, 4.0, 81))[:, None]
-        x = self.omega * np.unique(abs(around[around != 0.0]))
+        around = poles.imag + poles.real * np.sinh(np.linspace(-4.0, 4.0, 81))[:, None]
+        x = self.omega * np.unique(abs(around))
+        x = x[np.diff(x, prepend=0.0) > 1e-12 * x]  # pairs of poles give each point twice but for rounding
         h = abs(self.response(load, x))
         peaks = [h[0]]
         for i in 1 + np.flatnonzero((h[1:-1] >= h[:-2]) & (h[1:-1] >= h[2:])):

@@ -1,12 +1,13 @@
 """Quantities of shunted actuators: damping of one mode, absorption of a wave by an actuator with an electrical load."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import msgspec
 from msgspec import Meta
 
 from verify.actuators.shunt import Circuit, Load, ShuntedMode, absorbing_load
+from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with these electrodes, Hz")]
 Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
 Henry = Annotated[float, unit("H"), Meta(gt=0, description="inductance; default: that of the optimum")]
+Figure = Literal["resistance", "inductance"]
 Ratio = Annotated[Relative, Meta(gt=0, description="negative capacitance over the actuator's, for negative-...")]
 
 
@@ -33,29 +35,34 @@ class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
     capacitance: Annotated[float, unit("F"), Meta(gt=0, description="blocked capacitance, F")] = 1.0
     negative: Ratio | None = None
 
-    def mode(self) -> ShuntedMode:
-        """The mode. Raises InputError."""
-        if (self.coupling is None) == (self.open_hz is None) or (self.open_hz is not None and self.short_hz is None):
+    def best(self) -> tuple[ShuntedMode, Load]:
+        """The mode and the optimum load of the circuit. Raises InputError."""
+        if self.open_hz is not None and self.short_hz is not None and self.coupling is None:
+            mode = ShuntedMode.measured(self.short_hz, self.open_hz, self.capacitance)
+        elif self.coupling is not None and self.open_hz is None:
+            omega = 1.0 if self.short_hz is None else 2.0 * pi * self.short_hz
+            mode = ShuntedMode(coupling=self.coupling, omega=omega, capacitance=self.capacitance)
+        else:
             raise InputError(
-                f"coupling = {self.coupling!r} and open_hz = {self.open_hz!r}: give coupling, or short_hz and open_hz"
+                f"coupling = {self.coupling!r}, open_hz = {self.open_hz!r}: give coupling, or short_hz and open_hz"
             )
-        if self.open_hz is not None and self.short_hz is not None:
-            return ShuntedMode.measured(self.short_hz, self.open_hz, self.capacitance)
-        omega = 1.0 if self.short_hz is None else 2.0 * pi * self.short_hz
-        return ShuntedMode(coupling=self.coupling or 0.0, omega=omega, capacitance=self.capacitance)
+        return mode, mode.optimum(self.circuit, None if self.negative is None else self.negative * self.capacitance)
 
-    def best(self, mode: ShuntedMode) -> Load:
-        """The optimum load of the circuit. Raises InputError."""
-        return mode.optimum(self.circuit, None if self.negative is None else self.negative * self.capacitance)
+
+def _part(load: Load, figure: Figure) -> float:
+    """Resistance (ohm) or inductance (H) of an optimum load. Raises InputError where it has none."""
+    value: float | None = getattr(load, figure)
+    if value is None:
+        raise InputError(f"{figure}: the optimum {load!r} has none, choose another circuit")
+    return value
 
 
 @quantity("shunt.peak", unit="1", reads=())
 def peak(shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henry | None = None) -> float:
     """Largest response of a shunted mode over its static deflection with short-circuited electrodes."""
-    mode = shunt.mode()
-    load = shunt.best(mode)
-    if inductance is not None and load.inductance is None:
-        raise InputError(f"inductance = {inductance!r}: circuit = {shunt.circuit!r} has none, leave it out")
+    mode, load = shunt.best()
+    if inductance is not None:
+        _part(load, "inductance")
     own = {"resistance": resistance or load.resistance, "inductance": inductance or load.inductance}
     return mode.peak(msgspec.structs.replace(load, **own))
 
@@ -70,28 +77,22 @@ def optimum(
     ] = "peak",
 ) -> float:
     """Optimum of a shunt in closed form: its resistance, inductance, peak of the response, or loss factor."""
-    mode = shunt.mode()
-    load = shunt.best(mode)
+    mode, load = shunt.best()
     if figure == "peak":
         return mode.peak(load)
     if figure == "loss_factor":
         stiffness = complex(mode.stiffness(load, mode.omega))
         return stiffness.imag / stiffness.real
-    value: float | None = getattr(load, figure)
-    if value is None:
-        raise InputError(
-            f"figure = {figure!r}: circuit = {shunt.circuit!r} has none, choose series, parallel or hagood"
-        )
-    return value
+    return _part(load, figure)
 
 
 def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> "tuple[Port, Ending, Load, float]":
     """(port, beam behind it, matched load, omega) of the scene's actuator. Raises InputError."""
-    actuator: Any = getattr(scene.drive, "actuator", None)
-    if actuator is None or hasattr(actuator, "bonded_length"):
-        raise InputError("drive.actuator is missing or a patch: an absorbing actuator acts at a point, give a stack")
     from verify.waves.impedance_matching import ending
 
+    actuator = None if scene.drive is None else scene.drive.actuator
+    if not isinstance(actuator, Longitudinal):
+        raise InputError("drive.actuator is missing or a patch: an absorbing actuator acts at a point, give a stack")
     check_number("position", position, "metres from the right end", below=scene.beam.length)
     hertz = opt.drive_frequency(scene, frequency_hz)
     end, omega = ending(scene.beam, hertz, position, scene.beam.supports[1]), 2.0 * pi * hertz
@@ -105,14 +106,10 @@ def absorber(
     *,
     position: FromRightEnd,
     frequency_hz: opt.Frequency | None = None,
-    figure: Annotated[Literal["resistance", "inductance"], Meta(description="ohm or H")] = "resistance",
+    figure: Annotated[Figure, Meta(description="ohm or H")] = "resistance",
 ) -> float:
     """Series load with which the scene's actuator near the right end absorbs a wave: its resistance or inductance."""
-    load = _absorber(scene, position, frequency_hz)[2]
-    value: float | None = getattr(load, figure)
-    if value is None:
-        raise InputError(f"figure = {figure!r}: the matched load {load!r} has none")
-    return value
+    return _part(_absorber(scene, position, frequency_hz)[2], figure)
 
 
 @quantity("shunt.reflection", unit="1", reads=("beam", "drive"))
@@ -127,7 +124,5 @@ def reflection(
     from verify.waves.impedance_matching import reflection
 
     port, end, load, omega = _absorber(scene, position, frequency_hz)
-    if load.inductance is None:
-        raise InputError(f"detuning = {detuning!r}: the matched load {load!r} has no inductance")
-    load = msgspec.structs.replace(load, inductance=load.inductance * (1.0 + detuning))
+    load = msgspec.structs.replace(load, inductance=_part(load, "inductance") * (1.0 + detuning))
     return reflection(port.loaded_impedance(load.admittance(omega)), end)

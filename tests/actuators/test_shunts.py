@@ -1,0 +1,203 @@
+"""Shunt damping and the absorbing stack: closed forms against search, a state-space model, and published figures.
+
+Figures at K = 0.2 and those of the stack: an independent reduction, confirmed by minimisation, and a Hermite and rod
+finite-element model.
+"""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from verify import Beam, InputError
+from verify.actuators.patch import Patch
+from verify.actuators.shunt import Load, ShuntedMode, absorbing_load
+from verify.actuators.transducers import Stack
+from verify.quantities import evaluate
+from verify.waves.impedance_matching import ending, reflection
+
+FIFTH = ShuntedMode(coupling=0.2)
+PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+STACK = Stack(layers=20, layer_thickness=0.5e-3, area=25e-6)
+OMEGA, DISTANCE = 2.0 * np.pi * 4276.0, 0.0116
+SCENE = SimpleNamespace(beam=PAPER, drive=SimpleNamespace(frequency_hz=4276.0, actuator=STACK), devices=())
+
+
+def measured(name, scene=SCENE, **arguments):
+    return evaluate(name, arguments, scene, None)
+
+
+def test_figures_at_a_coupling_of_one_fifth():
+    hagood, exact = FIFTH.optimum("hagood"), FIFTH.optimum("series")
+    assert FIFTH.peak(hagood) == pytest.approx(7.28797, rel=1e-6)
+    assert 1.0 / hagood.inductance == pytest.approx(1.04, rel=1e-13)
+    assert 1.0 / exact.inductance == pytest.approx(1.04033925381565, rel=1e-13)
+    assert exact.resistance == pytest.approx(0.239411627043163, rel=1e-13)
+    assert FIFTH.peak(exact) == pytest.approx(6.97213657278449, rel=1e-13)
+    assert FIFTH.peak(FIFTH.optimum("resistor")) == pytest.approx(2.0 / 0.04, rel=1e-12)
+    assert FIFTH.optimum("resistor").resistance == pytest.approx(np.sqrt(2.0 / 2.04), rel=1e-13)
+
+
+def searched(mode, start):
+    """Least peak by a simplex from 20 % beside the values of a load, and its distance from them."""
+
+    def peak(x):
+        values = {
+            name: factor * value
+            for name, value, factor in (
+                ("resistance", start.resistance, np.exp(x[0])),
+                ("inductance", start.inductance, np.exp(x[-1])),
+            )
+            if value
+        }
+        return mode.peak(Load(**values, capacitance=start.capacitance, connection=start.connection))
+
+    two, step = start.inductance is not None, 0.3 * mode.coupling
+    simplex = [[step, 0.1 * step], [0.5 * step, -0.1 * step], [-step, 0.0]] if two else [[0.2], [-0.1]]
+    options = {"xatol": 1e-10, "fatol": 1e-14, "initial_simplex": simplex, "maxiter": 2000}
+    found = minimize(peak, simplex[0], method="Nelder-Mead", options=options)
+    return found.fun, found.x
+
+
+@pytest.mark.parametrize("coupling", [0.03, 0.17, 0.61])
+@pytest.mark.parametrize("circuit", ["resistor", "series", "parallel", "negative-series", "negative-parallel"])
+def test_closed_form_is_the_optimum_of_a_search(circuit, coupling):
+    mode = ShuntedMode(coupling=coupling, omega=731.0, capacitance=23e-9)
+    ratio = {"negative-series": 2.3, "negative-parallel": 0.43}.get(circuit)
+    load = mode.optimum(circuit, ratio and ratio * mode.capacitance)
+    least, offset = searched(mode, load)
+    assert mode.peak(load) == pytest.approx(least, rel=1e-9)
+    assert offset == pytest.approx(0.0, abs=2e-6)
+
+
+def test_peaks_of_single_resistors_in_closed_form():
+    for ratio, circuit, gain in ((0.43, "negative-parallel", 1.0 - 0.43), (2.3, "negative-series", 1.3 / 2.3)):
+        assert FIFTH.peak(FIFTH.optimum(circuit, ratio)) == pytest.approx(50.0 * gain, rel=1e-12)
+    load = FIFTH.optimum("resistor-loss")
+    stiffness = FIFTH.stiffness(load, np.linspace(0.5, 1.5, 1001))
+    loss = stiffness.imag / stiffness.real
+    assert loss.max() == loss[500] == pytest.approx(0.02 / np.sqrt(1.04), rel=1e-12)
+    assert FIFTH.optimum("parallel").inductance == pytest.approx(2.0 / 1.96, rel=1e-4)  # Yamada's fixed points
+    assert FIFTH.peak(FIFTH.optimum("parallel")) == pytest.approx(np.sqrt(2.0) / 0.2, rel=1e-3)
+    assert FIFTH.peak(Load(inductance=0.7)) == np.inf
+
+
+def states(mode, load):
+    """First-order matrix of (deflection, speed, charge of the actuator, charge through a series load), mass 1."""
+    stiffness, c = mode.omega**2, mode.capacitance
+    theta = mode.coupling * np.sqrt(stiffness * c)  # F = theta V, charge C V + theta w
+    volt = np.array([-theta, 0.0, 1.0, 0.0]) / c  # by (w, speed, q, its rate)
+    across = volt + (np.array([0.0, 0.0, 1.0, 0.0]) / load.capacitance if load.capacitance else 0.0)
+    rows = np.zeros((4, 4))
+    rows[0, 1] = rows[2, 3] = 1.0
+    rows[1] = theta * volt - np.array([stiffness, 0.0, 0.0, 0.0])
+    if load.inductance:
+        rows[3] = (-across - load.resistance * np.array([0.0, 0.0, 0.0, 1.0])) / load.inductance
+        return rows
+    rows[2] = -across / load.resistance
+    return rows[:3, :3]
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        Load(resistance=3.1e4, inductance=71.0),
+        Load(resistance=3.1e4),
+        Load(resistance=2.3e4, capacitance=-61e-9),
+        Load(resistance=2.3e4, inductance=43.0, capacitance=57e-9),
+    ],
+)
+def test_response_equals_the_state_space_model(load):
+    mode = ShuntedMode.measured(116.3, 123.1, 23e-9)
+    matrix, omegas = states(mode, load), np.array([311.0, 735.0, 911.0])
+    force = np.eye(len(matrix))[1]
+    expected = [np.linalg.solve(1j * omega * np.eye(len(matrix)) - matrix, force)[0] for omega in omegas]
+    assert mode.response(load, omegas) == pytest.approx(np.array(expected) * mode.omega**2, rel=1e-11)
+
+
+def test_negative_capacitance_is_refused_beyond_stability():
+    mode = ShuntedMode(coupling=0.31, omega=731.0, capacitance=23e-9)
+    least = (1.0 + mode.coupling**2) * mode.capacitance
+    with pytest.raises(InputError, match=r"negative = .* above"):
+        mode.optimum("negative-series", 0.999 * least)
+    with pytest.raises(InputError, match=r"negative = .* below"):
+        mode.optimum("negative-parallel", mode.capacitance)
+    for factor, stable in ((1.001, True), (0.999, False)):
+        load = Load(resistance=4e4, capacitance=-factor * least)
+        assert (np.linalg.eigvals(states(mode, load)).real.max() < 0.0) == stable
+        if stable:
+            assert mode.peak(load) > 1.0
+        else:
+            with pytest.raises(InputError, match="makes the mode unstable"):
+                mode.peak(load)
+    with pytest.raises(InputError, match="makes the mode unstable"):
+        mode.peak(Load(resistance=4e4, capacitance=-1.001 * mode.capacitance, connection="parallel"))
+
+
+def test_loads_are_circuits():
+    omega = np.array([13.0, 170.0])
+    r, inductance, c = 3.0, 0.11, 2.3e-3
+    series, parallel = (
+        Load(resistance=r, inductance=inductance, capacitance=c, connection=one) for one in ("series", "parallel")
+    )
+    assert 1.0 / series.admittance(omega) == pytest.approx(
+        r + 1j * omega * inductance + 1.0 / (1j * omega * c), rel=1e-13
+    )
+    assert parallel.admittance(omega) == pytest.approx(
+        1.0 / r + 1.0 / (1j * omega * inductance) + 1j * omega * c, rel=1e-13
+    )
+    for values, field in (
+        ({}, "capacitance = None"),
+        ({"resistance": -1.0}, "resistance"),
+        ({"inductance": 0.0}, "inductance"),
+    ):
+        with pytest.raises(InputError, match=rf"shunt\.{field}"):
+            Load(**values)
+
+
+def test_absorbing_stack_of_the_paper():
+    port, end = STACK.port(OMEGA), ending(PAPER, 4276.0, DISTANCE)
+    load = absorbing_load(port, end.matched, OMEGA)
+    assert load.resistance == pytest.approx(4.66507, rel=1e-6)
+    assert load.inductance == pytest.approx(0.1222564, rel=1e-6)
+    opened, blocked = port.loaded_impedance(), port.blocked_admittance  # h = i omega B/Y, Z_oc
+    direct = (port.force_factor / blocked) ** 2 / (opened - end.matched) - 1.0 / blocked
+    assert complex(load.resistance, OMEGA * load.inductance) == pytest.approx(direct, rel=1e-9)
+    assert reflection(port.loaded_impedance(load.admittance(OMEGA)), end) < 1e-9
+    for figure in ("resistance", "inductance"):
+        assert measured("shunt.absorber", position=DISTANCE, figure=figure) == getattr(load, figure)
+    assert measured("shunt.reflection", position=DISTANCE, detuning=0.001) == pytest.approx(0.332, abs=5e-4)
+    assert measured("shunt.reflection", position=DISTANCE, detuning=-0.01) == pytest.approx(0.962, abs=5e-4)
+    with pytest.raises(InputError, match="ohm, which is active"):
+        absorbing_load(port, -end.matched.conjugate(), OMEGA)
+
+
+def test_quantities_without_an_actuator():
+    real = {"short_hz": 116.3, "open_hz": 123.1, "capacitance": 23e-9}
+    mode, circuit = ShuntedMode.measured(*real.values()), "parallel"
+    assert measured("shunt.peak", coupling=0.2) == pytest.approx(6.97213657278449, rel=1e-12)
+    assert measured("shunt.peak", coupling=0.2, inductance=1.0, resistance=0.3) == FIFTH.peak(
+        Load(resistance=0.3, inductance=1.0)
+    )
+    for figure in ("resistance", "inductance"):
+        assert measured("shunt.optimum", figure=figure, circuit=circuit, **real) == getattr(
+            mode.optimum(circuit), figure
+        )
+    assert measured("shunt.optimum", circuit=circuit, **real) == measured("shunt.peak", circuit=circuit, **real)
+    assert measured("shunt.optimum", circuit="resistor-loss", coupling=0.2, figure="loss_factor") == pytest.approx(
+        0.0196116135
+    )
+    negative = {"circuit": "negative-parallel", "negative": 0.43}
+    assert measured("shunt.peak", coupling=0.2, **negative) == pytest.approx(28.5, rel=1e-12)
+    patched = SimpleNamespace(beam=PAPER, drive=SimpleNamespace(actuator=Patch(length=0.1, thickness=1e-3)), devices=())
+    for name, changed, sentence in (
+        ("peak", {"open_hz": 123.1}, "give coupling, or short_hz and open_hz"),
+        ("peak", {"coupling": 0.2, "circuit": "resistor", "inductance": 1.0}, "inductance: the optimum"),
+        ("optimum", {"coupling": 0.2, "circuit": "resistor", "figure": "inductance"}, "inductance: the optimum"),
+        ("optimum", {"coupling": 1.2}, "coupling = 1.2: no optimum of two equal peaks exists"),
+        ("optimum", {"coupling": 0.2, "negative": 0.4}, "negative = 0.4"),
+        ("reflection", {"position": 0.0116}, "an absorbing actuator acts at a point"),
+    ):
+        with pytest.raises(InputError, match=sentence):
+            measured(f"shunt.{name}", patched, **changed)
