@@ -15,14 +15,8 @@ from verify.actuators.materials import PIEZO
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import ShuntedMode
 
-ARM = Beam(
-    length=0.173,
-    width=0.013,
-    thickness=0.0011,
-    youngs_modulus=71e9,
-    density=2710.0,
-    supports=("clamped", "free"),
-)
+STRIP = Beam(length=0.173, width=0.013, thickness=0.0011, youngs_modulus=71e9, density=2710.0)
+ARM = replace(STRIP, supports=("clamped", "free"))
 PZT = PIEZO["pzt-4"].derived
 ONE = Patch(length=0.047, thickness=0.0004, width=0.009, sides=1)
 BOTH = replace(ONE, sides=2, material="pzt-8")

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from scipy.optimize import minimize
 
 from verify import Beam, InputError
@@ -39,36 +40,23 @@ def test_figures_at_a_coupling_of_one_fifth():
     assert FIFTH.optimum("resistor").resistance == pytest.approx(np.sqrt(2.0 / 2.04), rel=1e-13)
 
 
-def searched(mode, start):
-    """Least peak by a simplex from 20 % beside the values of a load, and its distance from them."""
-
-    def peak(x):
-        values = {
-            name: factor * value
-            for name, value, factor in (
-                ("resistance", start.resistance, np.exp(x[0])),
-                ("inductance", start.inductance, np.exp(x[-1])),
-            )
-            if value
-        }
-        return mode.peak(Load(**values, capacitance=start.capacitance, connection=start.connection))
-
-    two, step = start.inductance is not None, 0.3 * mode.coupling
-    simplex = [[step, 0.1 * step], [0.5 * step, -0.1 * step], [-step, 0.0]] if two else [[0.2], [-0.1]]
-    options = {"xatol": 1e-10, "fatol": 1e-14, "initial_simplex": simplex, "maxiter": 2000}
-    found = minimize(peak, simplex[0], method="Nelder-Mead", options=options)
-    return found.fun, found.x
-
-
 @pytest.mark.parametrize("coupling", [0.03, 0.17, 0.61])
 @pytest.mark.parametrize("circuit", ["resistor", "series", "parallel", "negative-series", "negative-parallel"])
 def test_closed_form_is_the_optimum_of_a_search(circuit, coupling):
     mode = ShuntedMode(coupling=coupling, omega=731.0, capacitance=23e-9)
     ratio = {"negative-series": 2.3, "negative-parallel": 0.43}.get(circuit)
     load = mode.optimum(circuit, ratio and ratio * mode.capacitance)
-    least, offset = searched(mode, load)
-    assert mode.peak(load) == pytest.approx(least, rel=1e-9)
-    assert offset == pytest.approx(0.0, abs=2e-6)
+    names, step = ["resistance", "inductance"][: 1 + bool(load.inductance)], 0.3 * coupling
+
+    def peak(x):
+        factors = zip(names, np.exp(x).tolist(), strict=True)
+        return mode.peak(replace(load, **{name: factor * getattr(load, name) for name, factor in factors}))
+
+    simplex = [[step, 0.1 * step], [0.5 * step, -0.1 * step], [-step, 0.0]] if len(names) == 2 else [[0.2], [-0.1]]
+    options = {"xatol": 1e-10, "fatol": 1e-14, "initial_simplex": simplex, "maxiter": 2000}
+    least = minimize(peak, simplex[0], method="Nelder-Mead", options=options)
+    assert mode.peak(load) == pytest.approx(least.fun, rel=1e-9)
+    assert least.x == pytest.approx(0.0, abs=2e-6)
 
 
 def test_peaks_of_single_resistors_in_closed_form():
@@ -89,25 +77,22 @@ def states(mode, load):
     theta = mode.coupling * np.sqrt(stiffness * c)  # F = theta V, charge C V + theta w
     volt = np.array([-theta, 0.0, 1.0, 0.0]) / c  # by (w, speed, q, its rate)
     across = volt + (np.array([0.0, 0.0, 1.0, 0.0]) / load.capacitance if load.capacitance else 0.0)
-    rows = np.zeros((4, 4))
-    rows[0, 1] = rows[2, 3] = 1.0
-    rows[1] = theta * volt - np.array([stiffness, 0.0, 0.0, 0.0])
-    if load.inductance:
-        rows[3] = (-across - load.resistance * np.array([0.0, 0.0, 0.0, 1.0])) / load.inductance
-        return rows
-    rows[2] = -across / load.resistance
-    return rows[:3, :3]
+    rows = np.array([[0.0, 1.0, 0.0, 0.0], theta * volt - [stiffness, 0.0, 0.0, 0.0], -across / load.resistance])
+    if not load.inductance:
+        return rows[:, :3]
+    rows[2] = [0.0, 0.0, 0.0, 1.0]
+    return np.vstack([rows, -(across + load.resistance * rows[2]) / load.inductance])
 
 
-@pytest.mark.parametrize(
-    "load",
-    [
-        Load(resistance=3.1e4, inductance=71.0),
-        Load(resistance=3.1e4),
-        Load(resistance=2.3e4, capacitance=-61e-9),
-        Load(resistance=2.3e4, inductance=43.0, capacitance=57e-9),
-    ],
+SERIES = (
+    Load(resistance=3.1e4, inductance=71.0),
+    Load(resistance=3.1e4),
+    Load(resistance=2.3e4, capacitance=-61e-9),
+    Load(resistance=2.3e4, inductance=43.0, capacitance=57e-9),
 )
+
+
+@pytest.mark.parametrize("load", SERIES)
 def test_response_equals_the_state_space_model(load):
     mode = ShuntedMode.measured(116.3, 123.1, 23e-9)
     matrix, omegas = states(mode, load), np.array([311.0, 735.0, 911.0])
@@ -123,34 +108,30 @@ def test_negative_capacitance_is_refused_beyond_stability():
         mode.optimum("negative-series", 0.999 * least)
     with pytest.raises(InputError, match=r"negative = .* below"):
         mode.optimum("negative-parallel", mode.capacitance)
-    for factor, stable in ((1.001, True), (0.999, False)):
-        load = Load(resistance=4e4, capacitance=-factor * least)
-        assert (np.linalg.eigvals(states(mode, load)).real.max() < 0.0) == stable
-        if stable:
-            assert mode.peak(load) > 1.0
-        else:
-            with pytest.raises(InputError, match="makes the mode unstable"):
-                mode.peak(load)
+    stable, unstable = (Load(resistance=4e4, capacitance=-factor * least) for factor in (1.001, 0.999))
+    assert (
+        np.linalg.eigvals(states(mode, stable)).real.max() < 0.0 < np.linalg.eigvals(states(mode, unstable)).real.max()
+    )
+    softened = 1.0 - mode.coupling**2 / (1.001 * (1.0 + mode.coupling**2) - 1.0)
+    assert mode.peak(stable) == pytest.approx(1.0 / softened, rel=1e-9)
+    with pytest.raises(InputError, match="makes the mode unstable"):
+        mode.peak(unstable)
     with pytest.raises(InputError, match="makes the mode unstable"):
         mode.peak(Load(resistance=4e4, capacitance=-1.001 * mode.capacitance, connection="parallel"))
 
 
 def test_loads_are_circuits():
-    omega = np.array([13.0, 170.0])
-    r, inductance, c = 3.0, 0.11, 2.3e-3
+    w, (r, ind, c) = np.array([13.0, 170.0]), (3.0, 0.11, 2.3e-3)
     series, parallel = (
-        Load(resistance=r, inductance=inductance, capacitance=c, connection=one) for one in ("series", "parallel")
+        Load(resistance=r, inductance=ind, capacitance=c, connection=one).admittance(w)
+        for one in ("series", "parallel")
     )
-    assert 1.0 / series.admittance(omega) == pytest.approx(
-        r + 1j * omega * inductance + 1.0 / (1j * omega * c), rel=1e-13
-    )
-    assert parallel.admittance(omega) == pytest.approx(
-        1.0 / r + 1.0 / (1j * omega * inductance) + 1j * omega * c, rel=1e-13
-    )
+    assert 1.0 / series == pytest.approx(r + 1j * w * ind + 1.0 / (1j * w * c), rel=1e-13)
+    assert parallel == pytest.approx(1.0 / r + 1.0 / (1j * w * ind) + 1j * w * c, rel=1e-13)
     for values, field in (
         ({}, "capacitance = None"),
         ({"resistance": -1.0}, "resistance"),
-        ({"inductance": 0.0}, "inductance"),
+        ({"inductance": 0.0}, "ind"),
     ):
         with pytest.raises(InputError, match=rf"shunt\.{field}"):
             Load(**values)
@@ -175,29 +156,23 @@ def test_absorbing_stack_of_the_paper():
 
 def test_quantities_without_an_actuator():
     real = {"short_hz": 116.3, "open_hz": 123.1, "capacitance": 23e-9}
-    mode, circuit = ShuntedMode.measured(*real.values()), "parallel"
+    best, real = ShuntedMode.measured(*real.values()).optimum("parallel"), {**real, "circuit": "parallel"}
     assert measured("shunt.peak", coupling=0.2) == pytest.approx(6.97213657278449, rel=1e-12)
-    assert measured("shunt.peak", coupling=0.2, inductance=1.0, resistance=0.3) == FIFTH.peak(
-        Load(resistance=0.3, inductance=1.0)
-    )
+    own = Load(resistance=0.3, inductance=1.0)
+    assert measured("shunt.peak", coupling=0.2, inductance=1.0, resistance=0.3) == FIFTH.peak(own)
     for figure in ("resistance", "inductance"):
-        assert measured("shunt.optimum", figure=figure, circuit=circuit, **real) == getattr(
-            mode.optimum(circuit), figure
-        )
-    assert measured("shunt.optimum", circuit=circuit, **real) == measured("shunt.peak", circuit=circuit, **real)
-    assert measured("shunt.optimum", circuit="resistor-loss", coupling=0.2, figure="loss_factor") == pytest.approx(
-        0.0196116135
-    )
-    negative = {"circuit": "negative-parallel", "negative": 0.43}
-    assert measured("shunt.peak", coupling=0.2, **negative) == pytest.approx(28.5, rel=1e-12)
-    patched = SimpleNamespace(beam=PAPER, drive=SimpleNamespace(actuator=Patch(length=0.1, thickness=1e-3)), devices=())
+        assert measured("shunt.optimum", figure=figure, **real) == getattr(best, figure)
+    assert measured("shunt.optimum", **real) == measured("shunt.peak", **real)
+    lossy = {"circuit": "resistor-loss", "coupling": 0.2, "figure": "loss_factor"}
+    assert measured("shunt.optimum", **lossy) == pytest.approx(0.02 / np.sqrt(1.04), rel=1e-12)
+    assert measured("shunt.peak", coupling=0.2, circuit="negative-parallel", negative=0.43) == pytest.approx(28.5)
+    drive = SimpleNamespace(actuator=Patch(length=0.1, thickness=1e-3))
     for name, changed, sentence in (
         ("peak", {"open_hz": 123.1}, "give coupling, or short_hz and open_hz"),
         ("peak", {"coupling": 0.2, "circuit": "resistor", "inductance": 1.0}, "inductance: the optimum"),
-        ("optimum", {"coupling": 0.2, "circuit": "resistor", "figure": "inductance"}, "inductance: the optimum"),
         ("optimum", {"coupling": 1.2}, "coupling = 1.2: no optimum of two equal peaks exists"),
         ("optimum", {"coupling": 0.2, "negative": 0.4}, "negative = 0.4"),
         ("reflection", {"position": 0.0116}, "an absorbing actuator acts at a point"),
     ):
         with pytest.raises(InputError, match=sentence):
-            measured(f"shunt.{name}", patched, **changed)
+            measured(f"shunt.{name}", SimpleNamespace(beam=PAPER, drive=drive, devices=()), **changed)

@@ -112,7 +112,8 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         if above.coef[0] == 0.0:  # a common root, which is no pole
             own, above = (Polynomial(one.coef[1:]) for one in (own, above))
         whole = own * below + above
-        poles = ((s**2 + 1.0) * whole + self.coupling**2 * own * below).roots()
+        below = (s**2 + 1.0) * whole + self.coupling**2 * own * below  # H = whole/below
+        poles = below.roots()
         if (poles.real > 1e-12 * abs(poles)).any() or 0.0 in poles:
             raise InputError(
                 f"shunt = {load!r} makes the mode unstable: keep a negative capacitance below the actuator's own in "
@@ -125,7 +126,7 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         x = self.omega * np.unique(abs(around))
         x = x[np.diff(x, prepend=0.0) > 1e-12 * x]  # pairs of poles give each point twice but for rounding
         h = abs(self.response(load, x))
-        peaks = [h[0]]
+        peaks = [abs(whole(0.0) / below(0.0))]
         for i in 1 + np.flatnonzero((h[1:-1] >= h[:-2]) & (h[1:-1] >= h[2:])):
             step = 0.5 * (x[i + 1] - x[i - 1])
             middle = x[i - 1] + step  # its offset resolves a peak that is narrower than half the digits of x

@@ -67,7 +67,7 @@ def peak(shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henr
     return mode.peak(msgspec.structs.replace(load, **own))
 
 
-@quantity("shunt.optimum", unit="SI", reads=())
+@quantity("shunt.optimum", unit="ohm, H or 1", reads=())
 def optimum(
     shunt: ShuntOptions,
     *,
@@ -100,7 +100,7 @@ def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> "tup
     return port, end, absorbing_load(port, end.matched, omega), omega
 
 
-@quantity("shunt.absorber", unit="SI", reads=("beam", "drive"))
+@quantity("shunt.absorber", unit="ohm or H", reads=("beam", "drive"))
 def absorber(
     scene: Scene,
     *,
