@@ -4,16 +4,19 @@ Smits, Choi, IEEE Trans. UFFC 38:256 (1991): unimorph cantilever under a voltage
 Smits, Dalke, Cooney, Sensors and Actuators A 28:41 (1991): bimorph of two equal layers.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
 
 from tests.reference.dense import Elements
-from verify import Beam, HermiteModel, InputError, PointForce
+from verify import Beam, ExactModel, HermiteModel, InputError, PointForce
 from verify.actuators.materials import PIEZO
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import ShuntedMode
+from verify.quantities import evaluate
 
 STRIP = Beam(length=0.173, width=0.013, thickness=0.0011, youngs_modulus=71e9, density=2710.0)
 ARM = replace(STRIP, supports=("clamped", "free"))
@@ -23,7 +26,7 @@ BOTH = replace(ONE, sides=2, material="pzt-8")
 
 
 def enthalpy(patch, beam):
-    """Second derivatives of the electric enthalpy per length by (curvature, voltage), and those of the bare beam.
+    """Second derivatives of the electric enthalpy per length by (curvature, voltage); moments of the mass.
 
     Unknown besides: axial strain, and in each layer a linear part of the field, a quadratic potential. The field
     along the poling is V/t in the layer on +w and -V/t in the other.
@@ -39,13 +42,10 @@ def enthalpy(patch, beam):
             z, da = middle + 0.5 * thick * node, 0.5 * thick * weight * width
             strain = np.array([-z, 0.0, 1.0, 0.0, 0.0])
             field = np.array([0.0, sign / t, 0.0, node * (sign > 0.0), node * (sign < 0.0)])
-            modulus = y if sign else beam.youngs_modulus
-            total += da * modulus * np.outer(strain, strain)
-            rho += da * (material.density if sign else beam.density) * np.array([1.0, z, z**2])
-            if sign:
-                total -= da * (
-                    e * (np.outer(strain, field) + np.outer(field, strain)) + permittivity * np.outer(field, field)
-                )
+            modulus, density = (y, material.density) if sign else (beam.youngs_modulus, beam.density)
+            mixed = e * np.outer(strain, field)  # the beam has no field
+            total += da * (modulus * np.outer(strain, strain) - mixed - mixed.T - permittivity * np.outer(field, field))
+            rho += da * density * np.array([1.0, z, z**2])
     kept, rest = [0, 1], [2, 3] + [4] * (patch.sides == 2)
     coupling = total[np.ix_(kept, rest)]
     return total[np.ix_(kept, kept)] - coupling @ np.linalg.solve(total[np.ix_(rest, rest)], coupling.T), rho
@@ -57,11 +57,10 @@ def test_section_minimises_the_electric_enthalpy(design):
     ((stiffness, moment), (_, charge)), rho = enthalpy(replace(patch, width=patch.width or ARM.width), ARM)
     section = patch.laminate
     assert section.bending_stiffness * (1.0 + patch.induced_stiffening) == pytest.approx(stiffness, rel=1e-13)
-    assert patch.moment_per_volt == pytest.approx(-moment, rel=1e-13)
-    assert patch.capacitance == pytest.approx(-charge * patch.length, rel=1e-13)
-    assert section.mass_per_length == pytest.approx(rho[0], rel=1e-13)
+    electric = [patch.moment_per_volt, patch.capacitance]
+    assert electric == pytest.approx([-moment, -charge * patch.length], rel=1e-13)
     about = rho[2] - 2.0 * section.neutral_axis * rho[1] + section.neutral_axis**2 * rho[0]
-    assert section.rotary_inertia == pytest.approx(about, rel=1e-13)
+    assert [section.mass_per_length, section.rotary_inertia] == pytest.approx([rho[0], about], rel=1e-13)
 
 
 def smits_and_choi(h, t, width):
@@ -113,15 +112,18 @@ def test_shunted_patch_damps_the_mode_of_a_cantilever():
     gains = (b * bend @ shapes) ** 2
     mode = ShuntedMode.measured(*hertz, c + sum(gains[1:] / (short[1:] - short[0])))
     assert mode.coupling**2 == pytest.approx(gains[0] / (mode.capacitance * short[0]), rel=3e-3)
+    modal = ShuntedMode.bonded(ExactModel(beam).modes(200), patch, 0.031, 1)
+    assert [modal.coupling, modal.capacitance] == pytest.approx([mode.coupling, mode.capacitance], rel=2e-3)
+    scene = SimpleNamespace(beam=ARM, drive=SimpleNamespace(actuator=ONE), devices=())
+    asked = {"mode": 1, "position": 0.031, "circuit": "resistor"}
+    assert evaluate("shunt.peak", asked, scene, None) == pytest.approx(2.0 / modal.coupling**2, rel=2e-3)
     load, omegas = mode.optimum("series"), mode.omega * np.linspace(0.8, 1.2, 1201)
     unit = shapes[:, 0] @ mass  # the force of the mode's own shape, and its coordinate
-    response = []
-    for omega in omegas:
-        shunted = 1j * omega * patch.port(omega).loaded_impedance(load.admittance(omega))
-        matrix = stiffness + shunted * np.outer(bend, bend) - omega**2 * mass
-        response.append(abs(unit @ np.linalg.solve(matrix, unit)) * short[0])
-    assert max(response) == pytest.approx(mode.peak(load), rel=0.02)
-    assert np.array(response) == pytest.approx(abs(mode.response(load, omegas)), rel=0.02)
+    shunted = 1j * omegas * patch.port(omegas).loaded_impedance(load.admittance(omegas))
+    square, turned = omegas[:, None, None] ** 2, shunted[:, None, None] * np.outer(bend, bend)
+    response = abs(np.linalg.solve(stiffness + turned - square * mass, unit[:, None])[..., 0] @ unit) * short[0]
+    assert response.max() == pytest.approx(mode.peak(load), rel=0.02)
+    assert response == pytest.approx(abs(mode.response(load, omegas)), rel=0.02)
 
 
 def test_patches_add_their_mass_to_the_beam():

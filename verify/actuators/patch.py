@@ -26,18 +26,12 @@ from verify.validation import check_number, unit, validate
 class Laminate(msgspec.Struct, frozen=True, kw_only=True):
     """The section of a beam under its patch, short-circuited. SI."""
 
-    neutral_axis: float
-    """Distance from the beam's mid-plane to the neutral line, towards the patch, m."""
-    lever: float
-    """Distance from the neutral line to the middle of a layer, m."""
-    axial_stiffness: float
-    """EA, N."""
-    bending_stiffness: float
-    """EI, N m^2."""
-    mass_per_length: float
-    """kg/m."""
-    rotary_inertia: float
-    """rho I about the neutral line, kg m."""
+    neutral_axis: float  # distance from the beam's mid-plane to the neutral line, towards the patch, m
+    lever: float  # distance from the neutral line to the middle of a layer, m
+    axial_stiffness: float  # EA, N
+    bending_stiffness: float  # EI, N m^2
+    mass_per_length: float  # kg/m
+    rotary_inertia: float  # rho I about the neutral line, kg m
     extreme_fibre: float
     """Distance from the neutral line to the beam's bare surface, or with two layers to that of a layer, m."""
 
@@ -77,11 +71,6 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
                 check_number("patch.width", self.width, "metres, at most the beam's width", at_most=section.width)
 
     @property
-    def bonded_length(self) -> float:
-        """Distance of the two moments, m."""
-        return self.length
-
-    @property
     def ceramic(self) -> PiezoMaterial:
         """The material's constants."""
         return PIEZO[self.material] if isinstance(self.material, str) else self.material
@@ -97,17 +86,17 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         return replace(self, substrate=CrossSection(**set_fields(beam)))
 
     @property
-    def _sizes(self) -> tuple[float, float, float]:
-        """(width of the patch, width and thickness of the beam), m. Raises InputError without a beam."""
+    def _sizes(self) -> tuple[float, float]:
+        """(width of the patch, thickness of the beam), m. Raises InputError without a beam."""
         section = self.substrate
         if section is None or section.width is None or section.thickness is None:
             raise InputError("patch.substrate is missing: bond the patch to a beam first, patch.bonded(beam)")
-        return self.width or section.width, section.width, section.thickness
+        return self.width or section.width, section.thickness
 
     @property
     def laminate(self) -> Laminate:
         """The transformed section over the patch, real parts of its moduli. Raises InputError without a beam."""
-        (width, _, h), t, n = self._sizes, self.thickness, self.sides
+        (width, h), t, n = self._sizes, self.thickness, self.sides
         bare = piece_of(set_fields(self.substrate), 1.0, "patch.substrate", 0.33)  # type: ignore[arg-type]
         layer, mass = (1.0 / self._constants[0]).real * width * t, self.ceramic.density * width * t
         axial, distance = bare.axial_stiffness + n * layer, 0.5 * (h + t)
@@ -133,7 +122,7 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
     def capacitance(self) -> complex:
         """C at equal slopes of both ends, F: n epsS area/t, and for a unimorph the charge of its free extension."""
         _, e31, permittivity = self._constants
-        (width, _, _), n = self._sizes, self.sides
+        (width, _), n = self._sizes, self.sides
         extension = (e31 * width) ** 2 / self.laminate.axial_stiffness if n == 1 else 0.0
         return self.length * (n * permittivity * width / self.thickness + extension)
 

@@ -16,8 +16,8 @@ parallel R-L circuit leaves a quartic for b; its approximation by fixed points i
 (K. Yamada et al., J. Sound Vib. 329:5036 (2010)).
 """
 
-from math import pi, sqrt
-from typing import Annotated, Any, Literal, cast, get_args
+from math import inf, pi, sqrt
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 import msgspec
 
@@ -25,9 +25,14 @@ from verify.actuators.port import Port
 from verify.errors import InputError
 from verify.validation import check_choice, check_number, unit, validate
 
+if TYPE_CHECKING:
+    from verify.actuators.patch import Patch
+    from verify.linear.modes import Modes
+
 Circuit = Literal["resistor", "resistor-loss", "series", "parallel", "hagood", "negative-series", "negative-parallel"]
 """Shunts with an optimum: least peak by a resistor, a series or parallel R-L circuit, or a resistor in series or
 parallel with a negative capacitance; most loss by a resistor; the transfer-function rule of Hagood and von Flotow."""
+Connection = Literal["series", "parallel"]
 
 
 class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -42,7 +47,8 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """L, H."""
     capacitance: Annotated[float, unit("F")] | None = None
     """C, F; negative for an active circuit."""
-    connection: Literal["series", "parallel"] = "series"
+    connection: Connection = "series"
+    """Connection of the parts with each other."""
 
     def __post_init__(self) -> None:
         validate(self, "shunt")
@@ -68,10 +74,7 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
-    """One undamped mode with an actuator of constant capacitance; the units of the default are C and omega.
-
-    Raises InputError for an invalid value.
-    """
+    """One undamped mode with an actuator, by default in units of C and omega. Raises InputError."""
 
     coupling: Annotated[float, unit("dimensionless", gt=0)]
     """K = sqrt((omega_open/omega_short)^2 - 1)."""
@@ -90,6 +93,21 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         check_number("open_hz", open_hz, "hertz", above=float(short_hz))
         ratio = sqrt((open_hz - short_hz) * (open_hz + short_hz)) / short_hz
         return cls(coupling=ratio, omega=2.0 * pi * short_hz, capacitance=capacitance)
+
+    @classmethod
+    def bonded(cls, modes: "Modes", patch: "Patch", position: float, number: int) -> "ShuntedMode":
+        """A mode, from 1, of the beam from `patch.on`, with a patch centred at `position` (m).
+
+        The other modes, which turn its ends by t_m against each other, add B^2 t_m^2/(omega_m^2 - omega^2) to C. The
+        neglect of those beyond `modes` falls with 1/n_modes. Raises InputError for a mode without coupling.
+        """
+        ends = [position - 0.5 * patch.length, position + 0.5 * patch.length]
+        turning = patch.moment_per_volt.real * modes.slope(ends) @ [-1.0, 1.0]
+        squares = (2.0 * pi * modes.frequencies_hz) ** 2
+        own = squares[number - 1]
+        others = squares != own
+        c = patch.capacitance.real + float((turning[others] ** 2 / (squares[others] - own)).sum())
+        return cls(coupling=abs(turning[number - 1]) / sqrt(c * own), omega=sqrt(own), capacitance=c)
 
     def stiffness(self, load: Load, omega: Any) -> Any:
         """1 + K^2 X, stiffness over that with short-circuited electrodes, at angular frequencies (rad/s)."""
@@ -120,7 +138,7 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
                 "parallel, and above (1 + K^2) times it in series"
             )
         if (poles.real > -1e-13 * abs(poles)).any():
-            return float("inf")
+            return inf
         # a maximum lies within some widths of a pole, where the sinh puts most points
         around = poles.imag + poles.real * np.sinh(np.linspace(-4.0, 4.0, 81))[:, None]
         x = self.omega * np.unique(abs(around))
@@ -145,12 +163,16 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         the limit of stability, and where K is too large for an optimum of two equal peaks.
         """
         check_choice("circuit", circuit, get_args(Circuit))
-        squared, c = self.coupling**2, self.capacitance
-        if circuit.startswith("negative"):
-            return self._with_negative_capacitance(circuit.removeprefix("negative-"), negative)
-        if negative is not None:
-            raise InputError(f"negative = {negative!r} is for circuit = 'negative-series' or 'negative-parallel'")
-        connection, p = "series", 0.0
+        squared, unit_c, unit_l = self.coupling**2, self.capacitance, 1.0 / (self.capacitance * self.omega**2)
+        if (negative is None) == circuit.startswith("negative"):
+            raise InputError(
+                f"negative = {negative!r}: give it for negative-series and negative-parallel, and only there"
+            )
+        limit = {"series": 1.127, "parallel": 1.414}.get(circuit, inf)  # there the peak falls to the static deflection
+        if self.coupling > limit:
+            raise InputError(f"coupling = {self.coupling!r} has no optimum of two equal peaks: give at most {limit}")
+        connection: Connection = "parallel" if circuit.endswith("parallel") else "series"
+        p = 0.0
         if circuit == "resistor":
             r = sqrt(2.0 / (2.0 + squared))
         elif circuit == "resistor-loss":
@@ -159,17 +181,26 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
             p, r = 1.0 / (1.0 + squared), sqrt(2.0) * self.coupling / (1.0 + squared)
         elif circuit == "series":
             root = 64.0 - 16.0 * squared - 26.0 * squared**2
-            self._check(root > squared**2, "1.127")
             rest = squared * (32.0 + 27.0 * squared) / (8.0 * (8.0 + squared + sqrt(root)))  # 1 - b
             p = 1.0 / (1.0 + rest + 0.75 * squared)
             r = p * sqrt(6.0 * rest)
-        else:
-            connection = "parallel"
+        elif circuit == "parallel":
             p, r = self._parallel()
+        # a resistor beside a negative capacitance: its limits 0 and infinity have one response at the crossing
+        elif circuit == "negative-parallel":  # C - negative remains of the actuator, K^2 grows by its inverse
+            check_number("negative", negative, "farad, below the actuator's capacitance", above=0, below=unit_c)
+            ratio = 1.0 - (negative or 0.0) / unit_c
+            r = 1.0 / (ratio * sqrt(1.0 + 0.5 * squared / ratio))
+        else:  # static stiffness 1 - K^2/(negative/C - 1) stays positive
+            least = (1.0 + squared) * unit_c
+            check_number("negative", negative, "farad, above (1 + K^2) times the actuator's capacitance", above=least)
+            ratio = 1.0 - unit_c / (negative or least)
+            r = ratio / sqrt(1.0 + squared - 0.5 * squared / ratio)
         return Load(
-            resistance=r / (c * self.omega),
-            inductance=p / (c * self.omega**2) if p else None,
-            connection=cast(Literal["series", "parallel"], connection),
+            resistance=r * self.omega * unit_l,
+            inductance=p * unit_l or None,
+            capacitance=-negative if negative else None,
+            connection=connection,
         )
 
     def _parallel(self) -> tuple[float, float]:
@@ -188,32 +219,8 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         detuning /= 13.0 * u**2 - 56.0 * u + 64.0  # delta^2 - 1
         p, rest = 1.0 / float(1.0 + detuning), float(u * t.real)
         half, product = p * (u + detuning), p * rest * (-2.0 * p * detuning - p * rest)
-        self._check(bool(abs(t.imag) < 1e-9 and half**2 > product and 0.0 < rest < 1.0), "1.414")
         q = half + sqrt(half**2 - product)  # (p/r)^2/(2 p)
         return p, p / sqrt(2.0 * p * q)
-
-    def _check(self, exists: bool, limit: str) -> None:
-        """Raise InputError where the equal peaks do not exist."""
-        if not exists:
-            raise InputError(
-                f"coupling = {self.coupling!r}: no optimum of two equal peaks exists, give at most {limit}"
-            )
-
-    def _with_negative_capacitance(self, connection: str, negative: float | None) -> Load:
-        """Resistor beside -`negative` farad: both limits of the resistance have one response where they cross."""
-        squared, c = self.coupling**2, self.capacitance
-        if connection == "parallel":  # of the actuator C - negative remains, K^2 grows by its inverse
-            check_number("negative", negative, "farad, below the actuator's capacitance", above=0, below=c)
-            ratio = 1.0 - cast(float, negative) / c
-            crossing, time = 1.0 + 0.5 * squared / ratio, ratio
-        else:  # static stiffness 1 - K^2/(negative/C - 1) stays positive
-            least = (1.0 + squared) * c
-            check_number("negative", negative, "farad, above (1 + K^2) times the actuator's capacitance", above=least)
-            time = 1.0 - c / cast(float, negative)
-            crossing, time = 1.0 + squared - 0.5 * squared / time, 1.0 / time
-        resistance = 1.0 / (sqrt(crossing) * time * c * self.omega)
-        kind = cast(Literal["series", "parallel"], connection)
-        return Load(resistance=resistance, capacitance=-cast(float, negative), connection=kind)
 
 
 def absorbing_load(port: Port, impedance: complex, omega: float) -> Load:

@@ -1,16 +1,18 @@
 """Quantities of shunted actuators: damping of one mode, absorption of a wave by an actuator with an electrical load."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
+from verify.actuators.patch import Patch
 from verify.actuators.shunt import Circuit, Load, ShuntedMode, absorbing_load
 from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
+from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
-from verify.quantities.base import Scene, quantity
+from verify.quantities.base import Place, Scene, quantity
 from verify.quantities.waves import FromRightEnd
 from verify.validation import Relative, check_number, unit
 
@@ -34,19 +36,29 @@ class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
     open_hz: Hertz | None = None
     capacitance: Annotated[float, unit("F"), Meta(gt=0, description="blocked capacitance, F")] = 1.0
     negative: Ratio | None = None
+    mode: Annotated[int, Meta(ge=1, description="mode of the beam under the scene's patch, for coupling")] | None = None
+    position: Annotated[Place, Meta(description="centre of this patch, m from the left end")] | None = None
 
-    def best(self) -> tuple[ShuntedMode, Load]:
+    def best(self, scene: Scene) -> tuple[ShuntedMode, Load]:
         """The mode and the optimum load of the circuit. Raises InputError."""
-        if self.open_hz is not None and self.short_hz is not None and self.coupling is None:
-            mode = ShuntedMode.measured(self.short_hz, self.open_hz, self.capacitance)
-        elif self.coupling is not None and self.open_hz is None:
-            omega = 1.0 if self.short_hz is None else 2.0 * pi * self.short_hz
-            mode = ShuntedMode(coupling=self.coupling, omega=omega, capacitance=self.capacitance)
-        else:
+        sources = [self.coupling, self.open_hz and self.short_hz, self.mode and self.position]
+        if sum(one is not None for one in sources) != 1:
             raise InputError(
-                f"coupling = {self.coupling!r}, open_hz = {self.open_hz!r}: give coupling, or short_hz and open_hz"
+                f"coupling = {self.coupling!r}, open_hz = {self.open_hz!r}, mode = {self.mode!r}: give coupling, or "
+                "short_hz and open_hz, or mode and position"
             )
-        return mode, mode.optimum(self.circuit, None if self.negative is None else self.negative * self.capacitance)
+        if self.mode is not None and self.position is not None:
+            patch: Any = None if scene.drive is None else scene.drive.actuator
+            if not isinstance(patch, Patch):
+                raise InputError(f"mode = {self.mode!r} needs [drive.actuator] with kind = 'patch', or give coupling")
+            modes = MODELS[EXACT].build(patch.on(scene.beam, self.position)).modes(self.mode + 60)
+            mode = ShuntedMode.bonded(modes, patch.bonded(scene.beam), self.position, self.mode)
+        elif self.open_hz is not None and self.short_hz is not None:
+            mode = ShuntedMode.measured(self.short_hz, self.open_hz, self.capacitance)
+        else:
+            omega = 1.0 if self.short_hz is None else 2.0 * pi * self.short_hz
+            mode = ShuntedMode(coupling=self.coupling or 0.0, omega=omega, capacitance=self.capacitance)
+        return mode, mode.optimum(self.circuit, None if self.negative is None else self.negative * mode.capacitance)
 
 
 def _part(load: Load, figure: Figure) -> float:
@@ -57,18 +69,19 @@ def _part(load: Load, figure: Figure) -> float:
     return value
 
 
-@quantity("shunt.peak", unit="1", reads=())
-def peak(shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henry | None = None) -> float:
+@quantity("shunt.peak", unit="1", reads=("beam", "drive"))
+def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henry | None = None) -> float:
     """Largest response of a shunted mode over its static deflection with short-circuited electrodes."""
-    mode, load = shunt.best()
+    mode, load = shunt.best(scene)
     if inductance is not None:
         _part(load, "inductance")
     own = {"resistance": resistance or load.resistance, "inductance": inductance or load.inductance}
     return mode.peak(msgspec.structs.replace(load, **own))
 
 
-@quantity("shunt.optimum", unit="ohm, H or 1", reads=())
+@quantity("shunt.optimum", unit="ohm, H or 1", reads=("beam", "drive"))
 def optimum(
+    scene: Scene,
     shunt: ShuntOptions,
     *,
     figure: Annotated[
@@ -77,7 +90,7 @@ def optimum(
     ] = "peak",
 ) -> float:
     """Optimum of a shunt in closed form: its resistance, inductance, peak of the response, or loss factor."""
-    mode, load = shunt.best()
+    mode, load = shunt.best(scene)
     if figure == "peak":
         return mode.peak(load)
     if figure == "loss_factor":
