@@ -1,8 +1,4 @@
-"""Shunt damping and the absorbing stack: closed forms against search, a state-space model, and published figures.
-
-Figures at K = 0.2 and those of the stack: an independent reduction, confirmed by minimisation, and a Hermite and rod
-finite-element model.
-"""
+"""Shunt damping and the absorbing stack: closed forms against search and a state-space model, independent figures."""
 
 from types import SimpleNamespace
 
@@ -32,8 +28,7 @@ def test_figures_at_a_coupling_of_one_fifth():
     hagood, exact = FIFTH.optimum("hagood"), FIFTH.optimum("series")
     assert FIFTH.peak(hagood) == pytest.approx(7.28797, rel=1e-6)
     assert [1.0 / hagood.inductance, 1.0 / exact.inductance] == pytest.approx([1.04, 1.04033925381565], rel=1e-13)
-    assert exact.resistance == pytest.approx(0.239411627043163, rel=1e-13)
-    assert FIFTH.peak(exact) == pytest.approx(6.97213657278449, rel=1e-13)
+    assert [exact.resistance, FIFTH.peak(exact)] == pytest.approx([0.239411627043163, 6.97213657278449], rel=1e-13)
     resistor = FIFTH.optimum("resistor")
     assert [FIFTH.peak(resistor), resistor.resistance] == pytest.approx([50.0, np.sqrt(2.0 / 2.04)], rel=1e-12)
 
@@ -58,14 +53,13 @@ def test_closed_form_is_the_optimum_of_a_search(circuit, coupling):
 
 
 def test_peaks_of_single_resistors_in_closed_form():
-    for ratio, circuit, gain in ((0.43, "negative-parallel", 1.0 - 0.43), (2.3, "negative-series", 1.3 / 2.3)):
-        assert FIFTH.peak(FIFTH.optimum(circuit, ratio)) == pytest.approx(50.0 * gain, rel=1e-12)
-    load = FIFTH.optimum("resistor-loss")
-    stiffness = FIFTH.stiffness(load, np.linspace(0.5, 1.5, 1001))
+    loads = [FIFTH.optimum("negative-parallel", 0.43), FIFTH.optimum("negative-series", 2.3)]
+    assert [FIFTH.peak(load) for load in loads] == pytest.approx([50.0 * 0.57, 50.0 * 1.3 / 2.3], rel=1e-12)
+    stiffness = FIFTH.stiffness(FIFTH.optimum("resistor-loss"), np.linspace(0.5, 1.5, 1001))
     loss = stiffness.imag / stiffness.real
     assert loss.max() == loss[500] == pytest.approx(0.02 / np.sqrt(1.04), rel=1e-12)
-    assert FIFTH.optimum("parallel").inductance == pytest.approx(2.0 / 1.96, rel=1e-4)  # Yamada's fixed points
-    assert FIFTH.peak(FIFTH.optimum("parallel")) == pytest.approx(np.sqrt(2.0) / 0.2, rel=1e-3)
+    parallel = FIFTH.optimum("parallel")  # near Yamada's fixed points
+    assert [parallel.inductance, FIFTH.peak(parallel)] == pytest.approx([2.0 / 1.96, np.sqrt(2.0) / 0.2], rel=1e-3)
     assert FIFTH.peak(Load(inductance=0.7)) == np.inf
 
 
@@ -131,8 +125,8 @@ def test_absorbing_stack_of_the_paper():
     assert reflection(port.loaded_impedance(load.admittance(OMEGA)), end) < 1e-9
     for figure in ("resistance", "inductance"):
         assert measured("shunt.absorber", position=DISTANCE, figure=figure) == getattr(load, figure)
-    assert measured("shunt.reflection", position=DISTANCE, detuning=0.001) == pytest.approx(0.332, abs=5e-4)
-    assert measured("shunt.reflection", position=DISTANCE, detuning=-0.01) == pytest.approx(0.962, abs=5e-4)
+    gammas = [measured("shunt.reflection", position=DISTANCE, detuning=error) for error in (0.001, -0.01)]
+    assert gammas == pytest.approx([0.332, 0.962], abs=5e-4)
     with pytest.raises(InputError, match="ohm, which is active"):
         absorbing_load(port, -end.matched.conjugate(), OMEGA)
 
@@ -140,9 +134,8 @@ def test_absorbing_stack_of_the_paper():
 def test_quantities_without_an_actuator():
     real = {"short_hz": 116.3, "open_hz": 123.1, "capacitance": 23e-9}
     best, real = ShuntedMode.measured(*real.values()).optimum("parallel"), {**real, "circuit": "parallel"}
-    assert measured("shunt.peak", coupling=0.2) == pytest.approx(6.97213657278449, rel=1e-12)
-    own = Load(resistance=0.3, inductance=1.0)
-    assert measured("shunt.peak", coupling=0.2, inductance=1.0, resistance=0.3) == FIFTH.peak(own)
+    own = {"resistance": 0.3, "inductance": 1.0}
+    assert measured("shunt.peak", coupling=0.2, **own) == FIFTH.peak(Load(**own))
     assert measured("shunt.optimum", figure="inductance", **real) == best.inductance
     assert measured("shunt.optimum", **real) == measured("shunt.peak", **real)
     lossy = {"circuit": "resistor-loss", "coupling": 0.2, "figure": "loss_factor"}

@@ -63,10 +63,8 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
             validate(section, "patch.substrate")
             piece = piece_of(set_fields(section), 1.0, "patch.substrate", 0.33)
             if section.shape not in (None, "rectangle") or piece.youngs_modulus is None or not section.width:
-                raise InputError(
-                    "patch.substrate: a patch is on a rectangular section, give the beam's width, thickness, "
-                    "youngs_modulus and density"
-                )
+                sizes = "width, thickness, youngs_modulus and density"
+                raise InputError(f"patch.substrate: a patch is on a rectangular section, give the beam's {sizes}")
             if self.width is not None:
                 check_number("patch.width", self.width, "metres, at most the beam's width", at_most=section.width)
 

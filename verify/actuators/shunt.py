@@ -10,10 +10,9 @@ relative to the static deflection with short-circuited electrodes (N. W. Hagood,
 
 Sources of the optima. Resistor and "hagood": Hagood and von Flotow. Series R-L: exact equal peaks of least height,
 P. Soltani et al., Smart Mater. Struct. 23:125014 (2014), after T. Asami, O. Nishihara, J. Vib. Acoust. 125:398 (2003).
-There 1/|H|^2 exceeds its least value 1/peak^2 by a squared quadratic in omega^2 over |s C + Y|^2 with the constant
-term b^2 = 1 - 1/peak^2; the double root of the relation between p and b gives the optimum. The same reduction of the
-parallel R-L circuit leaves a quartic for b; its approximation by fixed points is p = 2/(2 - K^2), peak sqrt(2)/K
-(K. Yamada et al., J. Sound Vib. 329:5036 (2010)).
+There 1/|H|^2 = 1/peak^2 + (p x^2 + a x + b)^2/|p s^2 + r s + 1|^2 with x = -s^2, b^2 = 1 - 1/peak^2; a double root of
+the relation between p and b is the optimum. The same reduction of the parallel R-L circuit leaves a quartic for b,
+which fixed points approximate: p = 2/(2 - K^2), peak sqrt(2)/K (K. Yamada et al., J. Sound Vib. 329:5036 (2010)).
 """
 
 from math import inf, pi, sqrt

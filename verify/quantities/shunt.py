@@ -1,7 +1,7 @@
 """Quantities of shunted actuators: damping of one mode, absorption of a wave by an actuator with an electrical load."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
@@ -16,15 +16,10 @@ from verify.quantities.base import Place, Scene, quantity
 from verify.quantities.waves import FromRightEnd
 from verify.validation import Relative, check_number, unit
 
-if TYPE_CHECKING:
-    from verify.actuators.port import Port
-    from verify.waves.impedance_matching import Ending
-
 Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with these electrodes, Hz")]
 Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
 Henry = Annotated[float, unit("H"), Meta(gt=0, description="inductance; default: that of the optimum")]
 Figure = Literal["resistance", "inductance"]
-Ratio = Annotated[Relative, Meta(gt=0, description="negative capacitance over the actuator's, for negative-...")]
 
 
 class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
@@ -35,7 +30,7 @@ class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
     short_hz: Hertz | None = None
     open_hz: Hertz | None = None
     capacitance: Annotated[float, unit("F"), Meta(gt=0, description="blocked capacitance, F")] = 1.0
-    negative: Ratio | None = None
+    negative: Annotated[Relative, Meta(gt=0, description="negative capacitance over the actuator's")] | None = None
     mode: Annotated[int, Meta(ge=1, description="mode of the beam under the scene's patch, for coupling")] | None = None
     position: Annotated[Place, Meta(description="centre of this patch, m from the left end")] | None = None
 
@@ -43,10 +38,8 @@ class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
         """The mode and the optimum load of the circuit. Raises InputError."""
         sources = [self.coupling, self.open_hz and self.short_hz, self.mode and self.position]
         if sum(one is not None for one in sources) != 1:
-            raise InputError(
-                f"coupling = {self.coupling!r}, open_hz = {self.open_hz!r}, mode = {self.mode!r}: give coupling, or "
-                "short_hz and open_hz, or mode and position"
-            )
+            values = f"coupling = {self.coupling!r}, open_hz = {self.open_hz!r}, mode = {self.mode!r}"
+            raise InputError(f"{values}: give coupling, or short_hz and open_hz, or mode and position")
         if self.mode is not None and self.position is not None:
             patch: Any = None if scene.drive is None else scene.drive.actuator
             if not isinstance(patch, Patch):
@@ -99,7 +92,7 @@ def optimum(
     return _part(load, figure)
 
 
-def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> "tuple[Port, Ending, Load, float]":
+def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tuple[Any, Any, Load, float]:
     """(port, beam behind it, matched load, omega) of the scene's actuator. Raises InputError."""
     from verify.waves.impedance_matching import ending
 
