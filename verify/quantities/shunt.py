@@ -72,7 +72,7 @@ def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, in
     return mode.peak(msgspec.structs.replace(load, **own))
 
 
-@quantity("shunt.optimum", unit="ohm, H or 1", reads=("beam", "drive"))
+@quantity("shunt.optimum", unit="1, ohm or H", reads=("beam", "drive"))
 def optimum(
     scene: Scene,
     shunt: ShuntOptions,
